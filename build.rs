@@ -3,8 +3,8 @@
 //! `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, neither of which knows a place on this machine or a day. Anybody can do it again
 //! with the two lines of `docs/record.md`.
 //!
-//! Files of tests alone, which the program is made without, do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and what
-//! is in a folder `tests` or `testing`. Who changes a test waits for the tests only.
+//! Files that the program is made without do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and what is in a folder `tests`,
+//! `testing`, `examples` or `benches`. Who changes a test waits for the tests only.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,9 @@ fn main() {
     for name in files {
         println!("cargo::rerun-if-changed={name}");
         // A package may come without its lock file.
-        let Ok(bytes) = fs::read(root.join(&name)) else { continue };
+        let Ok(bytes) = fs::read(root.join(&name)) else {
+            continue;
+        };
         let _ = writeln!(listed, "{}  {name}", sha256(&bytes));
     }
     println!("cargo::rustc-env=PSD_BUILD={}", sha256(listed.as_bytes()));
@@ -34,10 +36,12 @@ fn main() {
 }
 
 fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::new(), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
+    Sha256::digest(bytes)
+        .iter()
+        .fold(String::new(), |mut hex, byte| {
+            let _ = write!(hex, "{byte:02x}");
+            hex
+        })
 }
 
 /// What the machine code depends on beside the sources: target, profile, compiler.
@@ -47,17 +51,32 @@ fn toolchain() -> String {
     let version = Command::new(told("RUSTC")).arg("--version").output().ok();
     let version = version.and_then(|output| String::from_utf8(output.stdout).ok());
     let version = version.map_or_else(|| "rustc unknown".to_owned(), |text| text.trim().to_owned());
-    format!("{}, {} profile at optimisation {}, {version}", told("TARGET"), told("PROFILE"), told("OPT_LEVEL"))
+    format!(
+        "{}, {} profile at optimisation {}, {version}",
+        told("TARGET"),
+        told("PROFILE"),
+        told("OPT_LEVEL")
+    )
 }
 
 fn walk(root: &Path, folder: &str, files: &mut Vec<String>) {
-    for entry in fs::read_dir(root.join(folder)).into_iter().flatten().flatten() {
+    for entry in fs::read_dir(root.join(folder))
+        .into_iter()
+        .flatten()
+        .flatten()
+    {
         let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
         if entry.path().is_dir() {
-            if !matches!(name.rsplit('/').next(), Some("tests" | "testing")) {
+            if !matches!(
+                name.rsplit('/').next(),
+                Some("tests" | "testing" | "examples" | "benches")
+            ) {
                 walk(root, &name, files);
             }
-        } else if !["/tests.rs", "/testing.rs", "_tests.rs"].iter().any(|end| name.ends_with(end)) {
+        } else if !["/tests.rs", "/testing.rs", "_tests.rs"]
+            .iter()
+            .any(|end| name.ends_with(end))
+        {
             files.push(name);
         }
     }

@@ -5,10 +5,11 @@ use std::hint::black_box;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::mechanics::frame::{
-    FrameInput, FrameMatrices, FrameSolver, SymmetricBand, Tangents, drifts, floor_forces, storey_stiffness,
+use psd::physics::frame::{
+    FrameInput, FrameMatrices, FrameSolver, SymmetricBand, Tangents, drifts, floor_forces,
+    storey_stiffness,
 };
-use psd::mechanics::specimen::{Bilinear, Elastic, RestoringForce};
+use psd::physics::specimen::{Bilinear, Elastic, RestoringForce};
 use psd::plan::Integrator;
 
 const STOREYS: [usize; 5] = [1, 2, 10, 100, 1000];
@@ -27,11 +28,21 @@ fn building(storeys: usize) -> FrameMatrices {
     let mut damping = SymmetricBand::zero(storeys, 0);
     damping.add(&mass, 0.5);
     damping.add(&stiffness, 5e-4);
-    black_box(FrameMatrices { mass, damping, stiffness })
+    black_box(FrameMatrices {
+        mass,
+        damping,
+        stiffness,
+    })
 }
 
 /// The run goes on from one measurement to the next: 10 m/s² at 2 Hz, steps of 2 ms.
-fn steps<S: RestoringForce + Copy>(bencher: Bencher, storeys: usize, integrator: Integrator, tangents: Tangents, storey: S) {
+fn steps<S: RestoringForce + Copy>(
+    bencher: Bencher,
+    storeys: usize,
+    integrator: Integrator,
+    tangents: Tangents,
+    storey: S,
+) {
     let matrices = building(storeys);
     let zero = vec![0.0; storeys];
     let input = FrameInput {
@@ -71,26 +82,64 @@ fn steps<S: RestoringForce + Copy>(bencher: Bencher, storeys: usize, integrator:
 
 #[divan::bench(args = STOREYS)]
 fn elastic(bencher: Bencher, storeys: usize) {
-    steps(bencher, storeys, TANGENT, Tangents::Initial, Elastic { stiffness: STIFFNESS });
+    steps(
+        bencher,
+        storeys,
+        TANGENT,
+        Tangents::Initial,
+        Elastic {
+            stiffness: STIFFNESS,
+        },
+    );
 }
 
 #[divan::bench(args = STOREYS)]
 fn elastic_followed(bencher: Bencher, storeys: usize) {
-    steps(bencher, storeys, TANGENT, SECANTS, Elastic { stiffness: STIFFNESS });
+    steps(
+        bencher,
+        storeys,
+        TANGENT,
+        SECANTS,
+        Elastic {
+            stiffness: STIFFNESS,
+        },
+    );
 }
 
 /// Yields at 10 mm of drift.
 #[divan::bench(args = STOREYS)]
 fn bilinear(bencher: Bencher, storeys: usize) {
-    steps(bencher, storeys, TANGENT, SECANTS, Bilinear::new(STIFFNESS, 2e4, 0.05));
+    steps(
+        bencher,
+        storeys,
+        TANGENT,
+        SECANTS,
+        Bilinear::new(STIFFNESS, 2e4, 0.05),
+    );
 }
 
 #[divan::bench(args = STOREYS)]
 fn explicit(bencher: Bencher, storeys: usize) {
-    steps(bencher, storeys, Integrator::Explicit, Tangents::Initial, Elastic { stiffness: STIFFNESS });
+    steps(
+        bencher,
+        storeys,
+        Integrator::Explicit,
+        Tangents::Initial,
+        Elastic {
+            stiffness: STIFFNESS,
+        },
+    );
 }
 
 #[divan::bench(args = STOREYS)]
 fn alpha_os(bencher: Bencher, storeys: usize) {
-    steps(bencher, storeys, Integrator::AlphaOs { alpha: -0.05 }, Tangents::Initial, Elastic { stiffness: STIFFNESS });
+    steps(
+        bencher,
+        storeys,
+        Integrator::AlphaOs { alpha: -0.05 },
+        Tangents::Initial,
+        Elastic {
+            stiffness: STIFFNESS,
+        },
+    );
 }

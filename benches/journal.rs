@@ -19,7 +19,12 @@ struct Sample {
     text: &'static str,
 }
 
-const SAMPLE: Sample = Sample { step: 1234, x: 0.012_345_678_9, force: -1_234.567_891_2, text: "settled 3" };
+const SAMPLE: Sample = Sample {
+    step: 1234,
+    x: 0.012_345_678_9,
+    force: -1_234.567_891_2,
+    text: "settled 3",
+};
 
 /// Takes everything and keeps nothing.
 struct Nowhere;
@@ -41,13 +46,17 @@ impl Storage for Nowhere {
 
 fn begun(storage: Box<dyn Storage>, durability: Durability) -> Journal {
     let mut journal = Journal::create(storage, durability);
-    journal.append(EntryKind::Header, &serde_json::json!({})).expect("the header is taken");
+    journal
+        .append(EntryKind::Header, &serde_json::json!({}))
+        .expect("the header is taken");
     journal
 }
 
 fn append(bencher: divan::Bencher, mut journal: Journal, promise: bool) {
     bencher.counter(ItemsCount::new(1_u8)).bench_local(|| {
-        journal.append(EntryKind::Sample, divan::black_box(&SAMPLE)).expect("the record is taken");
+        journal
+            .append(EntryKind::Sample, divan::black_box(&SAMPLE))
+            .expect("the record is taken");
         if promise {
             journal.promise().expect("the record is safe");
         }
@@ -70,20 +79,31 @@ fn append_to_a_file(bencher: divan::Bencher, durability: Durability) {
 fn append_and_promise_to_a_file(bencher: divan::Bencher) {
     let folder = tempfile::tempdir().expect("a folder");
     let storage = FileStorage::create(&folder.path().join("journal")).expect("a new file");
-    append(bencher, begun(Box::new(storage), Durability::EveryPromise), true);
+    append(
+        bencher,
+        begun(Box::new(storage), Durability::EveryPromise),
+        true,
+    );
 }
 
 #[divan::bench]
 fn recover_ten_thousand_records(bencher: divan::Bencher) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("journal");
-    let mut journal = begun(Box::new(FileStorage::create(&path).expect("a new file")), Durability::Buffered);
+    let mut journal = begun(
+        Box::new(FileStorage::create(&path).expect("a new file")),
+        Durability::Buffered,
+    );
     for _ in 0..10_000 {
-        journal.append(EntryKind::Sample, &SAMPLE).expect("the record is taken");
+        journal
+            .append(EntryKind::Sample, &SAMPLE)
+            .expect("the record is taken");
     }
     drop(journal);
     let bytes = std::fs::read(path).expect("the file is there");
     let whole = |bytes: &[u8]| recover(bytes).expect("it is whole").lines.len();
     assert_eq!(whole(&bytes), 10_001);
-    bencher.counter(BytesCount::new(bytes.len())).bench(|| whole(divan::black_box(&bytes)));
+    bencher
+        .counter(BytesCount::new(bytes.len()))
+        .bench(|| whole(divan::black_box(&bytes)));
 }

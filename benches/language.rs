@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use psd::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadFault, Loader, Options, check};
 
 fn main() {
     divan::main();
@@ -33,7 +33,14 @@ fn long_plan(lines: usize) -> String {
 
 #[divan::bench]
 fn small_plan() -> bool {
-    check("plan.psd", divan::black_box(SMALL), &NoFiles, &Options::default()).plan.is_some()
+    check(
+        "plan.psd",
+        divan::black_box(SMALL),
+        &NoFiles,
+        &Options::default(),
+    )
+    .plan
+    .is_some()
 }
 
 #[divan::bench]
@@ -41,14 +48,23 @@ fn two_thousand_lines(bencher: divan::Bencher) {
     let text = long_plan(2000);
     bencher
         .counter(divan::counter::BytesCount::new(text.len()))
-        .bench(|| check("plan.psd", divan::black_box(&text), &NoFiles, &Options::default()).plan.is_some());
+        .bench(|| {
+            check(
+                "plan.psd",
+                divan::black_box(&text),
+                &NoFiles,
+                &Options::default(),
+            )
+            .plan
+            .is_some()
+        });
 }
 
 #[divan::bench]
 fn format_two_thousand_lines(bencher: divan::Bencher) {
-    let mut sources = psd::source::Sources::default();
+    let mut sources = psd::text::source::Sources::default();
     let text = long_plan(2000);
     let file = sources.add("plan.psd", text.clone());
-    let (ast, _) = psd::syntax::parse(&sources, file);
-    bencher.bench(|| psd::syntax::format(divan::black_box(&ast), &text));
+    let (ast, _) = psd::language::syntax::parse(&sources, file);
+    bencher.bench(|| psd::language::syntax::format(divan::black_box(&ast), &text));
 }

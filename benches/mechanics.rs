@@ -4,10 +4,9 @@ use std::hint::black_box;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::mechanics::contact::ContactLaw;
-use psd::mechanics::impact::{Columns, ImpactInput, ImpactSolver, simulate};
-use psd::mechanics::law::ImpulseContact;
-use psd::mechanics::specimen::{Elastic, RestoringForce};
+use psd::physics::contact::state::ContactLaw;
+use psd::physics::impact::{Columns, ImpactInput, ImpactSolver, simulate};
+use psd::physics::specimen::{Elastic, RestoringForce};
 use psd::plan::Integrator;
 
 const STEPS: u64 = 100_000;
@@ -42,7 +41,7 @@ fn bare(bencher: Bencher) {
     let input = example_1();
     bencher
         .counter(ItemsCount::new(STEPS))
-        .bench_local(|| simulate(&input, ImpulseContact::rigid(), &mut { SPECIMEN }, STEPS, &mut ()));
+        .bench_local(|| simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut ()));
 }
 
 /// Into columns used again: the price of memory is paid once, before the first measurement.
@@ -52,20 +51,20 @@ fn recorded(bencher: Bencher) {
     let rows = usize::try_from(STEPS).expect("fits");
     let mut columns = Columns::default();
     columns.prepare(rows);
-    simulate(&input, ImpulseContact::rigid(), &mut { SPECIMEN }, STEPS, &mut columns);
+    simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut columns).expect("an impact");
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
         columns.prepare(rows);
-        simulate(&input, ImpulseContact::rigid(), &mut { SPECIMEN }, STEPS, &mut columns)
+        simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut columns)
     });
 }
 
-/// The law chosen at every step, the reading handed over by the caller.
+/// The reading handed over by the caller.
 #[divan::bench]
 fn interactive(bencher: Bencher) {
     let input = example_1();
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
         let mut specimen = SPECIMEN;
-        let mut solver = ImpactSolver::new(&input, 0.0, specimen.move_to(0.0));
+        let mut solver = ImpactSolver::new(&input, 0.0, specimen.move_to(0.0)).expect("an impact");
         for _ in 0..STEPS {
             let displacement = solver.predict();
             solver.complete(displacement, specimen.move_to(displacement));

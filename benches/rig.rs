@@ -10,17 +10,18 @@ use std::time::{Duration, Instant};
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::check::{LoadFault, Loader, Options, check};
+use psd::emulator::lines::real_time::Carrier as _;
+use psd::emulator::{Log, PseudoTerminal, Script, Stand, of_plan};
+use psd::language::check::{LoadFault, Loader, Options, check};
 use psd::plan::{Plan, RealLink};
 use psd::record::journal::{Durability, EntryKind, Journal, Storage};
 use psd::record::{History, Outcome, Record};
 use psd::rig::Wish;
-use psd::rig::device::{self, Device};
-use psd::rig::port::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
+use psd::rig::controllers;
+use psd::rig::controllers::Device;
 use psd::rig::real::RealRig;
-use psd::run::{Unwatched, tape};
-use psd::simulator::serve::Carrier as _;
-use psd::simulator::{Log, PseudoTerminal, Script, Stand, of_plan};
+use psd::rig::transport::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
+use psd::run::{Unwatched, replay};
 
 const PLAN: &str = r#"
 specimen beam {
@@ -82,9 +83,14 @@ fn resolved_plan() -> Plan {
 }
 
 fn checked_plan(text: &str) -> Plan {
-    let options = Options { rig: Some("real".to_owned()), ..Options::default() };
+    let options = Options {
+        rig: Some("real".to_owned()),
+        ..Options::default()
+    };
     let checked = check("plan.psd", text, &NoFiles, &options);
-    checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
+    checked
+        .plan
+        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
 }
 
 fn stand(plan: &Plan) -> Stand {
@@ -96,7 +102,13 @@ fn link(plan: &Plan) -> &RealLink {
 }
 
 fn device(plan: &Plan, port: Box<dyn Port>, clock: Box<dyn Clock>) -> Box<dyn Device> {
-    device::open(&link(plan).actuator, port, clock, Wish::default(), plan.rig.settle.timeout)
+    controllers::open(
+        &link(plan).actuator,
+        port,
+        clock,
+        Wish::default(),
+        plan.rig.settle.timeout,
+    )
 }
 
 /// A stand that answers as soon as it is asked, and a time that passes while someone waits.
@@ -115,7 +127,12 @@ struct Shared {
 impl AtOnce {
     fn new(mut stand: Stand) -> Self {
         stand.connect(0);
-        Self(Arc::new(Mutex::new(Shared { stand, now: 0.0, coming: Vec::new(), sent: Vec::new() })))
+        Self(Arc::new(Mutex::new(Shared {
+            stand,
+            now: 0.0,
+            coming: Vec::new(),
+            sent: Vec::new(),
+        })))
     }
 
     fn shared(&self) -> std::sync::MutexGuard<'_, Shared> {
@@ -204,12 +221,21 @@ impl Storage for Nowhere {
 /// The plan on a rig that answers at once, recorded to memory.
 fn run(plan: &Plan, line: &AtOnce) -> Record {
     let actuator = device(plan, Box::new(line.clone()), Box::new(line.clone()));
-    let mut rig =
-        RealRig::open(&plan.rig, &plan.limits, actuator, None, Box::new(line.clone()), Wish::default()).expect("it opens");
+    let mut rig = RealRig::open(
+        &plan.rig,
+        &plan.limits,
+        actuator,
+        None,
+        Box::new(line.clone()),
+        Wish::default(),
+    )
+    .expect("it opens");
     let mut journal = Journal::create(Box::new(Nowhere), Durability::EveryPromise);
-    journal.append(EntryKind::Header, &serde_json::json!({})).expect("the header is taken");
+    journal
+        .append(EntryKind::Header, &serde_json::json!({}))
+        .expect("the header is taken");
     let wall = Box::new(|| None);
-    tape::record(plan, &mut rig, &mut Unwatched, journal, wall).record
+    replay::record(plan, &mut rig, &mut Unwatched, journal, wall).record
 }
 
 fn steps(record: &Record) -> usize {
@@ -253,19 +279,24 @@ fn step_of_the_stand_in_alone(bencher: Bencher) {
         stand.connect(0);
         stand
     };
-    bencher.counter(ItemsCount::new(count)).with_inputs(connected).bench_local_values(|mut stand| {
-        let mut said = Vec::new();
-        for (now, bytes) in &sent {
-            said.clear();
-            answer(&mut stand, *now, bytes, &mut said);
-        }
-        said
-    });
+    bencher
+        .counter(ItemsCount::new(count))
+        .with_inputs(connected)
+        .bench_local_values(|mut stand| {
+            let mut said = Vec::new();
+            for (now, bytes) in &sent {
+                said.clear();
+                answer(&mut stand, *now, bytes, &mut said);
+            }
+            said
+        });
 }
 
 fn round_trip(bencher: Bencher, mut device: Box<dyn Device>) {
     device.identify().expect("it answers");
-    bencher.counter(ItemsCount::new(1_u8)).bench_local(|| device.sample().expect("a reading"));
+    bencher
+        .counter(ItemsCount::new(1_u8))
+        .bench_local(|| device.sample().expect("a reading"));
 }
 
 /// One reading over a pseudo-terminal. The stand-in does not nap.
@@ -287,7 +318,12 @@ fn reading_over_a_pseudo_terminal(bencher: Bencher) {
                 std::thread::yield_now();
                 continue;
             }
-            answer(&mut stand, began.elapsed().as_secs_f64(), &buffer[..count], &mut said);
+            answer(
+                &mut stand,
+                began.elapsed().as_secs_f64(),
+                &buffer[..count],
+                &mut said,
+            );
             while !said.is_empty() {
                 let written = line.write(&said).unwrap_or(0);
                 said.drain(..written);
@@ -295,7 +331,10 @@ fn reading_over_a_pseudo_terminal(bencher: Bencher) {
         }
     });
     let port = SerialPort::open(path.to_str().expect("a plain path"), 115_200).expect("it opens");
-    round_trip(bencher, device(&plan, Box::new(port), Box::new(MonotonicClock::start())));
+    round_trip(
+        bencher,
+        device(&plan, Box::new(port), Box::new(MonotonicClock::start())),
+    );
     over.store(true, Ordering::Relaxed);
     server.join().expect("it ends well");
 }
@@ -314,11 +353,19 @@ fn reading_over_tcp(bencher: Bencher) {
         let (began, mut buffer, mut said) = (Instant::now(), [0; 512], Vec::new());
         while let Ok(count @ 1..) = stream.read(&mut buffer) {
             said.clear();
-            answer(&mut stand, began.elapsed().as_secs_f64(), &buffer[..count], &mut said);
+            answer(
+                &mut stand,
+                began.elapsed().as_secs_f64(),
+                &buffer[..count],
+                &mut said,
+            );
             stream.write_all(&said).expect("it is taken");
         }
     });
     let port = TcpPort::connect(&address, Duration::from_secs(5)).expect("it connects");
-    round_trip(bencher, device(&plan, Box::new(port), Box::new(MonotonicClock::start())));
+    round_trip(
+        bencher,
+        device(&plan, Box::new(port), Box::new(MonotonicClock::start())),
+    );
     server.join().expect("it ends well");
 }

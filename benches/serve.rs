@@ -8,10 +8,10 @@ use std::thread::JoinHandle;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
+use psd::remote::control::Specimen;
+use psd::remote::{Protocol, serve};
 use psd::rig::{Guard, VirtualRig, Wish};
 use psd::run::Unwatched;
-use psd::run::driven::Specimen;
-use psd::serve::{Protocol, serve};
 
 const STIFFNESS: f64 = 3e5;
 const WORDS: usize = 256;
@@ -25,20 +25,45 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port is free");
     let address = listener.local_addr().expect("it is bound");
     let server = std::thread::spawn(move || {
-        let behaviour = Some(Behaviour::Elastic { stiffness: STIFFNESS });
+        let behaviour = Some(Behaviour::Elastic {
+            stiffness: STIFFNESS,
+        });
         let specimen = PlanSpecimen::new("spring", 20.0, behaviour);
-        let settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
+        let settle = Settle {
+            band: 0.0,
+            force_rate: 0.0,
+            dwell: 0.0,
+            timeout: 60.0,
+        };
         let mut rig = VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0);
-        let limits = Limits { displacement: Interval { low: -0.02, high: 0.02 }, ..Limits::NONE };
+        let limits = Limits {
+            displacement: Interval {
+                low: -0.02,
+                high: 0.02,
+            },
+            ..Limits::NONE
+        };
         let mut guard = Guard::new(&mut rig, limits).expect("it stands inside its limits");
-        let protocol = Protocol::GenericClient { stiffness: vec![STIFFNESS] };
+        let protocol = Protocol::GenericClient {
+            stiffness: vec![STIFFNESS],
+        };
         let mut nobody = Unwatched;
         let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
-        serve(&listener, &protocol, &mut specimen, true, &Wish::default(), &mut |_| ()).expect("it listens");
+        serve(
+            &listener,
+            &protocol,
+            &mut specimen,
+            true,
+            &Wish::default(),
+            &mut |_| (),
+        )
+        .expect("it listens");
     });
     let mut client = TcpStream::connect(address).expect("it listens");
     let header = [1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 256_i32].map(i32::to_le_bytes);
-    client.write_all(header.as_flattened()).expect("it is taken");
+    client
+        .write_all(header.as_flattened())
+        .expect("it is taken");
     (client, server)
 }
 

@@ -13,7 +13,10 @@ fn psd(arguments: &[&str]) {
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::null())
         .status();
-    assert!(status.is_ok_and(|status| status.success()), "psd {arguments:?}");
+    assert!(
+        status.is_ok_and(|status| status.success()),
+        "psd {arguments:?}"
+    );
 }
 
 #[divan::bench(sample_count = 20)]
@@ -23,7 +26,12 @@ fn run_example_1_to_certificate(bencher: divan::Bencher) {
     bencher.bench(|| {
         let number = count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let out = scratch.path().join(number.to_string());
-        psd(&["run", "plans/example_1.psd", "--out", &out.to_string_lossy()]);
+        psd(&[
+            "run",
+            "plans/example_1.psd",
+            "--out",
+            &out.to_string_lossy(),
+        ]);
     });
 }
 

@@ -1,43 +1,41 @@
 //! psd: a small language for pseudo-dynamic structural tests, and the program that runs it.
 //!
 //! ```text
-//! text → syntax (Ast) → check (Plan) → run (Record) → verdict → output
+//! text → syntax (Ast) → check (Plan) → run (Record) → verdict → report
 //! ```
 //!
 //! Each arrow is one public function that takes the left and gives the right. No stage calls back, and no stage after
-//! `check` sees text. `mechanics` holds the numerics, `rig` the door to hardware, `cli` the program around them all.
+//! `check` sees text. The stages are engines. What is particular to one procedure lies in its folder of `procedures`.
 
-pub mod digest;
-pub mod inert;
-pub mod legible;
-pub mod source;
+pub mod text;
+pub mod units;
 
-pub mod diagnostic;
-pub mod quantity;
-pub mod suggest;
+pub use psd_physics as physics;
 
-pub mod syntax;
-
-pub mod formula;
 pub mod plan;
 pub mod schema;
 pub mod uncertainty;
 
-pub mod check;
+pub mod language;
 
-pub mod mechanics;
 pub mod record;
 pub mod rig;
-pub mod simulator;
 
 pub mod run;
-pub mod serve;
+
+pub mod procedures;
 
 pub mod verdict;
 
-pub mod output;
+pub mod report;
 
-pub mod comparison;
+pub mod emulator;
+pub mod remote;
+
+pub(crate) mod evidence;
 pub mod golden;
 
 pub mod cli;
+
+#[cfg(test)]
+mod tests;

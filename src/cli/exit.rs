@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use super::room::NoRoom;
+use super::files::disk_space::NoRoom;
 use super::settings::Settings;
-use crate::diagnostic::excerpt::escape;
 use crate::rig::RigFault;
-use crate::source::Position;
+use crate::text::diagnostic::excerpt::escape;
+use crate::text::source::Position;
 use crate::verdict::Verdict;
 
 /// An exit code, worst last.
@@ -64,13 +64,24 @@ impl From<Exit> for ExitCode {
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     #[error("{message}")]
-    CommandLine { message: String, help: Option<String> },
+    CommandLine {
+        message: String,
+        help: Option<String>,
+    },
     #[error("{}: {reason}", path.display())]
-    File { path: PathBuf, reason: String, help: Option<String> },
+    File {
+        path: PathBuf,
+        reason: String,
+        help: Option<String>,
+    },
     #[error("{}: not a plan: {reason}", path.display())]
-    NotAPlan { path: PathBuf, reason: String, at: Option<Position> },
+    NotAPlan {
+        path: PathBuf,
+        reason: String,
+        at: Option<Position>,
+    },
     #[error("the results could not be made: {0}")]
-    Output(#[from] crate::output::OutputError),
+    Output(#[from] crate::report::OutputError),
     #[error("standard output: {0}")]
     Stdout(std::io::Error),
     #[error(transparent)]
@@ -80,13 +91,16 @@ pub enum Failure {
     #[error("{0}")]
     Rig(#[from] crate::rig::RigFault),
     #[error(transparent)]
-    NoRoom(#[from] super::room::NoRoom),
+    NoRoom(#[from] super::files::disk_space::NoRoom),
     #[error("{fault}")]
-    NotOpened { fault: crate::rig::RigFault, place: String },
+    NotOpened {
+        fault: crate::rig::RigFault,
+        place: String,
+    },
     #[error("no rehearsal: {0}")]
     Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
     #[error("the run cannot go on: {0}")]
-    Refused(#[from] crate::run::tape::Refusal),
+    Refused(#[from] crate::run::replay::Refusal),
     #[error("not resumed, and nothing moved: {reason}")]
     NotReleased { reason: String },
     #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
@@ -100,11 +114,18 @@ const LOOK_FOR: &str = "the baud rate, the dialect, crossed wires, or a device t
 
 impl Failure {
     pub fn command_line(message: impl Into<String>) -> Self {
-        Self::CommandLine { message: message.into(), help: None }
+        Self::CommandLine {
+            message: message.into(),
+            help: None,
+        }
     }
 
     pub fn file(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
-        Self::File { path: path.into(), reason: reason.into(), help: None }
+        Self::File {
+            path: path.into(),
+            reason: reason.into(),
+            help: None,
+        }
     }
 
     /// Where in a file its text could not be read.
@@ -140,7 +161,9 @@ impl Failure {
         match self {
             Self::CommandLine { .. } | Self::NotAPlan { .. } | Self::Unrehearsed(_) => Exit::Wrong,
             Self::Rig(fault) | Self::NotOpened { fault, .. } => match fault {
-                RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted => Exit::Stopped,
+                RigFault::LimitBreached { .. }
+                | RigFault::NotSettled { .. }
+                | RigFault::Interrupted => Exit::Stopped,
                 RigFault::Device(_) | RigFault::Following { .. } => Exit::Fault,
             },
             Self::NotReleased { .. } => Exit::Stopped,
@@ -158,14 +181,21 @@ impl Failure {
     /// As told to the person.
     pub fn report(&self, settings: Settings) -> String {
         let (head, help) = match self {
-            Self::CommandLine { help, .. } | Self::File { help, .. } => ("error:".to_owned(), help.clone()),
-            Self::NoRoom(fault) => (format!("error[{}]", NoRoom::CODE), Some(fault.help())),
-            Self::NotOpened { fault: RigFault::Device(told), .. } if told.contains(SILENT) => {
-                ("error:".to_owned(), Some(LOOK_FOR.to_owned()))
+            Self::CommandLine { help, .. } | Self::File { help, .. } => {
+                ("error:".to_owned(), help.clone())
             }
+            Self::NoRoom(fault) => (format!("error[{}]", NoRoom::CODE), Some(fault.help())),
+            Self::NotOpened {
+                fault: RigFault::Device(told),
+                ..
+            } if told.contains(SILENT) => ("error:".to_owned(), Some(LOOK_FOR.to_owned())),
             _ => ("error:".to_owned(), None),
         };
-        let mut text = format!("{} {}\n", settings.paint_error(&head), escape(&self.to_string()));
+        let mut text = format!(
+            "{} {}\n",
+            settings.paint_error(&head),
+            escape(&self.to_string())
+        );
         if let Self::NotOpened { place, .. } = self {
             let _ = writeln!(text, "{} {}", settings.paint_note("  at:"), escape(place));
         }
@@ -182,8 +212,17 @@ mod tests {
 
     #[test]
     fn verdicts_end_as_the_reference_says() {
-        let verdicts =
-            [Verdict::Completed, Verdict::Pass, Verdict::Fail, Verdict::Inconclusive, Verdict::Error, Verdict::Aborted];
-        assert_eq!(verdicts.map(|verdict| Exit::from(verdict).code()), [0, 0, 1, 1, 3, 4]);
+        let verdicts = [
+            Verdict::Completed,
+            Verdict::Pass,
+            Verdict::Fail,
+            Verdict::Inconclusive,
+            Verdict::Error,
+            Verdict::Aborted,
+        ];
+        assert_eq!(
+            verdicts.map(|verdict| Exit::from(verdict).code()),
+            [0, 0, 1, 1, 3, 4]
+        );
     }
 }

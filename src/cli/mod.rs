@@ -1,50 +1,15 @@
-//! The program around the pipeline: arguments → settings → one file a command → exit code. The only folder that
-//! reads files, the terminal and the environment, and that writes anything.
+//! The program around the pipeline: arguments, settings, one file per command, exit code. In: the command
+//! line. Out: an exit code. It is the only folder that reads the environment and writes to the terminal;
+//! it decides nothing about physics or conformity.
 
 mod args;
-mod bless;
-mod check;
 mod columns;
-mod compare;
-mod conclude;
-mod dry_rig;
-mod evidence;
-mod exit;
-mod expected;
-mod explain;
-mod explain_drift;
-mod explain_plan;
-mod explain_shake;
-mod explain_start;
-mod explain_tracking;
-mod fmt;
-mod held;
-mod issue;
-mod limits;
-mod loader;
+pub mod commands;
+pub(crate) mod exit;
+pub mod files;
+pub mod operator;
 mod output;
-mod plan_file;
-mod provenance;
-mod question;
-mod real_rig;
-mod record_file;
-mod rehearse;
-mod release;
-mod report;
-mod resume;
-mod rig;
-mod room;
-mod run;
-mod run_folder;
-mod screen;
-mod settings;
-mod sign;
-mod test;
-mod trial;
-mod verify;
-mod wall_clock;
-mod watch;
-mod writing;
+pub(crate) mod settings;
 
 use std::ffi::OsString;
 
@@ -57,31 +22,35 @@ use exit::Failure;
 #[must_use]
 pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
     // If it cannot be caught, a file that grows too large ends the program, and the rig's own watchdog holds.
-    let _ = watch::catch_full_files();
+    let _ = operator::watch::catch_full_files();
     let arguments = match args::Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are results on stdout; a wrong command line is told on stderr. A closed pipe is not our fault.
             let _ = error.print();
-            return if error.use_stderr() { Exit::Wrong } else { Exit::Met };
+            return if error.use_stderr() {
+                Exit::Wrong
+            } else {
+                Exit::Met
+            };
         }
     };
     let settings = settings::Settings::from_environment(arguments.color);
     let outcome = match &arguments.command {
-        args::Command::Run(arguments) => run::run(arguments, settings),
-        args::Command::Resume(arguments) => resume::resume(arguments, settings),
-        args::Command::Issue(arguments) => issue::issue(arguments, settings),
-        args::Command::Report(arguments) => report::report(arguments, settings),
-        args::Command::Verify(arguments) => verify::verify(arguments, settings),
-        args::Command::Sign(arguments) => sign::sign(arguments, settings),
-        args::Command::Keygen(arguments) => sign::keygen(arguments, settings),
-        args::Command::Compare(arguments) => compare::compare(arguments),
-        args::Command::Test(arguments) => test::test(arguments, settings),
-        args::Command::Check(arguments) => check::check(arguments, settings),
-        args::Command::Fmt(arguments) => fmt::fmt(arguments, settings),
-        args::Command::Explain { code } => explain::explain(code.as_deref(), settings),
-        args::Command::Limits => limits::limits(),
-        args::Command::Rig { command } => rig::rig(command, settings),
+        args::Command::Run(arguments) => commands::run::run(arguments, settings),
+        args::Command::Resume(arguments) => commands::resume::resume(arguments, settings),
+        args::Command::Issue(arguments) => commands::issue::issue(arguments, settings),
+        args::Command::Report(arguments) => commands::report::report(arguments, settings),
+        args::Command::Verify(arguments) => commands::verify::verify(arguments, settings),
+        args::Command::Sign(arguments) => commands::sign::sign(arguments, settings),
+        args::Command::Keygen(arguments) => commands::sign::keygen(arguments, settings),
+        args::Command::Compare(arguments) => commands::compare::compare(arguments),
+        args::Command::Test(arguments) => commands::test::test(arguments, settings),
+        args::Command::Check(arguments) => commands::check::check(arguments, settings),
+        args::Command::Fmt(arguments) => commands::fmt::fmt(arguments, settings),
+        args::Command::Explain { code } => commands::explain::explain(code.as_deref(), settings),
+        args::Command::Limits => commands::limits::limits(),
+        args::Command::Rig { command } => commands::rig::rig(command, settings),
     };
     outcome.unwrap_or_else(|failure: Failure| {
         output::tell(&failure.report(settings));

@@ -9,16 +9,22 @@ use rustix::io::Errno;
 
 use super::exit::Failure;
 use super::settings::Settings;
-use crate::inert;
+use crate::text::sanitize;
 
 /// Tells a person. Nobody listening is no reason to fail. Nothing but colours reaches a terminal as a command.
 pub fn tell(text: &str) {
-    let _ = std::io::stderr().lock().write_all(inert::terminal(text).as_bytes());
+    let _ = std::io::stderr()
+        .lock()
+        .write_all(sanitize::terminal(text).as_bytes());
 }
 
 /// Tells a person lines of words: on a terminal none is broken at its edge.
 pub fn tell_words(text: &str, settings: Settings) {
-    let columns = settings.stderr_terminal.then(|| size().ok()).flatten().map(|(columns, _)| usize::from(columns));
+    let columns = settings
+        .stderr_terminal
+        .then(|| size().ok())
+        .flatten()
+        .map(|(columns, _)| usize::from(columns));
     match columns {
         Some(columns) if columns > 2 * INDENT => tell(&wrapped(text, columns)),
         _ => tell(text),
@@ -68,16 +74,24 @@ pub fn give(text: &str) -> Result<(), Failure> {
 pub fn give_on(text: &str) -> Result<bool, Failure> {
     let stdout = std::io::stdout();
     let mut locked = stdout.lock();
-    match locked.write_all(inert::terminal(text).as_bytes()).and_then(|()| locked.flush()) {
+    match locked
+        .write_all(sanitize::terminal(text).as_bytes())
+        .and_then(|()| locked.flush())
+    {
         Ok(()) => Ok(true),
-        Err(error) if error.kind() == ErrorKind::BrokenPipe || is_closed(&stdout, &error) => Ok(false),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe || is_closed(&stdout, &error) => {
+            Ok(false)
+        }
         Err(error) => Err(Failure::Stdout(error)),
     }
 }
 
 /// Whether this is what a terminal says whose window is gone. A disk that fails says the same, and is none.
 fn is_closed(stdout: &Stdout, error: &Error) -> bool {
-    let device = || fstat(stdout).is_ok_and(|file| FileType::from_raw_mode(file.st_mode) == FileType::CharacterDevice);
+    let device = || {
+        fstat(stdout)
+            .is_ok_and(|file| FileType::from_raw_mode(file.st_mode) == FileType::CharacterDevice)
+    };
     Errno::from_io_error(error) == Some(Errno::IO) && device()
 }
 

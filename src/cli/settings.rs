@@ -4,11 +4,14 @@ use std::io::IsTerminal as _;
 use std::path::Path;
 
 use super::args::Color;
-use crate::diagnostic::render::Appearance;
+use crate::text::diagnostic::render::Appearance;
 
 /// How to talk to whoever started the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each answers a question of its own about the surroundings")]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each answers a question of its own about the surroundings"
+)]
 pub struct Settings {
     /// Colour on standard error.
     pub color: bool,
@@ -27,8 +30,14 @@ pub struct Settings {
 impl Settings {
     /// No terminal, no colour, nobody to ask.
     #[cfg(test)]
-    pub const PLAIN: Self =
-        Self { color: false, stdout_color: false, unicode: true, stderr_terminal: false, stdout_terminal: false, can_ask: false };
+    pub const PLAIN: Self = Self {
+        color: false,
+        stdout_color: false,
+        unicode: true,
+        stderr_terminal: false,
+        stdout_terminal: false,
+        can_ask: false,
+    };
 
     pub fn from_environment(color: Color) -> Self {
         let variable = |name: &str| std::env::var(name).unwrap_or_default();
@@ -39,7 +48,10 @@ impl Settings {
             Color::Never => false,
             Color::Auto => terminal && !quiet,
         };
-        let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().map(variable).find(|value| !value.is_empty());
+        let locale = ["LC_ALL", "LC_CTYPE", "LANG"]
+            .into_iter()
+            .map(variable)
+            .find(|value| !value.is_empty());
         Self {
             color: colored(stderr_terminal),
             stdout_color: colored(std::io::stdout().is_terminal()),
@@ -53,32 +65,60 @@ impl Settings {
     /// How diagnostics of a plan are drawn; names of files are given from where the person stands.
     pub fn appearance(self, plan: &Path) -> Appearance {
         let width = (!self.stderr_terminal).then_some(100);
-        Appearance { color: self.color, unicode: self.unicode, width, folder: folder_of(plan) }
+        Appearance {
+            color: self.color,
+            unicode: self.unicode,
+            width,
+            folder: folder_of(plan),
+        }
     }
 
     pub fn paint_error(self, text: &str) -> String {
-        if self.color { format!("\u{1b}[1;31m{text}\u{1b}[0m") } else { text.to_owned() }
+        if self.color {
+            format!("\u{1b}[1;31m{text}\u{1b}[0m")
+        } else {
+            text.to_owned()
+        }
     }
 
     /// A bad finding on standard output.
     pub fn paint_bad(self, text: &str) -> String {
-        if self.stdout_color { format!("\u{1b}[1;31m{text}\u{1b}[0m") } else { text.to_owned() }
+        if self.stdout_color {
+            format!("\u{1b}[1;31m{text}\u{1b}[0m")
+        } else {
+            text.to_owned()
+        }
     }
 
     pub fn paint_note(self, text: &str) -> String {
-        if self.color { format!("\u{1b}[36m{text}\u{1b}[0m") } else { text.to_owned() }
+        if self.color {
+            format!("\u{1b}[36m{text}\u{1b}[0m")
+        } else {
+            text.to_owned()
+        }
     }
 
     /// A heading on standard output.
     pub fn paint_heading(self, text: &str) -> String {
-        if self.stdout_color { format!("\u{1b}[1m{text}\u{1b}[0m") } else { text.to_owned() }
+        if self.stdout_color {
+            format!("\u{1b}[1m{text}\u{1b}[0m")
+        } else {
+            text.to_owned()
+        }
     }
 }
 
 /// The folder of a plan as it was typed, with its slash: `plans/`; empty for a plan of this folder.
 pub fn folder_of(plan: &Path) -> String {
-    let folder = plan.parent().map(|folder| folder.to_string_lossy().into_owned()).unwrap_or_default();
-    if folder.is_empty() || folder.ends_with('/') { folder } else { format!("{folder}/") }
+    let folder = plan
+        .parent()
+        .map(|folder| folder.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    if folder.is_empty() || folder.ends_with('/') {
+        folder
+    } else {
+        format!("{folder}/")
+    }
 }
 
 /// A terminal draws boxes unless it is the bare console or its locale names another encoding.

@@ -17,19 +17,33 @@ const YELLOW: &str = "33";
 #[must_use]
 pub fn told(tested: &Tested, coloured: bool) -> String {
     let (word, colour, said) = match &tested.outcome {
-        Outcome::Same { verdict: Some(verdict) } => ("ok", GREEN, (*verdict).to_owned()),
+        Outcome::Same {
+            verdict: Some(verdict),
+        } => ("ok", GREEN, (*verdict).to_owned()),
         Outcome::Same { verdict: None } => ("ok", GREEN, "fails to check, as blessed".to_owned()),
         Outcome::Blessed(Blessed::New) => ("blessed", YELLOW, "new".to_owned()),
-        Outcome::Blessed(Blessed::Changed(found)) if found.is_empty() => {
-            ("blessed", YELLOW, "written anew, no result moved".to_owned())
+        Outcome::Blessed(Blessed::Changed(found)) if found.is_empty() => (
+            "blessed",
+            YELLOW,
+            "written anew, no result moved".to_owned(),
+        ),
+        Outcome::Blessed(Blessed::Changed(found)) => {
+            ("blessed", YELLOW, format!("{} changed", found.len()))
         }
-        Outcome::Blessed(Blessed::Changed(found)) => ("blessed", YELLOW, format!("{} changed", found.len())),
-        Outcome::Blessed(Blessed::Unchanged) => ("same", GREEN, "within tolerance: nothing written".to_owned()),
+        Outcome::Blessed(Blessed::Unchanged) => (
+            "same",
+            GREEN,
+            "within tolerance: nothing written".to_owned(),
+        ),
         Outcome::NotRun => ("skipped", YELLOW, "not run".to_owned()),
         other => ("FAILED", RED, other.complaint().unwrap_or_default()),
     };
     let word = format!("{word:<7}");
-    let word = if coloured { format!("\u{1b}[1;{colour}m{word}\u{1b}[0m") } else { word };
+    let word = if coloured {
+        format!("\u{1b}[1;{colour}m{word}\u{1b}[0m")
+    } else {
+        word
+    };
     let mut text = format!("{word}  {}  {said}\n", tested.name);
     text.push_str(&differences(tested.outcome.findings(), coloured));
     text
@@ -37,23 +51,53 @@ pub fn told(tested: &Tested, coloured: bool) -> String {
 
 /// Findings in columns: what, from what to what, by how much; and below each where and what was allowed.
 fn differences(found: &[Finding], coloured: bool) -> String {
-    let shown = found.chunk_by(|a, b| a.part == b.part).flat_map(|part| part.iter().take(SHOWN));
+    let shown = found
+        .chunk_by(|a, b| a.part == b.part)
+        .flat_map(|part| part.iter().take(SHOWN));
     let words: Vec<Words> = shown.map(Words::of).collect();
-    let width = |of: fn(&Words) -> &str| words.iter().map(|words| of(words).chars().count()).max().unwrap_or(0);
-    let (part, name) = (width(|words| words.part), width(|words| &words.name).min(44));
-    let padded = |text: &str, width: usize| format!("{text}{}", " ".repeat(width.saturating_sub(text.chars().count())));
+    let width = |of: fn(&Words) -> &str| {
+        words
+            .iter()
+            .map(|words| of(words).chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let (part, name) = (
+        width(|words| words.part),
+        width(|words| &words.name).min(44),
+    );
+    let padded = |text: &str, width: usize| {
+        format!(
+            "{text}{}",
+            " ".repeat(width.saturating_sub(text.chars().count()))
+        )
+    };
     let mut text = String::new();
     for words in &words {
-        let line = format!("  {}  {}  {}  {}", padded(words.part, part), padded(&words.name, name), words.change, words.by);
+        let line = format!(
+            "  {}  {}  {}  {}",
+            padded(words.part, part),
+            padded(&words.name, name),
+            words.change,
+            words.by
+        );
         let _ = writeln!(text, "{}", line.trim_end());
         if words.detail.is_empty() {
             continue;
         }
         let detail = format!("  {}  {}", " ".repeat(part), words.detail);
-        let _ = if coloured { writeln!(text, "\u{1b}[2m{detail}\u{1b}[0m") } else { writeln!(text, "{detail}") };
+        let _ = if coloured {
+            writeln!(text, "\u{1b}[2m{detail}\u{1b}[0m")
+        } else {
+            writeln!(text, "{detail}")
+        };
     }
     if found.len() > words.len() {
-        let _ = writeln!(text, "  and {} more: `--format json` gives all", found.len() - words.len());
+        let _ = writeln!(
+            text,
+            "  and {} more: `--format json` gives all",
+            found.len() - words.len()
+        );
     }
     text
 }
@@ -69,12 +113,20 @@ pub fn closing(report: &Report) -> String {
     let blessed = report
         .tested
         .iter()
-        .filter(|tested| matches!(tested.outcome, Outcome::Blessed(Blessed::New | Blessed::Changed(_))))
+        .filter(|tested| {
+            matches!(
+                tested.outcome,
+                Outcome::Blessed(Blessed::New | Blessed::Changed(_))
+            )
+        })
         .count();
     let plans = if all == 1 { "plan" } else { "plans" };
     let _ = match (all - good, blessed) {
         (0, 0) => writeln!(text, "{all} {plans} as blessed"),
-        (0, _) => writeln!(text, "{all} {plans}, {blessed} blessed; look at what changed before you commit it"),
+        (0, _) => writeln!(
+            text,
+            "{all} {plans}, {blessed} blessed; look at what changed before you commit it"
+        ),
         (bad, _) => writeln!(text, "{bad} of {all} failed"),
     };
     text

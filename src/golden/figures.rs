@@ -4,24 +4,44 @@
 use super::finding::{Change, Finding, Part, Place};
 use super::tolerance::{Rule, Tolerances};
 use super::{Truth, number};
-use crate::output::{FigureCurve, FigureData};
-use crate::quantity::{Dimension, unit};
+use crate::report::{FigureCurve, FigureData};
+use crate::units::{Dimension, unit};
 
-pub(super) fn compare(blessed: &Truth, now: &Truth, tolerances: &Tolerances, found: &mut Vec<Finding>) {
+pub(super) fn compare(
+    blessed: &Truth,
+    now: &Truth,
+    tolerances: &Tolerances,
+    found: &mut Vec<Finding>,
+) {
     let (was, is) = match (blessed.figures(), now.figures()) {
         (Some(was), Some(is)) => (was.figures, is.figures),
         (None, None) => return,
-        (None, Some(_)) => return found.push(Finding::new(Part::Figure, super::FIGURES, Change::New)),
-        (Some(_), None) => return found.push(Finding::new(Part::Figure, super::FIGURES, Change::Gone)),
+        (None, Some(_)) => {
+            return found.push(Finding::new(Part::Figure, super::FIGURES, Change::New));
+        }
+        (Some(_), None) => {
+            return found.push(Finding::new(Part::Figure, super::FIGURES, Change::Gone));
+        }
     };
     for old in &was {
         match is.iter().find(|new| new.figure == old.figure) {
             Some(new) => figure(old, new, tolerances, found),
-            None => found.push(Finding::new(Part::Figure, format!("figure {}", old.figure), Change::Gone)),
+            None => found.push(Finding::new(
+                Part::Figure,
+                format!("figure {}", old.figure),
+                Change::Gone,
+            )),
         }
     }
-    for new in is.iter().filter(|new| !was.iter().any(|old| old.figure == new.figure)) {
-        found.push(Finding::new(Part::Figure, format!("figure {}", new.figure), Change::New));
+    for new in is
+        .iter()
+        .filter(|new| !was.iter().any(|old| old.figure == new.figure))
+    {
+        found.push(Finding::new(
+            Part::Figure,
+            format!("figure {}", new.figure),
+            Change::New,
+        ));
     }
 }
 
@@ -35,33 +55,69 @@ struct Axis {
 
 fn figure(was: &FigureData, is: &FigureData, tolerances: &Tolerances, found: &mut Vec<Finding>) {
     let mut note = |what: &str, change: Option<Change>| {
-        found.extend(change.map(|change| Finding::new(Part::Figure, format!("figure {}{what}", was.figure), change)));
+        found.extend(change.map(|change| {
+            Finding::new(Part::Figure, format!("figure {}{what}", was.figure), change)
+        }));
     };
     for (axis, old, new) in [("x", &was.x, &is.x), ("y", &was.y, &is.y)] {
-        note(&format!(", {axis} axis"), words(&format!("{} {}", old.name, old.unit), &format!("{} {}", new.name, new.unit)));
+        note(
+            &format!(", {axis} axis"),
+            words(
+                &format!("{} {}", old.name, old.unit),
+                &format!("{} {}", new.name, new.unit),
+            ),
+        );
     }
     let axis = |unit: &str, pick: fn(&(f64, f64)) -> f64| {
         let dimension = unit::parse(unit).map_or(Dimension::NUMBER, |unit| unit.dimension);
-        let points = was.curves.iter().chain(&is.curves).flat_map(FigureCurve::points);
+        let points = was
+            .curves
+            .iter()
+            .chain(&is.curves)
+            .flat_map(FigureCurve::points);
         Axis {
             dimension,
             rule: tolerances.axis(&was.procedure, dimension),
             scale: number::scale(points.map(|point| pick(&point))),
         }
     };
-    let (x, y) = (axis(&was.x.unit, |point| point.0), axis(&was.y.unit, |point| point.1));
+    let (x, y) = (
+        axis(&was.x.unit, |point| point.0),
+        axis(&was.y.unit, |point| point.1),
+    );
     if was.curves.len() != is.curves.len() {
-        note("", Some(Change::Length { of: "curves", was: was.curves.len(), is: is.curves.len() }));
+        note(
+            "",
+            Some(Change::Length {
+                of: "curves",
+                was: was.curves.len(),
+                is: is.curves.len(),
+            }),
+        );
     }
     for (old, new) in was.curves.iter().zip(&is.curves) {
-        let name = if old.label.is_empty() { String::new() } else { format!(", {}", old.label) };
+        let name = if old.label.is_empty() {
+            String::new()
+        } else {
+            format!(", {}", old.label)
+        };
         note(&format!("{name}: words"), words(&old.label, &new.label));
         if old.count == new.count {
-            for (along, change) in [("x", curve(old, new, x, |point| point.0)), ("y", curve(old, new, y, |point| point.1))] {
+            for (along, change) in [
+                ("x", curve(old, new, x, |point| point.0)),
+                ("y", curve(old, new, y, |point| point.1)),
+            ] {
                 note(&format!("{name}: {along}"), change);
             }
         } else {
-            note(&name, Some(Change::Length { of: "points", was: old.count, is: new.count }));
+            note(
+                &name,
+                Some(Change::Length {
+                    of: "points",
+                    was: old.count,
+                    is: new.count,
+                }),
+            );
         }
     }
     lines(&was.references, &is.references, y, &mut note);
@@ -69,56 +125,117 @@ fn figure(was: &FigureData, is: &FigureData, tolerances: &Tolerances, found: &mu
         let name = format!(", {}", old.label);
         note(&format!("{name}: words"), words(&old.label, &new.label));
         if old.intervals.len() == new.intervals.len() {
-            let ends = |intervals: &[(f64, f64)]| intervals.iter().flat_map(|(from, to)| [*from, *to]).collect::<Vec<_>>();
+            let ends = |intervals: &[(f64, f64)]| {
+                intervals
+                    .iter()
+                    .flat_map(|(from, to)| [*from, *to])
+                    .collect::<Vec<_>>()
+            };
             note(&name, row(&ends(&old.intervals), &ends(&new.intervals), x));
         } else {
-            note(&name, Some(Change::Length { of: "intervals", was: old.intervals.len(), is: new.intervals.len() }));
+            note(
+                &name,
+                Some(Change::Length {
+                    of: "intervals",
+                    was: old.intervals.len(),
+                    is: new.intervals.len(),
+                }),
+            );
         }
     }
 }
 
-fn lines(was: &[(String, f64)], is: &[(String, f64)], y: Axis, note: &mut impl FnMut(&str, Option<Change>)) {
+fn lines(
+    was: &[(String, f64)],
+    is: &[(String, f64)],
+    y: Axis,
+    note: &mut impl FnMut(&str, Option<Change>),
+) {
     if was.len() != is.len() {
-        note("", Some(Change::Length { of: "limits", was: was.len(), is: is.len() }));
+        note(
+            "",
+            Some(Change::Length {
+                of: "limits",
+                was: was.len(),
+                is: is.len(),
+            }),
+        );
         return;
     }
     for ((old_label, old), (new_label, new)) in was.iter().zip(is) {
         note(", limit: words", words(old_label, new_label));
         let scale = y.scale.max(old.abs());
-        note(", limit", number::single(Some(*old), Some(*new), y.dimension, y.rule, scale));
+        note(
+            ", limit",
+            number::single(Some(*old), Some(*new), y.dimension, y.rule, scale),
+        );
     }
 }
 
 /// What a curve keeps, along one axis.
-fn curve(was: &FigureCurve, is: &FigureCurve, axis: Axis, pick: fn(&(f64, f64)) -> f64) -> Option<Change> {
-    let of = |curve: &FigureCurve| curve.points().map(|point| pick(&point)).collect::<Vec<f64>>();
+fn curve(
+    was: &FigureCurve,
+    is: &FigureCurve,
+    axis: Axis,
+    pick: fn(&(f64, f64)) -> f64,
+) -> Option<Change> {
+    let of = |curve: &FigureCurve| {
+        curve
+            .points()
+            .map(|point| pick(&point))
+            .collect::<Vec<f64>>()
+    };
     row(&of(was), &of(is), axis)
 }
 
 fn row(was: &[f64], is: &[f64], axis: Axis) -> Option<Change> {
     if was.len() != is.len() {
-        return Some(Change::Length { of: "points", was: was.len(), is: is.len() });
+        return Some(Change::Length {
+            of: "points",
+            was: was.len(),
+            is: is.len(),
+        });
     }
-    let pairs: Vec<_> = was.iter().zip(is).map(|(was, is)| (Some(*was), Some(*is))).collect();
-    number::many(&pairs, axis.dimension, axis.rule, axis.scale, |row| Place { row, step: None, time: None })
+    let pairs: Vec<_> = was
+        .iter()
+        .zip(is)
+        .map(|(was, is)| (Some(*was), Some(*is)))
+        .collect();
+    number::many(&pairs, axis.dimension, axis.rule, axis.scale, |row| Place {
+        row,
+        step: None,
+        time: None,
+    })
 }
 
 /// Words without their numbers.
 fn words(was: &str, is: &str) -> Option<Change> {
     let bare = |text: &str| {
-        let is_digit = |c: char| c.is_ascii_digit() || matches!(c, '.' | '−' | '⁻' | '⁰' | '¹' | '²' | '³' | '⁴'..='⁹');
-        text.split(is_digit).filter(|part| !part.is_empty()).collect::<Vec<_>>().join("#")
+        let is_digit = |c: char| {
+            c.is_ascii_digit() || matches!(c, '.' | '−' | '⁻' | '⁰' | '¹' | '²' | '³' | '⁴'..='⁹')
+        };
+        text.split(is_digit)
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join("#")
     };
-    (bare(was) != bare(is)).then(|| Change::Text { was: was.to_owned(), is: is.to_owned(), first: None })
+    (bare(was) != bare(is)).then(|| Change::Text {
+        was: was.to_owned(),
+        is: is.to_owned(),
+        first: None,
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{FigureAxis, Figures};
+    use crate::report::{FigureAxis, Figures};
 
     fn figures(points: &[(f64, f64)], label: &str) -> Truth {
-        let axis = |name: &str, unit: &str| FigureAxis { name: name.to_owned(), unit: unit.to_owned() };
+        let axis = |name: &str, unit: &str| FigureAxis {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+        };
         let data = FigureData {
             figure: "hit_force".to_owned(),
             procedure: "hit".to_owned(),
@@ -128,7 +245,11 @@ mod tests {
             references: vec![("limit".to_owned(), 5.0)],
             bands: Vec::new(),
         };
-        let text = Figures { figures: vec![data], ..Figures::default() }.to_json();
+        let text = Figures {
+            figures: vec![data],
+            ..Figures::default()
+        }
+        .to_json();
         Truth::of([(super::super::FIGURES.to_owned(), text)])
     }
 
@@ -140,9 +261,16 @@ mod tests {
 
     #[test]
     fn a_curve_moves_beyond_its_tolerance_and_not_within_it() {
-        let line = |peak: f64| (0..1000).map(|i| (f64::from(i), if i == 777 { peak } else { 1.0 })).collect::<Vec<_>>();
+        let line = |peak: f64| {
+            (0..1000)
+                .map(|i| (f64::from(i), if i == 777 { peak } else { 1.0 }))
+                .collect::<Vec<_>>()
+        };
         let was = figures(&line(10.0), "force, K = 3.1 kN/m");
-        assert_eq!(findings(&was, &figures(&line(10.0 + 9e-9), "force, K = 3.2 kN/m")), Vec::<String>::new());
+        assert_eq!(
+            findings(&was, &figures(&line(10.0 + 9e-9), "force, K = 3.2 kN/m")),
+            Vec::<String>::new()
+        );
         // The peak is no point that a thinned curve would keep by its place.
         assert_eq!(
             findings(&was, &figures(&line(10.0 + 11e-9), "force, K = 3.1 kN/m")),
@@ -152,7 +280,10 @@ mod tests {
             findings(&was, &figures(&line(10.0), "power, K = 3.1 kN/m")),
             ["figure hit_force, force, K = 3.1 kN/m: words"]
         );
-        assert_eq!(findings(&was, &figures(&line(10.0)[1..], "force, K = 3.1 kN/m")), ["figure hit_force, force, K = 3.1 kN/m"]);
+        assert_eq!(
+            findings(&was, &figures(&line(10.0)[1..], "force, K = 3.1 kN/m")),
+            ["figure hit_force, force, K = 3.1 kN/m"]
+        );
         assert_eq!(findings(&was, &Truth::default()), ["figures.json"]);
     }
 }

@@ -1,7 +1,7 @@
 //! What differs between a run and its blessed results, as data. Whoever tells it chooses the words.
 
 use super::tolerance::Rule;
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// What of the results a finding is about, what weighs most first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -114,12 +114,24 @@ impl Finding {
     /// A difference of a part.
     #[must_use]
     pub fn new(part: Part, name: impl Into<String>, change: Change) -> Self {
-        Self { part, name: name.into(), change }
+        Self {
+            part,
+            name: name.into(),
+            change,
+        }
     }
 
     /// A text that reads otherwise.
     #[must_use]
     pub fn text(part: Part, name: impl Into<String>, was: &str, is: &str) -> Self {
-        Self::new(part, name, Change::Text { was: was.to_owned(), is: is.to_owned(), first: None })
+        Self::new(
+            part,
+            name,
+            Change::Text {
+                was: was.to_owned(),
+                is: is.to_owned(),
+                first: None,
+            },
+        )
     }
 }

@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use super::finding::{Change, Finding, Moved, Place};
 use super::tested::{Outcome, Report};
-use crate::inert;
-use crate::quantity::display::si_unit;
+use crate::text::sanitize;
+use crate::units::display::si_unit;
 
 /// Name and version of the format; a change that breaks a reader raises the number.
 pub const SCHEMA: &str = "psd.test/1";
@@ -17,7 +17,11 @@ pub fn document(report: &Report) -> Value {
         .tested
         .iter()
         .map(|tested| {
-            let verdict = if let Outcome::Same { verdict } = &tested.outcome { *verdict } else { None };
+            let verdict = if let Outcome::Same { verdict } = &tested.outcome {
+                *verdict
+            } else {
+                None
+            };
             json!({
                 "plan": tested.name,
                 "outcome": tested.outcome.name(),
@@ -35,7 +39,7 @@ pub fn document(report: &Report) -> Value {
 /// The document as it is printed: indented, and no text of a plan in it steers a terminal.
 #[must_use]
 pub fn text(report: &Report) -> String {
-    inert::json(&format!("{:#}\n", document(report)))
+    sanitize::json(&format!("{:#}\n", document(report)))
 }
 
 /// One difference.
@@ -50,7 +54,9 @@ pub fn finding(finding: &Finding) -> Value {
         }
         Change::Gone => json!({ "kind": "gone" }),
         Change::New => json!({ "kind": "new" }),
-        Change::Length { of, was, is } => json!({ "kind": "length", "of": of, "was": was, "is": is }),
+        Change::Length { of, was, is } => {
+            json!({ "kind": "length", "of": of, "was": was, "is": is })
+        }
     };
     if let (Some(object), Value::Object(more)) = (value.as_object_mut(), more) {
         object.extend(more);

@@ -5,7 +5,7 @@ use quick_junit::{NonSuccessKind, Report as Junit, TestCase, TestCaseStatus, Tes
 
 use super::tested::{Outcome, Report, Tested};
 use super::words::Words;
-use crate::inert::one_line;
+use crate::text::sanitize::one_line;
 
 /// The report.
 ///
@@ -17,7 +17,10 @@ pub fn junit(report: &Report) -> Result<String, quick_junit::SerializeError> {
     for tested in &report.tested {
         let plain = one_line(&tested.name);
         let (folder, name) = plain.rsplit_once('/').unwrap_or((".", &plain));
-        if suites.last().is_none_or(|suite| suite.name.as_str() != folder) {
+        if suites
+            .last()
+            .is_none_or(|suite| suite.name.as_str() != folder)
+        {
             suites.push(TestSuite::new(folder));
         }
         if let Some(suite) = suites.last_mut() {
@@ -41,11 +44,20 @@ fn status(tested: &Tested) -> TestCaseStatus {
         status.set_message(complaint);
         return status;
     }
-    let kind = if matches!(tested.outcome, Outcome::Failed(_)) { NonSuccessKind::Error } else { NonSuccessKind::Failure };
+    let kind = if matches!(tested.outcome, Outcome::Failed(_)) {
+        NonSuccessKind::Error
+    } else {
+        NonSuccessKind::Failure
+    };
     let mut status = TestCaseStatus::non_success(kind);
     status.set_type(tested.outcome.name());
     status.set_message(complaint);
-    let lines: Vec<String> = tested.outcome.findings().iter().map(|finding| one_line(&Words::of(finding).line())).collect();
+    let lines: Vec<String> = tested
+        .outcome
+        .findings()
+        .iter()
+        .map(|finding| one_line(&Words::of(finding).line()))
+        .collect();
     status.set_description(lines.join("\n"));
     status
 }

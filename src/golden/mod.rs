@@ -1,6 +1,7 @@
-//! A run against blessed results. In: the truth of both, as the text of their files, and the tolerances of the plan. Out:
-//! [`Finding`]s, what differs and by how much. Knows no file, no terminal and no picture.
+//! Comparison of a run with accepted results. In: the result files of both as text, and the
+//! tolerances of the plan. Out: [`Finding`]s. It knows no file, no terminal and no picture.
 
+pub mod comparison;
 pub mod console;
 mod figures;
 mod finding;
@@ -28,7 +29,7 @@ pub use words::Words;
 /// The text of a plan's diagnostics, where the plan is meant to fail to check.
 pub const DIAGNOSTICS: &str = "diagnostics.txt";
 pub const SUMMARY: &str = "summary.json";
-pub const FIGURES: &str = crate::output::FIGURE_DATA;
+pub const FIGURES: &str = crate::report::FIGURE_DATA;
 const TABLES: &str = "tables/";
 
 /// What of a folder of results is compared: texts by path. Pictures and certificates are made from the same numbers, and
@@ -46,7 +47,12 @@ impl Truth {
     /// The texts of those files that are compared.
     #[must_use]
     pub fn of(files: impl IntoIterator<Item = (String, String)>) -> Self {
-        Self(files.into_iter().filter(|(path, _)| Self::holds(path)).collect())
+        Self(
+            files
+                .into_iter()
+                .filter(|(path, _)| Self::holds(path))
+                .collect(),
+        )
     }
 
     /// Whether there is nothing to compare with.
@@ -68,13 +74,16 @@ impl Truth {
 
     /// The tables by procedure.
     pub fn tables(&self) -> impl Iterator<Item = (&str, Table)> {
-        self.0.iter().filter_map(|(path, text)| Some((table_name(path)?, Table::read(text))))
+        self.0
+            .iter()
+            .filter_map(|(path, text)| Some((table_name(path)?, Table::read(text))))
     }
 
     /// The figures; none where there are none, or no reader knows them.
     #[must_use]
-    pub fn figures(&self) -> Option<crate::output::Figures> {
-        self.text(FIGURES).and_then(|text| serde_json::from_str(text).ok())
+    pub fn figures(&self) -> Option<crate::report::Figures> {
+        self.text(FIGURES)
+            .and_then(|text| serde_json::from_str(text).ok())
     }
 }
 
@@ -88,17 +97,32 @@ fn table_name(path: &str) -> Option<&str> {
 pub fn compare(blessed: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Finding> {
     let mut found = Vec::new();
     match (blessed.text(DIAGNOSTICS), now.text(DIAGNOSTICS)) {
-        (Some(was), Some(is)) if was != is => found.push(Finding::text(Part::Diagnostics, DIAGNOSTICS, was, is)),
-        (Some(_), None) => {
-            found.push(Finding::new(Part::Diagnostics, "the plan checks, and is blessed as one that does not", Change::Gone));
+        (Some(was), Some(is)) if was != is => {
+            found.push(Finding::text(Part::Diagnostics, DIAGNOSTICS, was, is));
         }
-        (None, Some(_)) => found.push(Finding::new(Part::Diagnostics, "the plan fails to check", Change::New)),
+        (Some(_), None) => {
+            found.push(Finding::new(
+                Part::Diagnostics,
+                "the plan checks, and is blessed as one that does not",
+                Change::Gone,
+            ));
+        }
+        (None, Some(_)) => found.push(Finding::new(
+            Part::Diagnostics,
+            "the plan fails to check",
+            Change::New,
+        )),
         _ => {}
     }
     if blessed.is_of_faults() || now.is_of_faults() {
         return found;
     }
-    summary::compare(blessed.text(SUMMARY), now.text(SUMMARY), tolerances, &mut found);
+    summary::compare(
+        blessed.text(SUMMARY),
+        now.text(SUMMARY),
+        tolerances,
+        &mut found,
+    );
     table::compare_all(blessed, now, tolerances, &mut found);
     figures::compare(blessed, now, tolerances, &mut found);
     found.sort_by_key(|finding| finding.part);

@@ -2,16 +2,31 @@
 
 use super::finding::{Change, Count, Moved, Place};
 use super::tolerance::Rule;
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// One number; None where they are near.
-pub(super) fn single(was: Option<f64>, is: Option<f64>, dimension: Dimension, rule: Rule, scale: f64) -> Option<Change> {
+pub(super) fn single(
+    was: Option<f64>,
+    is: Option<f64>,
+    dimension: Dimension,
+    rule: Rule,
+    scale: f64,
+) -> Option<Change> {
     let near = match (was, is) {
         (Some(was), Some(is)) => rule.is_near(was, is, scale),
         (None, None) => true,
         _ => false,
     };
-    (!near).then_some(Change::Moved(Moved { dimension, was, is, rule, scale, largest: None, first: None, count: None }))
+    (!near).then_some(Change::Moved(Moved {
+        dimension,
+        was,
+        is,
+        rule,
+        scale,
+        largest: None,
+        first: None,
+        count: None,
+    }))
 }
 
 /// Many, pair by pair; the largest of them that moved stands for all. A number that came or went is the largest of all.
@@ -41,11 +56,26 @@ pub(super) fn many(
     }
     let (row, _) = largest?;
     let (was, is) = pairs[row];
-    let count = Some(Count { moved, of: pairs.len() });
-    Some(Change::Moved(Moved { dimension, was, is, rule, scale, largest: Some(place(row)), first: first.map(place), count }))
+    let count = Some(Count {
+        moved,
+        of: pairs.len(),
+    });
+    Some(Change::Moved(Moved {
+        dimension,
+        was,
+        is,
+        rule,
+        scale,
+        largest: Some(place(row)),
+        first: first.map(place),
+        count,
+    }))
 }
 
 /// The largest size of some numbers.
 pub(super) fn scale(values: impl Iterator<Item = f64>) -> f64 {
-    values.filter(|value| value.is_finite()).map(f64::abs).fold(0.0, f64::max)
+    values
+        .filter(|value| value.is_finite())
+        .map(f64::abs)
+        .fold(0.0, f64::max)
 }

@@ -3,7 +3,10 @@
 use serde_json::{Map, Value};
 
 /// Results of runs that do not unload, as they were called and as they are.
-const RENAMED: [(&str, &str); 2] = [("residual_displacement", "final_displacement"), ("residual_drift", "final_drift")];
+const RENAMED: [(&str, &str); 2] = [
+    ("residual_displacement", "final_displacement"),
+    ("residual_drift", "final_drift"),
+];
 
 /// Reads a summary. What it says of a run at its last step is called final, whatever wrote it.
 ///
@@ -36,8 +39,15 @@ fn rename(procedure: &mut Value) {
         {
             results.insert(is.to_owned(), result);
         }
-        let budgets = procedure.get_mut("uncertainty_budgets").and_then(Value::as_array_mut);
-        for name in budgets.into_iter().flatten().filter_map(|budget| budget.get_mut("result")).filter(|name| *name == was) {
+        let budgets = procedure
+            .get_mut("uncertainty_budgets")
+            .and_then(Value::as_array_mut);
+        for name in budgets
+            .into_iter()
+            .flatten()
+            .filter_map(|budget| budget.get_mut("result"))
+            .filter(|name| *name == was)
+        {
             *name = Value::from(is);
         }
     }
@@ -63,7 +73,11 @@ mod tests {
             ("unload", "residual_drift", "residual_drift"),
             ("escalate", "residual_displacement", "residual_displacement"),
         ] {
-            assert_eq!(summary(&of(kind, was).to_string()).unwrap(), of(kind, is), "{kind}: {was}");
+            assert_eq!(
+                summary(&of(kind, was).to_string()).unwrap(),
+                of(kind, is),
+                "{kind}: {was}"
+            );
         }
         assert!(summary("{").is_err());
         assert_eq!(summary("[1]").unwrap(), json!([1]));

@@ -6,15 +6,27 @@ use serde_json::{Map, Value};
 use super::finding::{Change, Finding, Part};
 use super::tolerance::{Rule, Tolerances};
 use super::{number, older};
-use crate::quantity::{Dimension, unit};
+use crate::units::{Dimension, unit};
 
 /// What tells which run it was, by which program and on which day's machine.
-const NOT_COMPARED: &[&str] = &["run_id", "psd", "plan.sha256", "rig.firmware", "rig.serial", "record"];
+const NOT_COMPARED: &[&str] = &[
+    "run_id",
+    "psd",
+    "plan.sha256",
+    "rig.firmware",
+    "rig.serial",
+    "record",
+];
 
 /// A requirement repeats the condition that decides it, and a margin and an uncertainty follow from what is compared.
 const FOLLOWS: &[&str] = &["value", "limit", "margin", "unit", "u", "condition"];
 
-pub(super) fn compare(was: Option<&str>, is: Option<&str>, tolerances: &Tolerances, found: &mut Vec<Finding>) {
+pub(super) fn compare(
+    was: Option<&str>,
+    is: Option<&str>,
+    tolerances: &Tolerances,
+    found: &mut Vec<Finding>,
+) {
     let read = |text: Option<&str>| text.and_then(|text| older::summary(text).ok());
     let Some(was) = read(was).map(older::completed) else {
         found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::New));
@@ -43,7 +55,8 @@ impl Walk<'_> {
             (Value::Number(_), Value::Number(_)) => {
                 let (was, is) = (was.as_f64(), is.as_f64());
                 let scale = number::scale(was.into_iter().chain(is));
-                let change = number::single(was, is, Dimension::NUMBER, self.tolerances.general(), scale);
+                let change =
+                    number::single(was, is, Dimension::NUMBER, self.tolerances.general(), scale);
                 self.note(path, change);
             }
             _ if was != is => self.note(path, Some(text(was, is))),
@@ -51,14 +64,24 @@ impl Walk<'_> {
         }
     }
 
-    fn object(&mut self, path: &mut Vec<String>, was: &Map<String, Value>, is: &Map<String, Value>) {
+    fn object(
+        &mut self,
+        path: &mut Vec<String>,
+        was: &Map<String, Value>,
+        is: &Map<String, Value>,
+    ) {
         let requirement = path.len() == 2 && path[0] == "requirements";
         let measure = measure(was).filter(|_| was.get("unit") == is.get("unit") && !requirement);
-        for (key, old) in was.iter().filter(|(key, _)| !requirement || !FOLLOWS.contains(&key.as_str())) {
+        for (key, old) in was
+            .iter()
+            .filter(|(key, _)| !requirement || !FOLLOWS.contains(&key.as_str()))
+        {
             path.push(key.clone());
             match (is.get(key), measure) {
                 (None, _) => self.note(path, Some(Change::Gone)),
-                (Some(new), Some(dimension)) if is_numeric(old) && is_numeric(new) && key != "margin" => {
+                (Some(new), Some(dimension))
+                    if is_numeric(old) && is_numeric(new) && key != "margin" =>
+                {
                     self.quantity(path, old, new, dimension, was, is);
                 }
                 (Some(_), Some(_)) if key == "margin" => {}
@@ -84,11 +107,23 @@ impl Walk<'_> {
         is: &Map<String, Value>,
     ) {
         let rule = self.rule(path, dimension);
-        let both = || ["value", "limit"].into_iter().flat_map(|key| [was.get(key), is.get(key)]).flatten();
+        let both = || {
+            ["value", "limit"]
+                .into_iter()
+                .flat_map(|key| [was.get(key), is.get(key)])
+                .flatten()
+        };
         let scale = number::scale(both().flat_map(numbers).flatten());
         let (old, new) = (numbers(old), numbers(new));
         if old.len() != new.len() {
-            self.note(path, Some(Change::Length { of: "entries", was: old.len(), is: new.len() }));
+            self.note(
+                path,
+                Some(Change::Length {
+                    of: "entries",
+                    was: old.len(),
+                    is: new.len(),
+                }),
+            );
         }
         let listed = old.len() > 1;
         for (index, (old, new)) in old.into_iter().zip(new).enumerate() {
@@ -105,7 +140,9 @@ impl Walk<'_> {
 
     fn rule(&self, path: &[String], dimension: Dimension) -> Rule {
         match path {
-            [procedures, name, results, result, ..] if procedures == "procedures" && results == "results" => {
+            [procedures, name, results, result, ..]
+                if procedures == "procedures" && results == "results" =>
+            {
                 self.tolerances.result(name, result)
             }
             [parameters, ..] if parameters == "parameters" => self.tolerances.general(),
@@ -115,8 +152,14 @@ impl Walk<'_> {
 
     /// Entries by their place; those of requirements by their name, so that one more does not shift all.
     fn array(&mut self, path: &mut Vec<String>, was: &[Value], is: &[Value]) {
-        let named = |entries: &[Value]| entries.iter().map(|entry| Some(entry.get("name")?.as_str()?.to_owned())).collect();
-        let (old_names, new_names): (Option<Vec<String>>, Option<Vec<String>>) = (named(was), named(is));
+        let named = |entries: &[Value]| {
+            entries
+                .iter()
+                .map(|entry| Some(entry.get("name")?.as_str()?.to_owned()))
+                .collect()
+        };
+        let (old_names, new_names): (Option<Vec<String>>, Option<Vec<String>>) =
+            (named(was), named(is));
         if let (Some(old_names), Some(new_names)) = (old_names, new_names)
             && !(was.is_empty() && is.is_empty())
         {
@@ -137,7 +180,14 @@ impl Walk<'_> {
             return;
         }
         if was.len() != is.len() {
-            self.note(path, Some(Change::Length { of: "entries", was: was.len(), is: is.len() }));
+            self.note(
+                path,
+                Some(Change::Length {
+                    of: "entries",
+                    was: was.len(),
+                    is: is.len(),
+                }),
+            );
         }
         for (index, (old, new)) in was.iter().zip(is).enumerate() {
             path.push((index + 1).to_string());
@@ -164,7 +214,9 @@ fn measure(object: &Map<String, Value>) -> Option<Dimension> {
 fn is_numeric(value: &Value) -> bool {
     match value {
         Value::Number(_) | Value::Null => true,
-        Value::Array(entries) => entries.iter().all(|entry| matches!(entry, Value::Number(_) | Value::Null)),
+        Value::Array(entries) => entries
+            .iter()
+            .all(|entry| matches!(entry, Value::Number(_) | Value::Null)),
         _ => false,
     }
 }
@@ -182,7 +234,11 @@ fn text(was: &Value, is: &Value) -> Change {
         Value::Null => "none".to_owned(),
         other => other.to_string(),
     };
-    Change::Text { was: shown(was), is: shown(is), first: None }
+    Change::Text {
+        was: shown(was),
+        is: shown(is),
+        first: None,
+    }
 }
 
 /// `procedures hit results stop_time value` is `hit.stop_time`.
@@ -193,20 +249,39 @@ fn named(path: &[String]) -> (Part, String) {
         ["outcome", ..] => (Part::Verdict, parts.join(".")),
         ["requirements", name] => (Part::Requirement, format!("require \"{name}\"")),
         // What a requirement reads follows from results, which weigh more.
-        ["requirements", name, "conditions", place, rest @ ("value" | "limit" | "tolerance")] => {
-            (Part::Other, format!("require \"{name}\", condition {place}: {rest}"))
-        }
-        ["requirements", name, "conditions", place, rest @ ..] => {
-            (Part::Requirement, format!("require \"{name}\", condition {place}: {}", rest.join(".")))
-        }
-        ["requirements", name, rest @ ..] => (Part::Requirement, format!("require \"{name}\": {}", rest.join("."))),
+        [
+            "requirements",
+            name,
+            "conditions",
+            place,
+            rest @ ("value" | "limit" | "tolerance"),
+        ] => (
+            Part::Other,
+            format!("require \"{name}\", condition {place}: {rest}"),
+        ),
+        ["requirements", name, "conditions", place, rest @ ..] => (
+            Part::Requirement,
+            format!("require \"{name}\", condition {place}: {}", rest.join(".")),
+        ),
+        ["requirements", name, rest @ ..] => (
+            Part::Requirement,
+            format!("require \"{name}\": {}", rest.join(".")),
+        ),
         ["procedures", name, "results", result, "value", place @ ..] => {
-            let places = place.iter().fold(String::new(), |text, place| text + "[" + place + "]");
+            let places = place
+                .iter()
+                .fold(String::new(), |text, place| text + "[" + place + "]");
             (Part::Result, format!("{name}.{result}{places}"))
         }
-        ["procedures", name, "results", rest @ ..] => (Part::Result, format!("{name}.{}", rest.join("."))),
-        ["procedures", name, "inputs", input, "value"] => (Part::Other, format!("input {name}.{input}")),
-        ["procedures", name, "inputs", rest @ ..] => (Part::Other, format!("input {name}.{}", rest.join("."))),
+        ["procedures", name, "results", rest @ ..] => {
+            (Part::Result, format!("{name}.{}", rest.join(".")))
+        }
+        ["procedures", name, "inputs", input, "value"] => {
+            (Part::Other, format!("input {name}.{input}"))
+        }
+        ["procedures", name, "inputs", rest @ ..] => {
+            (Part::Other, format!("input {name}.{}", rest.join(".")))
+        }
         ["procedures", name] => (Part::Result, (*name).to_owned()),
         ["procedures", name, rest @ ..] => (Part::Result, format!("{name}: {}", rest.join("."))),
         ["parameters", name, "value"] => (Part::Other, format!("param {name}")),
@@ -243,8 +318,16 @@ mod tests {
         let mut now = summary();
         change(&mut now);
         let mut found = Vec::new();
-        compare(Some(&summary().to_string()), Some(&now.to_string()), &Tolerances::default(), &mut found);
-        found.iter().map(|finding| format!("{} {}", finding.part.name(), finding.name)).collect()
+        compare(
+            Some(&summary().to_string()),
+            Some(&now.to_string()),
+            &Tolerances::default(),
+            &mut found,
+        );
+        found
+            .iter()
+            .map(|finding| format!("{} {}", finding.part.name(), finding.name))
+            .collect()
     }
 
     #[test]
@@ -265,8 +348,16 @@ mod tests {
     fn a_pass_of_an_older_version_is_completed_only_where_nothing_was_required() {
         let compared = |was: &Value, is: &Value| {
             let mut found = Vec::new();
-            compare(Some(&was.to_string()), Some(&is.to_string()), &Tolerances::default(), &mut found);
-            found.iter().map(|finding| finding.name.clone()).collect::<Vec<_>>()
+            compare(
+                Some(&was.to_string()),
+                Some(&is.to_string()),
+                &Tolerances::default(),
+                &mut found,
+            );
+            found
+                .iter()
+                .map(|finding| finding.name.clone())
+                .collect::<Vec<_>>()
         };
         let mut older = summary();
         older["requirements"] = json!([]);
@@ -284,23 +375,55 @@ mod tests {
 
     #[test]
     fn every_difference_has_its_name() {
-        let results = |now: &mut Value, result: &str, value: Value| now["procedures"]["hit"]["results"][result]["value"] = value;
-        assert_eq!(findings(|now| results(now, "x", json!(0.500_000_001))), ["result hit.x"]);
-        assert_eq!(findings(|now| results(now, "drift", json!([1e-3, 2.1e-3]))), ["result hit.drift[1]"]);
-        assert_eq!(findings(|now| results(now, "drift", json!([1e-3]))), ["result hit.drift"]);
-        assert_eq!(findings(|now| results(now, "stop_time", json!(0.1))), ["result hit.stop_time"]);
-        assert_eq!(findings(|now| now["procedures"]["hit"]["inputs"]["mass"]["value"] = json!(2.1)), ["other input hit.mass"]);
-        assert_eq!(findings(|now| now["events"][0]["text"] = json!("said")), ["other event 1: text"]);
-        assert_eq!(findings(|now| now["plan"]["title"] = json!("U")), ["other plan.title"]);
-        assert_eq!(findings(|now| now["requirements"] = json!([])), ["requirement require \"stays\""]);
+        let results = |now: &mut Value, result: &str, value: Value| {
+            now["procedures"]["hit"]["results"][result]["value"] = value;
+        };
+        assert_eq!(
+            findings(|now| results(now, "x", json!(0.500_000_001))),
+            ["result hit.x"]
+        );
+        assert_eq!(
+            findings(|now| results(now, "drift", json!([1e-3, 2.1e-3]))),
+            ["result hit.drift[1]"]
+        );
+        assert_eq!(
+            findings(|now| results(now, "drift", json!([1e-3]))),
+            ["result hit.drift"]
+        );
+        assert_eq!(
+            findings(|now| results(now, "stop_time", json!(0.1))),
+            ["result hit.stop_time"]
+        );
+        assert_eq!(
+            findings(|now| now["procedures"]["hit"]["inputs"]["mass"]["value"] = json!(2.1)),
+            ["other input hit.mass"]
+        );
+        assert_eq!(
+            findings(|now| now["events"][0]["text"] = json!("said")),
+            ["other event 1: text"]
+        );
+        assert_eq!(
+            findings(|now| now["plan"]["title"] = json!("U")),
+            ["other plan.title"]
+        );
+        assert_eq!(
+            findings(|now| now["requirements"] = json!([])),
+            ["requirement require \"stays\""]
+        );
         let verdicts = findings(|now| {
             now["verdict"] = json!("fail");
             now["requirements"][0]["verdict"] = json!("fail");
             now["requirements"][0]["margin"] = json!(-0.5);
         });
-        assert_eq!(verdicts, ["verdict verdict", "requirement require \"stays\": verdict"]);
+        assert_eq!(
+            verdicts,
+            ["verdict verdict", "requirement require \"stays\": verdict"]
+        );
         let gone = findings(|now| {
-            now["procedures"]["hit"]["results"].as_object_mut().unwrap().remove("x");
+            now["procedures"]["hit"]["results"]
+                .as_object_mut()
+                .unwrap()
+                .remove("x");
         });
         assert_eq!(gone, ["result hit.x"]);
     }

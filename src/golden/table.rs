@@ -3,8 +3,9 @@
 use super::finding::{Change, Count, Finding, Part, Place};
 use super::tolerance::Tolerances;
 use super::{Truth, number};
-use crate::quantity::Dimension;
+use crate::procedures;
 use crate::schema::{self, Kind};
+use crate::units::Dimension;
 
 /// A table as it was read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,8 +27,12 @@ impl Table {
     #[must_use]
     pub fn read(text: &str) -> Self {
         let mut lines = text.lines();
-        let mut columns: Vec<(String, Vec<String>)> =
-            lines.next().map_or_else(Vec::new, |line| cells(line).into_iter().map(|name| (name, Vec::new())).collect());
+        let mut columns: Vec<(String, Vec<String>)> = lines.next().map_or_else(Vec::new, |line| {
+            cells(line)
+                .into_iter()
+                .map(|name| (name, Vec::new()))
+                .collect()
+        });
         for line in lines {
             let mut row = cells(line).into_iter();
             for (_, column) in &mut columns {
@@ -46,7 +51,13 @@ impl Table {
     #[must_use]
     pub fn column(&self, name: &str) -> Option<Cells> {
         let (_, cells) = self.columns.iter().find(|(known, _)| known == name)?;
-        let number = |cell: &String| if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) };
+        let number = |cell: &String| {
+            if cell.is_empty() {
+                Some(None)
+            } else {
+                cell.parse().ok().map(Some)
+            }
+        };
         let numbers: Option<Vec<Option<f64>>> = cells.iter().map(number).collect();
         Some(numbers.map_or_else(|| Cells::Words(cells.clone()), Cells::Numbers))
     }
@@ -62,9 +73,20 @@ impl Table {
 
     /// What tells a row: its step, and the time of the test or of the rig.
     fn place(&self, row: usize) -> Place {
-        let cell = |name: &str| self.numbers(name).and_then(|cells| cells.get(row).copied().flatten());
-        let step = self.columns.iter().find(|(name, _)| name == "step").and_then(|(_, cells)| cells.get(row)?.parse().ok());
-        Place { row, step, time: cell("time_s").or_else(|| cell("wall_time_s")) }
+        let cell = |name: &str| {
+            self.numbers(name)
+                .and_then(|cells| cells.get(row).copied().flatten())
+        };
+        let step = self
+            .columns
+            .iter()
+            .find(|(name, _)| name == "step")
+            .and_then(|(_, cells)| cells.get(row)?.parse().ok());
+        Place {
+            row,
+            step,
+            time: cell("time_s").or_else(|| cell("wall_time_s")),
+        }
     }
 }
 
@@ -88,28 +110,65 @@ fn cells(line: &str) -> Vec<String> {
 }
 
 /// Every table of either.
-pub(super) fn compare_all(blessed: &Truth, now: &Truth, tolerances: &Tolerances, found: &mut Vec<Finding>) {
-    let of = |truth: &Truth| truth.tables().map(|(name, table)| (name.to_owned(), table)).collect::<Vec<_>>();
+pub(super) fn compare_all(
+    blessed: &Truth,
+    now: &Truth,
+    tolerances: &Tolerances,
+    found: &mut Vec<Finding>,
+) {
+    let of = |truth: &Truth| {
+        truth
+            .tables()
+            .map(|(name, table)| (name.to_owned(), table))
+            .collect::<Vec<_>>()
+    };
     let (was, is) = (of(blessed), of(now));
     for (name, table) in &was {
         match is.iter().find(|(other, _)| other == name) {
             Some((_, new)) => compare(name, table, new, tolerances, found),
-            None => found.push(Finding::new(Part::Table, format!("table of {name}"), Change::Gone)),
+            None => found.push(Finding::new(
+                Part::Table,
+                format!("table of {name}"),
+                Change::Gone,
+            )),
         }
     }
-    for (name, _) in is.iter().filter(|(name, _)| !was.iter().any(|(other, _)| other == name)) {
-        found.push(Finding::new(Part::Table, format!("table of {name}"), Change::New));
+    for (name, _) in is
+        .iter()
+        .filter(|(name, _)| !was.iter().any(|(other, _)| other == name))
+    {
+        found.push(Finding::new(
+            Part::Table,
+            format!("table of {name}"),
+            Change::New,
+        ));
     }
 }
 
-fn compare(procedure: &str, was: &Table, is: &Table, tolerances: &Tolerances, found: &mut Vec<Finding>) {
+fn compare(
+    procedure: &str,
+    was: &Table,
+    is: &Table,
+    tolerances: &Tolerances,
+    found: &mut Vec<Finding>,
+) {
     let named = |column: &str| format!("{procedure}.{column}");
     if was.rows() != is.rows() {
-        let change = Change::Length { of: "rows", was: was.rows(), is: is.rows() };
-        found.push(Finding::new(Part::Table, format!("table of {procedure}"), change));
+        let change = Change::Length {
+            of: "rows",
+            was: was.rows(),
+            is: is.rows(),
+        };
+        found.push(Finding::new(
+            Part::Table,
+            format!("table of {procedure}"),
+            change,
+        ));
     }
     for (column, _) in &was.columns {
-        let (Some(old), new) = (was.column(column), is.column(column)) else { continue };
+        let (Some(old), new) = (was.column(column), is.column(column)) else {
+            continue;
+        };
         let change = match (old, new) {
             (_, None) => Some(Change::Gone),
             (Cells::Numbers(old), Some(Cells::Numbers(new))) => {
@@ -123,26 +182,48 @@ fn compare(procedure: &str, was: &Table, is: &Table, tolerances: &Tolerances, fo
         };
         found.extend(change.map(|change| Finding::new(Part::Table, named(column), change)));
     }
-    for (column, _) in is.columns.iter().filter(|(column, _)| was.column(column).is_none()) {
+    for (column, _) in is
+        .columns
+        .iter()
+        .filter(|(column, _)| was.column(column).is_none())
+    {
         found.push(Finding::new(Part::Table, named(column), Change::New));
     }
 }
 
 /// Words, to the letter.
 fn words(was: &Table, is: &Table, column: &str) -> Option<Change> {
-    let of = |table: &Table| table.columns.iter().find(|(name, _)| name == column).map(|(_, cells)| cells.clone());
+    let of = |table: &Table| {
+        table
+            .columns
+            .iter()
+            .find(|(name, _)| name == column)
+            .map(|(_, cells)| cells.clone())
+    };
     let pairs: Vec<(String, String)> = of(was)?.into_iter().zip(of(is)?).collect();
     let mut differ = pairs.iter().enumerate().filter(|(_, (was, is))| was != is);
     let (row, (old, new)) = differ.next()?;
-    let count = Count { moved: 1 + differ.count(), of: pairs.len() };
-    Some(Change::Text { was: old.clone(), is: new.clone(), first: Some((was.place(row), count)) })
+    let count = Count {
+        moved: 1 + differ.count(),
+        of: pairs.len(),
+    };
+    Some(Change::Text {
+        was: old.clone(),
+        is: new.clone(),
+        first: Some((was.place(row), count)),
+    })
 }
 
 /// What a column measures: one name means one thing in every table.
 #[must_use]
 pub fn dimension(column: &str) -> Dimension {
-    let kinds = schema::BLOCKS.iter().map(|block| block.kind).filter(|kind| *kind != Kind::Later);
-    let known = kinds.flat_map(schema::columns).find(|known| known.name == column);
+    let kinds = schema::BLOCKS
+        .iter()
+        .map(|block| block.kind)
+        .filter(|kind| *kind != Kind::Later);
+    let known = kinds
+        .flat_map(procedures::columns)
+        .find(|known| known.name == column);
     known.map_or(Dimension::NUMBER, |known| known.dimension)
 }
 
@@ -154,7 +235,13 @@ mod tests {
 
     fn findings(new: &str) -> Vec<Finding> {
         let mut found = Vec::new();
-        compare("hit", &Table::read(OLD), &Table::read(new), &Tolerances::default(), &mut found);
+        compare(
+            "hit",
+            &Table::read(OLD),
+            &Table::read(new),
+            &Tolerances::default(),
+            &mut found,
+        );
         found
     }
 
@@ -163,33 +250,96 @@ mod tests {
         assert_eq!(findings(OLD), []);
         // 1e-9 of 1000 N is 1 µN, also of the 1 N in the first row.
         assert_eq!(findings(&OLD.replace("free,1,", "free,1.0000009,")), []);
-        let found = findings(&OLD.replace("free,1,", "free,1.0000011,").replace("free,-3", "free,-3.5"));
-        let [Finding { name, change: Change::Moved(moved), .. }] = found.as_slice() else { panic!("{found:?}") };
+        let found = findings(
+            &OLD.replace("free,1,", "free,1.0000011,")
+                .replace("free,-3", "free,-3.5"),
+        );
+        let [
+            Finding {
+                name,
+                change: Change::Moved(moved),
+                ..
+            },
+        ] = found.as_slice()
+        else {
+            panic!("{found:?}")
+        };
         assert_eq!(
             (name.as_str(), moved.dimension, moved.was, moved.is),
-            ("hit.restoring_force_n", Dimension::FORCE, Some(-3.0), Some(-3.5))
+            (
+                "hit.restoring_force_n",
+                Dimension::FORCE,
+                Some(-3.0),
+                Some(-3.5)
+            )
         );
-        assert_eq!((moved.count, moved.scale), (Some(Count { moved: 2, of: 3 }), 1000.0));
-        assert_eq!(moved.first, Some(Place { row: 0, step: Some(0), time: Some(0.0) }));
-        assert_eq!(moved.largest, Some(Place { row: 2, step: Some(2), time: Some(0.2) }));
+        assert_eq!(
+            (moved.count, moved.scale),
+            (Some(Count { moved: 2, of: 3 }), 1000.0)
+        );
+        assert_eq!(
+            moved.first,
+            Some(Place {
+                row: 0,
+                step: Some(0),
+                time: Some(0.0)
+            })
+        );
+        assert_eq!(
+            moved.largest,
+            Some(Place {
+                row: 2,
+                step: Some(2),
+                time: Some(0.2)
+            })
+        );
     }
 
     #[test]
     fn words_rows_columns_and_empty_cells_count() {
-        let change = |new: &str| findings(new).into_iter().map(|finding| (finding.name, finding.change)).collect::<Vec<_>>();
-        let [(name, Change::Text { was, is, first: Some((place, count)) })] = &change(&OLD.replace("contact", "limit"))[..]
+        let change = |new: &str| {
+            findings(new)
+                .into_iter()
+                .map(|finding| (finding.name, finding.change))
+                .collect::<Vec<_>>()
+        };
+        let [
+            (
+                name,
+                Change::Text {
+                    was,
+                    is,
+                    first: Some((place, count)),
+                },
+            ),
+        ] = &change(&OLD.replace("contact", "limit"))[..]
         else {
             panic!("one text")
         };
-        assert_eq!((name.as_str(), was.as_str(), is.as_str(), place.step), ("hit.state", "contact", "limit", Some(1)));
+        assert_eq!(
+            (name.as_str(), was.as_str(), is.as_str(), place.step),
+            ("hit.state", "contact", "limit", Some(1))
+        );
         assert_eq!(*count, Count { moved: 1, of: 3 });
-        let rows = Change::Length { of: "rows", was: 3, is: 4 };
-        assert_eq!(change(&format!("{OLD}3,0.3,free,0,1\n")), [("table of hit".to_owned(), rows)]);
+        let rows = Change::Length {
+            of: "rows",
+            was: 3,
+            is: 4,
+        };
+        assert_eq!(
+            change(&format!("{OLD}3,0.3,free,0,1\n")),
+            [("table of hit".to_owned(), rows)]
+        );
         assert_eq!(
             change(&OLD.replace("tangent", "other")),
-            [("hit.tangent".to_owned(), Change::Gone), ("hit.other".to_owned(), Change::New)]
+            [
+                ("hit.tangent".to_owned(), Change::Gone),
+                ("hit.other".to_owned(), Change::New)
+            ]
         );
-        let [(_, Change::Moved(moved))] = &change(&OLD.replace("free,1,", "free,1,7"))[..] else { panic!("one number came") };
+        let [(_, Change::Moved(moved))] = &change(&OLD.replace("free,1,", "free,1,7"))[..] else {
+            panic!("one number came")
+        };
         assert_eq!((moved.was, moved.is), (None, Some(7.0)));
     }
 

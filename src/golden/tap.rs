@@ -4,21 +4,38 @@ use std::fmt::Write as _;
 
 use super::tested::{Outcome, Report};
 use super::words::Words;
-use crate::inert;
+use crate::text::sanitize;
 
 /// The report, with a line a plan.
 #[must_use]
 pub fn tap(report: &Report) -> String {
     let mut text = format!("TAP version 13\n1..{}\n", report.tested.len());
     for (index, tested) in report.tested.iter().enumerate() {
-        let result = if tested.outcome.is_good() || tested.outcome == Outcome::NotRun { "ok" } else { "not ok" };
-        let skip = if tested.outcome == Outcome::NotRun { " # SKIP the test ended at the first failure" } else { "" };
-        let _ = writeln!(text, "{result} {} - {}{skip}", index + 1, plain(&tested.name));
+        let result = if tested.outcome.is_good() || tested.outcome == Outcome::NotRun {
+            "ok"
+        } else {
+            "not ok"
+        };
+        let skip = if tested.outcome == Outcome::NotRun {
+            " # SKIP the test ended at the first failure"
+        } else {
+            ""
+        };
+        let _ = writeln!(
+            text,
+            "{result} {} - {}{skip}",
+            index + 1,
+            plain(&tested.name)
+        );
         if result == "ok" {
             continue;
         }
         let complaint = tested.outcome.complaint().unwrap_or_default();
-        let _ = writeln!(text, "  ---\n  message: {}\n  severity: fail", quoted(&complaint));
+        let _ = writeln!(
+            text,
+            "  ---\n  message: {}\n  severity: fail",
+            quoted(&complaint)
+        );
         if !tested.outcome.findings().is_empty() {
             text.push_str("  differences:\n");
             for finding in tested.outcome.findings() {
@@ -35,12 +52,12 @@ pub fn tap(report: &Report) -> String {
 
 /// A description without what steers a reader of the protocol: `#` begins a directive.
 fn plain(text: &str) -> String {
-    inert::one_line(text).replace('#', "＃")
+    sanitize::one_line(text).replace('#', "＃")
 }
 
 /// A JSON string is a YAML string.
 fn quoted(text: &str) -> String {
-    inert::json(&serde_json::Value::from(text).to_string())
+    sanitize::json(&serde_json::Value::from(text).to_string())
 }
 
 #[cfg(test)]
@@ -51,12 +68,22 @@ mod tests {
 
     #[test]
     fn a_failure_carries_its_differences_and_a_name_steers_nothing() {
-        let tested = |name: &str, outcome| Tested { name: name.to_owned(), outcome };
-        let found =
-            vec![Finding::text(Part::Verdict, "verdict", "pass", "fail"), Finding::new(Part::Table, "table of k0", Change::Gone)];
+        let tested = |name: &str, outcome| Tested {
+            name: name.to_owned(),
+            outcome,
+        };
+        let found = vec![
+            Finding::text(Part::Verdict, "verdict", "pass", "fail"),
+            Finding::new(Part::Table, "table of k0", Change::Gone),
+        ];
         let report = Report {
             tested: vec![
-                tested("plans/a", Outcome::Same { verdict: Some("pass") }),
+                tested(
+                    "plans/a",
+                    Outcome::Same {
+                        verdict: Some("pass"),
+                    },
+                ),
                 tested("plans/b # SKIP", Outcome::Differs(found)),
                 tested("plans/c", Outcome::NotRun),
             ],

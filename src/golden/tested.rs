@@ -49,7 +49,11 @@ pub struct Report {
 impl Outcome {
     #[must_use]
     pub const fn is_good(&self) -> bool {
-        matches!(self, Self::Same { .. } | Self::Blessed(Blessed::New | Blessed::Changed(_) | Blessed::Unchanged))
+        matches!(
+            self,
+            Self::Same { .. }
+                | Self::Blessed(Blessed::New | Blessed::Changed(_) | Blessed::Unchanged)
+        )
     }
 
     /// The word of the JSON report.
@@ -81,9 +85,16 @@ impl Outcome {
     #[must_use]
     pub fn complaint(&self) -> Option<String> {
         match self {
-            Self::Differs(found) if found.len() == 1 => Some("1 difference from the blessed results".to_owned()),
-            Self::Differs(found) => Some(format!("{} differences from the blessed results", found.len())),
-            Self::NotBlessed { folder } => Some(format!("no blessed results in {folder}; look at a run, then `--bless`")),
+            Self::Differs(found) if found.len() == 1 => {
+                Some("1 difference from the blessed results".to_owned())
+            }
+            Self::Differs(found) => Some(format!(
+                "{} differences from the blessed results",
+                found.len()
+            )),
+            Self::NotBlessed { folder } => Some(format!(
+                "no blessed results in {folder}; look at a run, then `--bless`"
+            )),
             Self::Failed(reason) => Some(reason.clone()),
             Self::NotRun => Some("not run: the test ended at the first failure".to_owned()),
             Self::Blessed(Blessed::Refused(reason)) => Some(format!("not blessed: {reason}")),
@@ -96,6 +107,9 @@ impl Report {
     /// How many came out well.
     #[must_use]
     pub fn good(&self) -> usize {
-        self.tested.iter().filter(|tested| tested.outcome.is_good()).count()
+        self.tested
+            .iter()
+            .filter(|tested| tested.outcome.is_good())
+            .count()
     }
 }

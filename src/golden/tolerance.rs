@@ -1,8 +1,8 @@
 //! How near is near enough. In: the plan's `golden` block. Out: a [`Rule`] for each result, column and figure.
 
-use crate::formula::ProcedureId;
+use crate::plan::formula::ProcedureId;
 use crate::plan::{Golden, Plan, Tolerance};
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// Nothing nearer than this is told apart, SI: a picometre, a piconewton, a picosecond, and of a plain number 10⁻¹². What
 /// should be 0 is rarely 0 to the last bit. With `tolerance = 0` there is no floor.
@@ -31,7 +31,10 @@ impl Rule {
     }
 
     fn or(self, other: Self) -> Self {
-        Self { relative: self.relative.max(other.relative), absolute: self.absolute.max(other.absolute) }
+        Self {
+            relative: self.relative.max(other.relative),
+            absolute: self.absolute.max(other.absolute),
+        }
     }
 }
 
@@ -45,34 +48,55 @@ pub struct Tolerances {
 impl Tolerances {
     #[must_use]
     pub fn of(plan: &Plan) -> Self {
-        Self { golden: plan.golden.clone(), procedures: plan.procedures.iter().map(|p| p.name.clone()).collect() }
+        Self {
+            golden: plan.golden.clone(),
+            procedures: plan.procedures.iter().map(|p| p.name.clone()).collect(),
+        }
     }
 
     /// Of every number without a tolerance of its own.
     #[must_use]
     pub fn general(&self) -> Rule {
         let relative = self.golden.tolerance;
-        Rule { relative, absolute: if relative > 0.0 { FLOOR } else { 0.0 } }
+        Rule {
+            relative,
+            absolute: if relative > 0.0 { FLOOR } else { 0.0 },
+        }
     }
 
     fn rule(&self, tolerance: Tolerance) -> Rule {
         let general = self.general();
         match tolerance {
-            Tolerance::Absolute(absolute) => Rule { absolute: absolute.max(general.absolute), ..general },
-            Tolerance::Relative(relative) => Rule { relative, ..general },
+            Tolerance::Absolute(absolute) => Rule {
+                absolute: absolute.max(general.absolute),
+                ..general
+            },
+            Tolerance::Relative(relative) => Rule {
+                relative,
+                ..general
+            },
         }
     }
 
     fn is(&self, procedure: ProcedureId, name: &str) -> bool {
-        let Some(known) = self.procedures.get(procedure.0) else { return false };
+        let Some(known) = self.procedures.get(procedure.0) else {
+            return false;
+        };
         // A procedure may have a second table, `loop_cycles` beside `loop`.
-        let second = || name.strip_prefix(known.as_str()).is_some_and(|rest| rest.starts_with('_'));
+        let second = || {
+            name.strip_prefix(known.as_str())
+                .is_some_and(|rest| rest.starts_with('_'))
+        };
         known == name || (second() && !self.procedures.iter().any(|other| other == name))
     }
 
     #[must_use]
     pub fn result(&self, procedure: &str, name: &str) -> Rule {
-        let near = self.golden.results.iter().find(|near| near.name == name && self.is(near.procedure, procedure));
+        let near = self
+            .golden
+            .results
+            .iter()
+            .find(|near| near.name == name && self.is(near.procedure, procedure));
         near.map_or_else(|| self.general(), |near| self.rule(near.tolerance))
     }
 
@@ -88,18 +112,36 @@ impl Tolerances {
     /// What follows from results: the widest tolerance of a result of this dimension.
     #[must_use]
     pub fn follows(&self, dimension: Dimension) -> Rule {
-        let of = self.golden.results.iter().filter(|near| near.dimension == dimension);
-        of.fold(self.general(), |rule, near| rule.or(self.rule(near.tolerance)))
+        let of = self
+            .golden
+            .results
+            .iter()
+            .filter(|near| near.dimension == dimension);
+        of.fold(self.general(), |rule, near| {
+            rule.or(self.rule(near.tolerance))
+        })
     }
 
     /// An axis of a figure draws columns and results: the widest tolerance of those of its procedure and dimension.
     #[must_use]
     pub fn axis(&self, procedure: &str, dimension: Dimension) -> Rule {
-        let results = self.golden.results.iter().filter(|near| near.dimension == dimension && self.is(near.procedure, procedure));
-        let columns = self.golden.columns.iter().filter(|near| near.dimension == dimension);
+        let results = self
+            .golden
+            .results
+            .iter()
+            .filter(|near| near.dimension == dimension && self.is(near.procedure, procedure));
+        let columns = self
+            .golden
+            .columns
+            .iter()
+            .filter(|near| near.dimension == dimension);
         let columns = columns.filter(|near| near.procedure.is_none_or(|of| self.is(of, procedure)));
-        let tolerances = results.map(|near| near.tolerance).chain(columns.map(|near| near.tolerance));
-        tolerances.fold(self.general(), |rule, tolerance| rule.or(self.rule(tolerance)))
+        let tolerances = results
+            .map(|near| near.tolerance)
+            .chain(columns.map(|near| near.tolerance));
+        tolerances.fold(self.general(), |rule, tolerance| {
+            rule.or(self.rule(tolerance))
+        })
     }
 }
 
@@ -109,8 +151,12 @@ mod tests {
     use crate::plan::{NearColumn, NearResult};
 
     fn tolerances(tolerance: f64) -> Tolerances {
-        let force =
-            |procedure, tolerance| NearColumn { procedure, name: "restoring_force_n", dimension: Dimension::FORCE, tolerance };
+        let force = |procedure, tolerance| NearColumn {
+            procedure,
+            name: "restoring_force_n",
+            dimension: Dimension::FORCE,
+            tolerance,
+        };
         let golden = Golden {
             tolerance,
             results: vec![NearResult {
@@ -119,14 +165,23 @@ mod tests {
                 dimension: Dimension::FORCE,
                 tolerance: Tolerance::Absolute(2.0),
             }],
-            columns: vec![force(None, Tolerance::Absolute(0.1)), force(Some(ProcedureId(0)), Tolerance::Relative(1e-3))],
+            columns: vec![
+                force(None, Tolerance::Absolute(0.1)),
+                force(Some(ProcedureId(0)), Tolerance::Relative(1e-3)),
+            ],
         };
-        Tolerances { golden, procedures: vec!["k0".to_owned(), "hit".to_owned()] }
+        Tolerances {
+            golden,
+            procedures: vec!["k0".to_owned(), "hit".to_owned()],
+        }
     }
 
     #[test]
     fn near_is_what_is_near_by_either_measure() {
-        let rule = Rule { relative: 1e-3, absolute: 0.5 };
+        let rule = Rule {
+            relative: 1e-3,
+            absolute: 0.5,
+        };
         assert!(rule.is_near(1000.0, 1001.0, 1001.0) && !rule.is_near(1000.0, 1001.1, 1001.1));
         assert!(rule.is_near(0.0, -0.5, 0.5) && !rule.is_near(0.0, 0.51, 0.51));
         assert!(rule.is_near(f64::NAN, f64::NAN, 0.0) && !rule.is_near(f64::NAN, 0.0, 1.0));
@@ -137,14 +192,41 @@ mod tests {
     #[test]
     fn a_name_of_one_procedure_goes_before_that_of_all_and_a_figure_takes_the_widest() {
         let tolerances = tolerances(1e-9);
-        assert_eq!(tolerances.column("k0", "restoring_force_n"), Rule { relative: 1e-3, absolute: FLOOR });
-        assert_eq!(tolerances.column("hit", "restoring_force_n"), Rule { relative: 1e-9, absolute: 0.1 });
+        assert_eq!(
+            tolerances.column("k0", "restoring_force_n"),
+            Rule {
+                relative: 1e-3,
+                absolute: FLOOR
+            }
+        );
+        assert_eq!(
+            tolerances.column("hit", "restoring_force_n"),
+            Rule {
+                relative: 1e-9,
+                absolute: 0.1
+            }
+        );
         assert_eq!(tolerances.column("hit", "time_s"), tolerances.general());
         assert_eq!(tolerances.result("hit", "max_force").absolute, 2.0);
         assert_eq!(tolerances.result("k0", "max_force"), tolerances.general());
-        assert_eq!(tolerances.axis("k0", Dimension::FORCE), Rule { relative: 1e-3, absolute: 0.1 });
-        assert_eq!(tolerances.axis("hit", Dimension::FORCE), Rule { relative: 1e-9, absolute: 2.0 });
-        assert_eq!(tolerances.axis("hit", Dimension::LENGTH), tolerances.general());
+        assert_eq!(
+            tolerances.axis("k0", Dimension::FORCE),
+            Rule {
+                relative: 1e-3,
+                absolute: 0.1
+            }
+        );
+        assert_eq!(
+            tolerances.axis("hit", Dimension::FORCE),
+            Rule {
+                relative: 1e-9,
+                absolute: 2.0
+            }
+        );
+        assert_eq!(
+            tolerances.axis("hit", Dimension::LENGTH),
+            tolerances.general()
+        );
         assert_eq!(tolerances.follows(Dimension::FORCE).absolute, 2.0);
     }
 }

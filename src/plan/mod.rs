@@ -1,51 +1,53 @@
-//! The checked plan: SI only, every name resolved, nothing optional that is required. `check` makes it, `run` reads
-//! it; nobody after `check` sees text but what the plan carries for the certificate.
+//! The checked plan: SI only, every name resolved, every required value present. `language` makes
+//! it, `run` and `report` read it. It contains text only where a report prints it.
 
-mod approach;
-mod axis;
-mod behaviour;
-mod cycle;
-mod devices;
-mod escalate;
-mod figure;
-mod frame;
-mod golden;
-mod identification;
-mod integrator;
-mod known_steps;
-mod limits;
-mod portal;
+pub mod formula;
+pub mod procedure;
 mod record_size;
+pub mod report;
 mod rig;
-mod stepping;
-mod undeclared;
-mod unload;
+pub mod specimen;
 
-use crate::formula::{Formula, ResultReference};
-use crate::quantity::Dimension;
+use crate::physics::contact::contact_time_step::Approach;
+use crate::plan::formula::{Formula, ResultReference};
 use crate::uncertainty::Source;
+use crate::units::Dimension;
 
-pub use axis::{AxisCalibration, AxisPlan};
-pub use behaviour::{Beam, Behaviour, Bolted, Breaks, Capping, Deterioration, Ends, Pinching, Table, Unloading};
-pub use cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
-pub use devices::Behind;
-pub use escalate::{Between, BlowOn, Escalate, MOST_BLOWS};
-pub use figure::{Figure, FigureKind, MOST_TOGETHER};
-pub use frame::{Frame, Ground, MOST_STOREYS, Shake, ShakeDamping, Storey, StoreyImpact, rayleigh};
-pub use golden::{Golden, NearColumn, NearResult, Tolerance};
-pub use identification::{
-    BreakCount, DampingSweep, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel,
+// The parameters of a model stand beside it, in `physics`.
+pub use crate::physics::impact::Until;
+pub use crate::physics::integrator::Integrator;
+pub use crate::physics::specimen::{
+    Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading,
 };
-pub use integrator::{Integrator, Mode};
-pub use limits::{Interval, Limits};
-pub use portal::{ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses};
+pub use crate::physics::structure::beam::{Beam, Ends};
+pub use crate::physics::structure::frame::{Frame, Storey};
+pub use crate::physics::structure::portal::{
+    ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
+};
+
+pub use procedure::cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use procedure::identification::{
+    BreakCount, DampingSweep, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
+    WatchedModel,
+};
+pub use procedure::impact_series::{Between, BlowOn, Escalate, MOST_BLOWS};
+pub use procedure::mode::Mode;
+pub use procedure::stepping::{MOST_STEPS, Stepping, step_count, steps_in};
+pub use procedure::structure::Structure;
+pub use procedure::unload::{FrameUnload, Unload};
 pub use record_size::{Counts, FRAME, MOST_RECORD_BYTES, WALL};
+pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};
+pub use report::golden::{Golden, NearColumn, NearResult, Tolerance};
+pub use report::undeclared::Dependence;
+pub use rig::axis::{AxisCalibration, AxisPlan};
+pub use rig::devices::Behind;
+pub use rig::limits::{Interval, Limits};
 pub use rig::{
-    Calibration, Datum, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber, PortPlan, ReadingErrors,
-    ReadingRules, RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
+    Calibration, Datum, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber,
+    PortPlan, ReadingErrors, ReadingRules, RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED,
+    VirtualLink, ZeroAfter,
 };
-pub use stepping::{MOST_STEPS, Stepping, step_count, steps_in};
-pub use unload::{FrameUnload, Unload};
+pub use specimen::frame::{Ground, MOST_STOREYS, Shake, ShakeDamping, StoreyImpact, rayleigh};
 
 /// All that a run needs to know beforehand. Numbers are SI, names are resolved to places in its lists.
 #[derive(Clone, Debug)]
@@ -80,14 +82,18 @@ impl Plan {
     /// The specimen that stands on the rig: the one that the first procedure names, else the first.
     #[must_use]
     pub fn specimen_on_the_rig(&self) -> Option<&Specimen> {
-        let named = self.procedures.iter().find_map(|procedure| procedure.kind.specimen());
+        let named = self
+            .procedures
+            .iter()
+            .find_map(|procedure| procedure.kind.specimen());
         self.specimens.get(named.unwrap_or(0))
     }
 
     /// Actuators that its rig needs, each with a load cell.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> usize {
-        self.specimen_on_the_rig().map_or(1, Specimen::degrees_of_freedom)
+        self.specimen_on_the_rig()
+            .map_or(1, Specimen::degrees_of_freedom)
     }
 }
 
@@ -174,7 +180,21 @@ impl Striker {
     #[must_use]
     pub fn new(name: &str, mass: f64, velocity: f64) -> Self {
         let (mass_uncertainty, velocity_uncertainty) = (0.0, 0.0);
-        Self { name: name.to_owned(), mass, mass_uncertainty, velocity, velocity_uncertainty, gap: 0.0, gravity: 0.0 }
+        Self {
+            name: name.to_owned(),
+            mass,
+            mass_uncertainty,
+            velocity,
+            velocity_uncertainty,
+            gap: 0.0,
+            gravity: 0.0,
+        }
+    }
+
+    /// As it meets the structure, under a contact of stiffness `hertz` (N/m^1.5) where that is finite.
+    #[must_use]
+    pub fn approach(&self, hertz: Option<f64>) -> Approach {
+        Approach::after_gap(self.mass, self.velocity, self.gap, self.gravity, hertz)
     }
 }
 
@@ -279,28 +299,6 @@ pub enum Contact {
     },
 }
 
-/// When an impact is over, before its `duration` at the latest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Until {
-    /// The first step end with Ẋs ≤ 0 and Ẋ ≤ 0.
-    StrikerStop,
-    /// Striker and structure are apart for good.
-    Rebound,
-    /// The whole `duration`.
-    Duration,
-}
-
-impl Until {
-    /// Whether a run is over whose striker has stopped, or is apart for good, as these say.
-    pub fn reached(self, stopped: impl FnOnce() -> bool, apart: impl FnOnce() -> bool) -> bool {
-        match self {
-            Self::StrikerStop => stopped(),
-            Self::Rebound => apart(),
-            Self::Duration => false,
-        }
-    }
-}
-
 /// When a person is asked to look.
 #[derive(Clone, Debug)]
 pub enum InspectTrigger {
@@ -341,19 +339,23 @@ pub struct Condition {
 impl Condition {
     /// Adds the source of every number that it states with an uncertainty, each once.
     pub fn collect_stated(&self, into: &mut Vec<Source>) {
-        self.formulas().for_each(|formula| formula.collect_stated(into));
+        self.formulas()
+            .for_each(|formula| formula.collect_stated(into));
     }
 
     /// Adds every result that it reads, each once.
     pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
-        self.formulas().for_each(|formula| formula.collect_references(into));
+        self.formulas()
+            .for_each(|formula| formula.collect_references(into));
     }
 
     /// Every formula of it: what is held, and what it is held against.
     pub fn formulas(&self) -> impl Iterator<Item = &Formula> {
         let (against, more) = match &self.test {
             Test::Compare { limit, .. } => (limit, None),
-            Test::Within { target, tolerance, .. } => (target, Some(tolerance)),
+            Test::Within {
+                target, tolerance, ..
+            } => (target, Some(tolerance)),
         };
         [&self.value, against].into_iter().chain(more)
     }

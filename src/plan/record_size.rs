@@ -59,22 +59,43 @@ impl Counts {
     #[must_use]
     pub fn stepped(mode: Mode, steps: f64) -> Self {
         let each = match mode {
-            Mode::StepAndPause => Self { targets: 1.0, readings: 1.0, steps: 1.0, ways: 0.0 },
-            Mode::Continuous { .. } => Self { targets: 2.0, ways: 2.0, readings: 5.0, steps: 1.0 },
+            Mode::StepAndPause => Self {
+                targets: 1.0,
+                readings: 1.0,
+                steps: 1.0,
+                ways: 0.0,
+            },
+            Mode::Continuous { .. } => Self {
+                targets: 2.0,
+                ways: 2.0,
+                readings: 5.0,
+                steps: 1.0,
+            },
         };
-        each.times(steps).plus(Self { targets: 1.0, ways: 1.0, readings: 5.0, steps: 1.0 })
+        each.times(steps).plus(Self {
+            targets: 1.0,
+            ways: 1.0,
+            readings: 5.0,
+            steps: 1.0,
+        })
     }
 
     /// Bytes of the record that they take, as long as their longest numbers make them.
     #[must_use]
     pub fn bytes(self, plan: &Plan) -> f64 {
         let axes = f64::from(u32::try_from(plan.degrees_of_freedom()).unwrap_or(u32::MAX));
-        let (raw, wire) = plan.rig.link.as_real().map_or((0.0, 0.0), |link| (raw(link, axes), WIRE + AXIS * (axes - 1.0) + WALL));
+        let (raw, wire) = plan.rig.link.as_real().map_or((0.0, 0.0), |link| {
+            (raw(link, axes), WIRE + AXIS * (axes - 1.0) + WALL)
+        });
         let target = LINE + wire + 90.0 + NUMBER * (4.0 + 2.0 * axes);
         let path = LINE + 20.0 + 2.0 * NUMBER + 5.0 * axes * (NUMBER + 18.0);
-        let reading = LINE + 20.0 + NUMBER * (1.0 + 2.0 * axes) + raw + if raw > 0.0 { WALL } else { 0.0 };
+        let reading =
+            LINE + 20.0 + NUMBER * (1.0 + 2.0 * axes) + raw + if raw > 0.0 { WALL } else { 0.0 };
         let step = LINE + 8.0 * (NUMBER + 5.0) + (axes - 1.0) * 5.0 * (NUMBER + 5.0);
-        self.targets * target + self.ways * path + MENDED * self.readings * reading + self.steps * step
+        self.targets * target
+            + self.ways * path
+            + MENDED * self.readings * reading
+            + self.steps * step
     }
 }
 
@@ -88,6 +109,9 @@ fn raw(link: &RealLink, axes: f64) -> f64 {
         Dialect::Scpi { newtons_per_unit } => newtons_per_unit.iter().map(|_| 60.0).sum(),
         Dialect::Hx711 | Dialect::Indicator | Dialect::Mark10Gauge => 60.0,
     };
-    let devices = link.devices().into_iter().map(|(_, device)| reply(&device.dialect));
+    let devices = link
+        .devices()
+        .into_iter()
+        .map(|(_, device)| reply(&device.dialect));
     f64::from(link.readings.samples.max(1)) * devices.sum::<f64>()
 }

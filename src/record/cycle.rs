@@ -1,7 +1,7 @@
 //! What a `cycle` records: every reading, and what each cycle came to.
 
-use crate::mechanics::cyclic::{Loop, LoopPoint};
-use crate::mechanics::multilinear_fit::MultilinearFit;
+use crate::physics::identification::cyclic::{Loop, LoopPoint};
+use crate::physics::identification::multilinear_fit::MultilinearFit;
 
 /// One reading of a cycle: the mean of the samples at a target, or one on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,11 @@ impl CycleStep {
     /// As a point of its loop.
     #[must_use]
     pub fn point(&self) -> LoopPoint {
-        LoopPoint { command: self.command, displacement: self.displacement, force: self.restoring_force }
+        LoopPoint {
+            command: self.command,
+            displacement: self.displacement,
+            force: self.restoring_force,
+        }
     }
 }
 
@@ -70,13 +74,28 @@ impl CycleHistory {
     #[must_use]
     pub fn backbone_points(&self) -> Vec<(f64, f64)> {
         let middle = self.middle();
-        let folded = |(x, force): (f64, f64)| if x < middle { (middle - x, -force) } else { (x - middle, force) };
-        let first = self.steps.first().map(|step| (step.displacement - middle, step.restoring_force));
+        let folded = |(x, force): (f64, f64)| {
+            if x < middle {
+                (middle - x, -force)
+            } else {
+                (x - middle, force)
+            }
+        };
+        let first = self
+            .steps
+            .first()
+            .map(|step| (step.displacement - middle, step.restoring_force));
         // One-sided cycles have an end in the middle, where they come back to: that is no backbone.
         let far = |(x, _): &(f64, f64), amplitude: f64| (x - middle).abs() > 0.5 * amplitude;
         let first_cycles = self.cycles.iter().filter(|cycle| cycle.repeat == 1);
-        let ends =
-            first_cycles.flat_map(|cycle| cycle.found.ends.into_iter().filter(|end| far(end, cycle.amplitude)).map(folded));
+        let ends = first_cycles.flat_map(|cycle| {
+            cycle
+                .found
+                .ends
+                .into_iter()
+                .filter(|end| far(end, cycle.amplitude))
+                .map(folded)
+        });
         first.into_iter().chain(ends).collect()
     }
 }

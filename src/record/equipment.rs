@@ -4,9 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plan::{Dialect, Interval, Limits, Link, Plan, RigPlan};
-use crate::quantity::Dimension;
-use crate::quantity::display::stated;
 use crate::rig::{DeclaredNoise, Identity};
+use crate::units::Dimension;
+use crate::units::display::stated;
 
 /// The rig that answered, what its numbers mean, and what nothing may drive it past.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,7 +32,11 @@ pub struct Device {
 impl Device {
     #[must_use]
     pub fn of(identity: &Identity, noise: DeclaredNoise) -> Self {
-        Self { identity: identity.clone(), resolution: noise.resolution, noise: noise.force }
+        Self {
+            identity: identity.clone(),
+            resolution: noise.resolution,
+            noise: noise.force,
+        }
     }
 }
 
@@ -133,55 +137,109 @@ impl Equipment {
                     .collect::<Vec<_>>(),
             );
         }
-        Self { device, channels: axes.flat_map(|axis| channels(&plan.rig, axis)).collect(), limits }
+        Self {
+            device,
+            channels: axes.flat_map(|axis| channels(&plan.rig, axis)).collect(),
+            limits,
+        }
     }
 
     /// What makes the same number another quantity than before, if anything does.
     #[must_use]
     pub fn measures_otherwise(&self, now: &Self) -> Option<&'static str> {
         let scale = |channel: &Channel| {
-            let resolution = if channel.measures == Measures::Displacement { channel.doubt.to_bits() } else { 0 };
-            (channel.axis, channel.measures, channel.given_in, channel.factor.to_bits(), channel.zero.to_bits(), resolution)
+            let resolution = if channel.measures == Measures::Displacement {
+                channel.doubt.to_bits()
+            } else {
+                0
+            };
+            (
+                channel.axis,
+                channel.measures,
+                channel.given_in,
+                channel.factor.to_bits(),
+                channel.zero.to_bits(),
+                resolution,
+            )
         };
-        if !self.channels.iter().map(scale).eq(now.channels.iter().map(scale)) {
+        if !self
+            .channels
+            .iter()
+            .map(scale)
+            .eq(now.channels.iter().map(scale))
+        {
             return Some("calibration");
         }
-        (self.device.resolution.to_bits() != now.device.resolution.to_bits()).then_some("resolution")
+        (self.device.resolution.to_bits() != now.device.resolution.to_bits())
+            .then_some("resolution")
     }
 
     /// Limits and certificates that are no longer those, in words.
     #[must_use]
     pub fn changes(&self, now: &Self) -> Vec<String> {
-        let mut named: Vec<(&str, Option<usize>)> =
-            self.limits.iter().chain(&now.limits).map(|limit| (limit.quantity.as_str(), limit.axis)).collect();
+        let mut named: Vec<(&str, Option<usize>)> = self
+            .limits
+            .iter()
+            .chain(&now.limits)
+            .map(|limit| (limit.quantity.as_str(), limit.axis))
+            .collect();
         named.sort_unstable();
         named.dedup();
         let limit = |of: &Self, name: (&str, Option<usize>)| {
-            of.limits.iter().find(|limit| (limit.quantity.as_str(), limit.axis) == name).cloned()
+            of.limits
+                .iter()
+                .find(|limit| (limit.quantity.as_str(), limit.axis) == name)
+                .cloned()
         };
-        let told = |limit: Option<HeldLimit>| limit.map_or_else(|| "none".to_owned(), |limit| limit.told());
-        let limits = named.into_iter().filter(|name| limit(self, *name) != limit(now, *name)).map(|name| {
-            let axis = name.1.map_or_else(String::new, |axis| format!(" of axis {axis}"));
-            format!("limit {}{axis}: {} became {}", name.0, told(limit(self, name)), told(limit(now, name)))
-        });
+        let told = |limit: Option<HeldLimit>| {
+            limit.map_or_else(|| "none".to_owned(), |limit| limit.told())
+        };
+        let limits = named
+            .into_iter()
+            .filter(|name| limit(self, *name) != limit(now, *name))
+            .map(|name| {
+                let axis = name
+                    .1
+                    .map_or_else(String::new, |axis| format!(" of axis {axis}"));
+                format!(
+                    "limit {}{axis}: {} became {}",
+                    name.0,
+                    told(limit(self, name)),
+                    told(limit(now, name))
+                )
+            });
         let traced = |of: &Self| {
-            let said = |channel: &Channel| (channel.certificate.clone(), channel.due.clone(), channel.uncertainty.to_bits());
+            let said = |channel: &Channel| {
+                (
+                    channel.certificate.clone(),
+                    channel.due.clone(),
+                    channel.uncertainty.to_bits(),
+                )
+            };
             of.channels.iter().map(said).collect()
         };
         let (was, is): (Vec<_>, Vec<_>) = (traced(self), traced(now));
-        limits.chain((was != is).then(|| "another calibration certificate is named".to_owned())).collect()
+        limits
+            .chain((was != is).then(|| "another calibration certificate is named".to_owned()))
+            .collect()
     }
 }
 
 impl HeldLimit {
     #[must_use]
     pub fn interval(&self) -> Interval {
-        Interval { low: self.low.unwrap_or(f64::NEG_INFINITY), high: self.high.unwrap_or(f64::INFINITY) }
+        Interval {
+            low: self.low.unwrap_or(f64::NEG_INFINITY),
+            high: self.high.unwrap_or(f64::INFINITY),
+        }
     }
 
     #[must_use]
     pub fn dimension(&self) -> Dimension {
-        let known = Limits::NONE.named().into_iter().find(|(name, ..)| *name == self.quantity);
+        let known = Limits::NONE
+            .named()
+            .into_iter()
+            .find(|(name, ..)| *name == self.quantity);
         known.map_or(Dimension::NUMBER, |(.., dimension)| dimension)
     }
 
@@ -191,7 +249,9 @@ impl HeldLimit {
     }
 
     fn told(&self) -> String {
-        let end = |end: Option<f64>| end.map_or_else(|| "any".to_owned(), |end| stated(end, self.dimension()));
+        let end = |end: Option<f64>| {
+            end.map_or_else(|| "any".to_owned(), |end| stated(end, self.dimension()))
+        };
         format!("{} .. {}", end(self.low), end(self.high))
     }
 }
@@ -205,20 +265,29 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
         _ => (GivenIn::Units, 1.0),
     };
     let (sign, calibration) = (rig.sign_of(axis), rig.calibration_of(axis));
-    let (force_given, force, zero) = match link.map(|link| link.weighed_by(axis)).map(|(cell, channel)| (&cell.dialect, channel))
+    let (force_given, force, zero) = match link
+        .map(|link| link.weighed_by(axis))
+        .map(|(cell, channel)| (&cell.dialect, channel))
     {
         Some((Dialect::Modbus(map), _)) => (GivenIn::Counts, map.force_unit, 0.0),
-        Some((Dialect::Scpi { newtons_per_unit }, channel)) => {
-            (GivenIn::Counts, newtons_per_unit.get(channel).copied().unwrap_or(1.0), 0.0)
-        }
-        Some((dialect, _)) if dialect.counts() => {
-            (GivenIn::Counts, calibration.newtons_per_count.unwrap_or(1.0), calibration.zero_count)
-        }
+        Some((Dialect::Scpi { newtons_per_unit }, channel)) => (
+            GivenIn::Counts,
+            newtons_per_unit.get(channel).copied().unwrap_or(1.0),
+            0.0,
+        ),
+        Some((dialect, _)) if dialect.counts() => (
+            GivenIn::Counts,
+            calibration.newtons_per_count.unwrap_or(1.0),
+            calibration.zero_count,
+        ),
         _ => (GivenIn::Units, 1.0, 0.0),
     };
     let (resolution, noise) = match &rig.link {
         Link::Virtual(link) => (link.resolution, link.noise),
-        Link::Real(link) => (link.readings_of(axis).resolution, link.readings_of(axis).noise),
+        Link::Real(link) => (
+            link.readings_of(axis).resolution,
+            link.readings_of(axis).noise,
+        ),
     };
     let channel = |measures, given_in, factor: f64, zero, doubt, uncertainty| Channel {
         axis: axis + 1,
@@ -236,13 +305,21 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
     };
     let ends = |range: Option<Interval>| range.map(|Interval { low, high }| [low, high]);
     let cell = link.map(|link| link.readings_of(axis).force_range);
-    let cell = cell.map(|Interval { low, high }| [low, high]).filter(|ends| ends.iter().all(|end| end.is_finite()));
-    let displacement =
-        channel(Measures::Displacement, length_given, length, 0.0, resolution, calibration.displacement_uncertainty);
-    let (certificate, due) = calibration
-        .displacement
-        .clone()
-        .map_or((calibration.reference.clone(), calibration.due.clone()), |(own, due)| (Some(own), due));
+    let cell = cell
+        .map(|Interval { low, high }| [low, high])
+        .filter(|ends| ends.iter().all(|end| end.is_finite()));
+    let displacement = channel(
+        Measures::Displacement,
+        length_given,
+        length,
+        0.0,
+        resolution,
+        calibration.displacement_uncertainty,
+    );
+    let (certificate, due) = calibration.displacement.clone().map_or(
+        (calibration.reference.clone(), calibration.due.clone()),
+        |(own, due)| (Some(own), due),
+    );
     [
         Channel {
             certificate,
@@ -255,16 +332,32 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
             class: calibration.force_class.clone(),
             range: cell,
             calibrated: ends(calibration.force_calibrated),
-            ..channel(Measures::Force, force_given, force, zero, noise, calibration.force_uncertainty)
+            ..channel(
+                Measures::Force,
+                force_given,
+                force,
+                zero,
+                noise,
+                calibration.force_uncertainty,
+            )
         },
     ]
 }
 
 fn held(limits: &Limits, axis: Option<usize>) -> Vec<HeldLimit> {
     let end = |end: f64| Some(end).filter(|end| end.is_finite());
-    let bounded = limits.held().named().into_iter().filter(|(_, interval, _)| interval.is_bounded());
+    let bounded = limits
+        .held()
+        .named()
+        .into_iter()
+        .filter(|(_, interval, _)| interval.is_bounded());
     bounded
-        .map(|(name, Interval { low, high }, _)| HeldLimit { quantity: name.to_owned(), axis, low: end(low), high: end(high) })
+        .map(|(name, Interval { low, high }, _)| HeldLimit {
+            quantity: name.to_owned(),
+            axis,
+            low: end(low),
+            high: end(high),
+        })
         .collect()
 }
 
@@ -272,12 +365,18 @@ fn held(limits: &Limits, axis: Option<usize>) -> Vec<HeldLimit> {
 mod tests {
     use super::*;
     use crate::plan::Calibration;
-    use crate::run::testing::elastic_plan;
+    use crate::tests::testing::elastic_plan;
 
     fn equipment(plan: &Plan) -> Equipment {
         let unknown = String::new;
-        let identity =
-            Identity { name: unknown(), model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: true };
+        let identity = Identity {
+            name: unknown(),
+            model: unknown(),
+            serial: unknown(),
+            firmware: unknown(),
+            boot: None,
+            simulated: true,
+        };
         Equipment::of(plan, Device::of(&identity, DeclaredNoise::default()))
     }
 
@@ -287,18 +386,36 @@ mod tests {
         let was = equipment(&plan);
         let mut turned = plan.clone();
         turned.rig.sign = -1.0;
-        assert_eq!(was.measures_otherwise(&equipment(&turned)), Some("calibration"));
+        assert_eq!(
+            was.measures_otherwise(&equipment(&turned)),
+            Some("calibration")
+        );
         let mut narrow = plan.clone();
-        narrow.limits.force = Interval { low: f64::NEG_INFINITY, high: 1000.0 };
-        narrow.limits.tracking_energy_error = Interval { low: 0.0, high: 0.02 };
+        narrow.limits.force = Interval {
+            low: f64::NEG_INFINITY,
+            high: 1000.0,
+        };
+        narrow.limits.tracking_energy_error = Interval {
+            low: 0.0,
+            high: 0.02,
+        };
         let now = equipment(&narrow);
         assert_eq!(was.measures_otherwise(&now), None);
         assert_eq!(
             was.changes(&now),
-            ["limit force: none became any .. 1 kN", "limit tracking_energy_error: 0 .. 0.05 became 0 .. 0.02"]
+            [
+                "limit force: none became any .. 1 kN",
+                "limit tracking_energy_error: 0 .. 0.05 became 0 .. 0.02"
+            ]
         );
         let mut traced = plan;
-        traced.rig.calibration = Calibration { reference: Some("ACME 17".to_owned()), ..Calibration::default() };
-        assert_eq!(was.changes(&equipment(&traced)), ["another calibration certificate is named"]);
+        traced.rig.calibration = Calibration {
+            reference: Some("ACME 17".to_owned()),
+            ..Calibration::default()
+        };
+        assert_eq!(
+            was.changes(&equipment(&traced)),
+            ["another calibration certificate is named"]
+        );
     }
 }

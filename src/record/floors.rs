@@ -1,9 +1,9 @@
 //! What a frame did, floor by floor: the storeys of a step whatever moved them, and the impact on one of them. In: numbers
 //! of a run, SI. It computes no motion.
 
-use super::{ImpactHistory, Modes};
-use crate::mechanics::frame::{drifts, shears};
-use crate::mechanics::monitor::Tracking;
+use super::Modes;
+use crate::physics::frame::{drifts, shears};
+use crate::physics::tracking::monitor::Tracking;
 
 /// What the steps of every frame tell, an entry a floor from the ground up; empty where nothing was computed.
 #[derive(Clone, Copy, Debug)]
@@ -132,16 +132,13 @@ impl Floors for FloorStep {
     }
 }
 
-/// An impact on one floor of a frame.
+/// A frame with one floor struck.
 #[derive(Clone, Debug)]
-pub struct StoreyImpactHistory {
-    /// The striker and the floor that it strikes, step by step; the energies are those of the whole frame, the tracking of
-    /// all axes together, the tangent that of the struck storey.
-    pub blow: ImpactHistory,
-    /// Every floor, a row for each step of the blow.
-    pub floors: Vec<FloorStep>,
+pub struct StruckFrame {
     /// The struck floor, from 0.
     pub struck: usize,
+    /// Every floor, a row for each step of the impact.
+    pub floors: Vec<FloorStep>,
     /// None where it did not begin.
     pub modes: Option<Modes>,
     /// Fraction of critical damping of each mode.

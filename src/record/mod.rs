@@ -1,37 +1,37 @@
-//! The record of a run: everything that happened, typed, SI. `run` writes it; verdict, tables, figures and
-//! certificates are functions of it.
+//! The record of a run: every event, reading and result, typed, in SI. `run` and `procedures` write
+//! it; verdict, tables, figures and reports are functions of it. It does not know how it is
+//! printed.
 
 mod cycle;
-mod drift;
 pub mod equipment;
-mod escalate;
 mod floors;
+mod impact_series;
 pub mod journal;
-mod reached;
 mod unload;
+mod zero_drift;
 
 use serde::{Deserialize, Serialize};
 
-use crate::formula::{Estimate, ResultReference, ResultValue, Results};
-pub use crate::mechanics::backbone::BilinearFit;
-pub use crate::mechanics::contact::StepState;
-use crate::mechanics::energy::Energies;
-pub use crate::mechanics::frame::{FrameEnergies, Modes};
-pub use crate::mechanics::identification::LineFit;
-use crate::mechanics::monitor::Tracking;
-pub use crate::mechanics::multilinear_fit::MultilinearFit;
-pub use crate::mechanics::reached_fit::{LawFit, ReachedFit};
-pub use crate::mechanics::relaxation::{Hold, RelaxationFit};
-use crate::mechanics::summary::still_rising;
-use crate::quantity::Dimension;
+pub use crate::physics::contact::state::StepState;
+pub use crate::physics::frame::{FrameEnergies, Modes};
+pub use crate::physics::identification::LineFit;
+pub use crate::physics::identification::backbone::BilinearFit;
+pub use crate::physics::identification::multilinear_fit::MultilinearFit;
+use crate::physics::impact::energy::Energies;
+use crate::physics::impact::summary::still_rising;
+pub use crate::physics::relaxation::fit::{Hold, RelaxationFit};
+pub use crate::physics::relaxation::reached_fit::{LawFit, ReachedFit};
+use crate::physics::tracking::monitor::Tracking;
+use crate::plan::formula::{Estimate, ResultReference, ResultValue, Results};
 use crate::rig::Identity;
 use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
+use crate::units::Dimension;
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
-pub use drift::{AxisDrift, Beyond, Drift, Zero};
-pub use escalate::{Blow, BlowHistory, EscalateHistory};
-pub use floors::{FloorStep, Floors, FloorsAt, StoreyImpactHistory};
+pub use floors::{FloorStep, Floors, FloorsAt, StruckFrame};
+pub use impact_series::{Blow, EscalateHistory};
 pub use unload::{Rest, UnloadStep};
+pub use zero_drift::{AxisDrift, Beyond, Drift, Zero};
 
 /// What a run measured and did, all numbers in SI. Every output is a function of it, its plan and its assessment.
 #[derive(Clone, Debug)]
@@ -152,7 +152,6 @@ pub enum History {
     Ramp(RampHistory),
     Sweep(SweepHistory),
     Impact(ImpactHistory),
-    StoreyImpact(StoreyImpactHistory),
     Shake(ShakeHistory),
     Cycle(CycleHistory),
     Escalate(EscalateHistory),
@@ -281,10 +280,14 @@ pub struct ImpactStep {
     pub tracking: Tracking,
 }
 
-/// An impact on one degree of freedom, step by step.
+/// An impact, step by step: on one degree of freedom, or on one floor of a frame.
 #[derive(Clone, Debug)]
 pub struct ImpactHistory {
+    /// The striker and what it strikes; of a frame the struck floor and storey, with the energies of the whole frame and the tracking of
+    /// all axes together.
     pub steps: Vec<ImpactStep>,
+    /// None of one degree of freedom.
+    pub frame: Option<StruckFrame>,
     /// s
     pub time_step: f64,
     /// s
@@ -295,8 +298,14 @@ impl ImpactHistory {
     /// Whether the structure still moved on past its largest displacement as the record ends: that is no peak then.
     #[must_use]
     pub fn still_rising(&self) -> bool {
-        let largest = self.steps.iter().map(|step| step.computed).fold(f64::NEG_INFINITY, f64::max);
-        self.steps.last().is_some_and(|last| still_rising(last.velocity, last.computed, largest))
+        let largest = self
+            .steps
+            .iter()
+            .map(|step| step.computed)
+            .fold(f64::NEG_INFINITY, f64::max);
+        self.steps
+            .last()
+            .is_some_and(|last| still_rising(last.velocity, last.computed, largest))
     }
 }
 
@@ -363,10 +372,18 @@ impl History {
         let of_blow = |blow: &ImpactHistory| (blow.time_step, blow.critical_time_step);
         let mut steps = match self {
             Self::Impact(blow) => vec![of_blow(blow)],
-            Self::StoreyImpact(history) => vec![of_blow(&history.blow)],
             Self::Shake(history) => vec![(history.time_step, history.critical_time_step)],
-            Self::Escalate(history) => history.blows.iter().map(|blow| of_blow(blow.impact())).collect(),
-            Self::Ramp(_) | Self::Sweep(_) | Self::Cycle(_) | Self::Move(_) | Self::FrameUnload(_) | Self::Inspect => Vec::new(),
+            Self::Escalate(history) => history
+                .blows
+                .iter()
+                .map(|blow| of_blow(&blow.history))
+                .collect(),
+            Self::Ramp(_)
+            | Self::Sweep(_)
+            | Self::Cycle(_)
+            | Self::Move(_)
+            | Self::FrameUnload(_)
+            | Self::Inspect => Vec::new(),
         };
         steps.retain(|(step, critical)| step > critical);
         steps.first().copied()
@@ -376,16 +393,20 @@ impl History {
     #[must_use]
     pub fn degrees(&self, result: &str) -> Option<f64> {
         match self {
-            Self::Ramp(RampHistory { reached: Some(fit), .. }) if ReachedFit::RESULTS.contains(&result) => {
-                Some(fit.best().degrees)
-            }
+            Self::Ramp(RampHistory {
+                reached: Some(fit), ..
+            }) if ReachedFit::RESULTS.contains(&result) => Some(fit.best().degrees),
             Self::Ramp(ramp) => match (result, ramp.relaxation.as_deref()) {
                 ("relaxed_stiffness", Some(fit)) => Some(fit.degrees_of_stiffness()),
-                ("time_constant" | "branch_stiffness" | "remaining_relaxation" | "needed_pause", Some(fit)) => Some(fit.degrees),
+                (
+                    "time_constant" | "branch_stiffness" | "remaining_relaxation" | "needed_pause",
+                    Some(fit),
+                ) => Some(fit.degrees),
                 _ => {
                     let line = ramp.fit.map(|fit| fit.degrees);
                     let bilinear = || ramp.bilinear.as_ref().map(|fit| fit.degrees);
-                    line.or_else(bilinear).or_else(|| ramp.multilinear.as_ref().map(|fit| fit.degrees))
+                    line.or_else(bilinear)
+                        .or_else(|| ramp.multilinear.as_ref().map(|fit| fit.degrees))
                 }
             },
             Self::Sweep(sweep) => sweep.fit.map(|fit| fit.degrees),
@@ -399,11 +420,22 @@ impl Record {
     /// The procedure of this name; None where the run did not get to it.
     #[must_use]
     pub fn procedure(&self, name: &str) -> Option<&ProcedureRecord> {
-        self.procedures.iter().find(|procedure| procedure.name == name)
+        self.procedures
+            .iter()
+            .find(|procedure| procedure.name == name)
     }
 }
 
 impl ProcedureRecord {
+    /// The number that a result of this name has; None of a list, and where this run gave none.
+    #[must_use]
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.result(name).map(|result| &result.value) {
+            Some(ResultValue::Number { value, .. }) => *value,
+            _ => None,
+        }
+    }
+
     /// The result of this name.
     #[must_use]
     pub fn result(&self, name: &str) -> Option<&NamedResult> {
@@ -416,7 +448,9 @@ impl NamedResult {
     #[must_use]
     pub fn entry_uncertainties(&self) -> Vec<Option<f64>> {
         match &self.value {
-            ResultValue::List(values) if !self.contributions.is_empty() => combined_entries(&self.contributions, values.len()),
+            ResultValue::List(values) if !self.contributions.is_empty() => {
+                combined_entries(&self.contributions, values.len())
+            }
             _ => Vec::new(),
         }
     }
@@ -425,8 +459,17 @@ impl NamedResult {
     #[must_use]
     pub fn contributions_of(&self, reference: ResultReference) -> Vec<Contribution> {
         match self.value {
-            ResultValue::Number { uncertainty: Some(own), .. } if self.contributions.is_empty() => {
-                vec![Contribution::new(Source::Fit { procedure: reference.procedure, result: self.name }, own)]
+            ResultValue::Number {
+                uncertainty: Some(own),
+                ..
+            } if self.contributions.is_empty() => {
+                vec![Contribution::new(
+                    Source::Fit {
+                        procedure: reference.procedure,
+                        result: self.name,
+                    },
+                    own,
+                )]
             }
             _ => self.contributions.clone(),
         }
@@ -438,41 +481,67 @@ impl NamedResult {
     #[must_use]
     pub fn no_uncertainty(&self, kind: &str) -> Option<String> {
         let words: Vec<&str> = kind.split(' ').collect();
-        block_of_words(&words)?.result(self.name).filter(|result| result.measured)?;
+        block_of_words(&words)?
+            .result(self.name)
+            .filter(|result| result.measured)?;
         let lacks = match &self.value {
             ResultValue::Number { value, uncertainty } => value.is_some() && uncertainty.is_none(),
             ResultValue::List(values) => {
                 let known = self.entry_uncertainties();
-                let lacks = |(entry, value): (usize, &f64)| value.is_finite() && known.get(entry).is_none_or(Option::is_none);
+                let lacks = |(entry, value): (usize, &f64)| {
+                    value.is_finite() && known.get(entry).is_none_or(Option::is_none)
+                };
                 values.iter().enumerate().any(lacks)
             }
         };
-        lacks.then(|| format!("no uncertainty of `{}` is known, and a guard band needs one", self.name))
+        lacks.then(|| {
+            format!(
+                "no uncertainty of `{}` is known, and a guard band needs one",
+                self.name
+            )
+        })
     }
 }
 
 impl Results for Record {
     /// Procedures are recorded in the plan's order, so that their place there is their place here.
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
-        let found = self.procedures.get(reference.procedure.0)?.result(reference.name)?;
+        let found = self
+            .procedures
+            .get(reference.procedure.0)?
+            .result(reference.name)?;
         Some(found.value.clone())
     }
 
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
-        let found = self.procedures.get(reference.procedure.0).and_then(|procedure| procedure.result(reference.name));
+        let found = self
+            .procedures
+            .get(reference.procedure.0)
+            .and_then(|procedure| procedure.result(reference.name));
         found.map_or_else(Vec::new, |found| found.contributions_of(reference))
     }
 
     fn degrees(&self, source: Source) -> f64 {
-        let (Source::Fit { procedure, result } | Source::FitEntry { procedure, result, .. }) = source else {
+        let (Source::Fit { procedure, result }
+        | Source::FitEntry {
+            procedure, result, ..
+        }) = source
+        else {
             return f64::INFINITY;
         };
-        let history = self.procedures.get(procedure.0).map(|procedure| &procedure.history);
-        history.and_then(|history| history.degrees(result)).unwrap_or(f64::INFINITY)
+        let history = self
+            .procedures
+            .get(procedure.0)
+            .map(|procedure| &procedure.history);
+        history
+            .and_then(|history| history.degrees(result))
+            .unwrap_or(f64::INFINITY)
     }
 
     fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
         let procedure = self.procedures.get(reference.procedure.0)?;
-        procedure.result(reference.name)?.no_uncertainty(procedure.kind)
+        procedure
+            .result(reference.name)?
+            .no_uncertainty(procedure.kind)
     }
 }

@@ -71,7 +71,10 @@ impl Rest {
     #[must_use]
     pub fn largest(&self) -> (f64, f64) {
         let [place, force] = self.floors_of_largest();
-        (self.displacement.get(place).copied().unwrap_or(0.0), self.force.get(force).copied().unwrap_or(0.0))
+        (
+            self.displacement.get(place).copied().unwrap_or(0.0),
+            self.force.get(force).copied().unwrap_or(0.0),
+        )
     }
 
     /// The floor farthest out, and the one that carries most, from 0.
@@ -79,7 +82,9 @@ impl Rest {
     pub fn floors_of_largest(&self) -> [usize; 2] {
         let most = |values: &[f64]| {
             let sizes = values.iter().map(|value| value.abs()).enumerate();
-            sizes.reduce(|most, next| if next.1 > most.1 { next } else { most }).map_or(0, |(floor, _)| floor)
+            sizes
+                .reduce(|most, next| if next.1 > most.1 { next } else { most })
+                .map_or(0, |(floor, _)| floor)
         };
         [most(&self.displacement), most(&self.force)]
     }
@@ -87,7 +92,8 @@ impl Rest {
     /// What is uncertain of the place (m) and of the force (N) of one floor.
     #[must_use]
     pub fn doubts_of(&self, floor: usize) -> [Vec<Contribution>; 2] {
-        [&self.of_displacement, &self.of_force].map(|floors| floors.get(floor).cloned().unwrap_or_default())
+        [&self.of_displacement, &self.of_force]
+            .map(|floors| floors.get(floor).cloned().unwrap_or_default())
     }
 
     /// What is uncertain of the places, m: an entry a floor.
@@ -103,7 +109,13 @@ impl Rest {
         entries((0..floors.len()).map(|floor| {
             let mut parts = floors[floor].clone();
             for part in floor.checked_sub(1).map_or(&[][..], |below| &floors[below]) {
-                share(&mut parts, Contribution { amount: -part.amount, ..*part });
+                share(
+                    &mut parts,
+                    Contribution {
+                        amount: -part.amount,
+                        ..*part
+                    },
+                );
             }
             parts
         }))
@@ -114,7 +126,10 @@ impl Rest {
     pub fn doubts_of_shears(&self) -> Vec<Contribution> {
         entries((0..self.of_force.len()).map(|storey| {
             let mut parts = Vec::new();
-            self.of_force[storey..].iter().flatten().for_each(|part| share(&mut parts, *part));
+            self.of_force[storey..]
+                .iter()
+                .flatten()
+                .for_each(|part| share(&mut parts, *part));
             parts
         }))
     }
@@ -122,6 +137,14 @@ impl Rest {
 
 /// Parts of the entries of a list, those that do nothing left out.
 fn entries(lists: impl Iterator<Item = Vec<Contribution>>) -> Vec<Contribution> {
-    let of_entry = |(entry, parts): (usize, Vec<Contribution>)| parts.into_iter().map(move |part| Contribution { entry, ..part });
-    lists.enumerate().flat_map(of_entry).filter(|part| part.amount != 0.0).collect()
+    let of_entry = |(entry, parts): (usize, Vec<Contribution>)| {
+        parts
+            .into_iter()
+            .map(move |part| Contribution { entry, ..part })
+    };
+    lists
+        .enumerate()
+        .flat_map(of_entry)
+        .filter(|part| part.amount != 0.0)
+        .collect()
 }

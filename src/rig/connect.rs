@@ -3,10 +3,11 @@
 
 use std::time::Duration;
 
-use super::device::{self, Device, Member, together};
-use super::port::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
+use super::controllers;
+use super::controllers::{Device, Member, together};
 use super::real::RealRig;
 use super::safety::{self, Armed};
+use super::transport::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
 use super::{RigFault, Wish};
 use crate::plan::{Behind, DeviceLink, Limits, PortPlan, RigPlan};
 
@@ -24,14 +25,25 @@ pub struct Connected {
 /// # Errors
 /// A port cannot be opened, or a device is not the plan's or not fit.
 pub fn connect(plan: &RigPlan, limits: &Limits, wish: &Wish) -> Result<Connected, RigFault> {
-    let link = plan.link.as_real().ok_or_else(|| RigFault::Device(format!("{} is a virtual rig", plan.name)))?;
+    let link = plan
+        .link
+        .as_real()
+        .ok_or_else(|| RigFault::Device(format!("{} is a virtual rig", plan.name)))?;
     let (actuator, mut lines) = attach_all(link.actuators(), plan, wish)?;
     let (load_cell, more) = attach_all(link.load_cells(), plan, wish)?;
     lines.extend(more);
-    let actuator = actuator.ok_or_else(|| RigFault::Device(format!("nothing moves the rig {}", plan.name)))?;
+    let actuator =
+        actuator.ok_or_else(|| RigFault::Device(format!("nothing moves the rig {}", plan.name)))?;
     // Armed before the first word: whatever becomes of the conversation, the rig holds.
     let armed = safety::arm(lines).watched(link.watchdog);
-    let rig = RealRig::open(plan, limits, actuator, load_cell, Box::new(MonotonicClock::start()), wish.clone())?;
+    let rig = RealRig::open(
+        plan,
+        limits,
+        actuator,
+        load_cell,
+        Box::new(MonotonicClock::start()),
+        wish.clone(),
+    )?;
     Ok(Connected { rig, _armed: armed })
 }
 
@@ -39,12 +51,20 @@ pub fn connect(plan: &RigPlan, limits: &Limits, wish: &Wish) -> Result<Connected
 type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
 
 /// The devices of one role as one, None where there are none, with their lines.
-fn attach_all(behind: Vec<Behind<'_>>, plan: &RigPlan, wish: &Wish) -> Result<(Option<Box<dyn Device>>, Lines), RigFault> {
+fn attach_all(
+    behind: Vec<Behind<'_>>,
+    plan: &RigPlan,
+    wish: &Wish,
+) -> Result<(Option<Box<dyn Device>>, Lines), RigFault> {
     let (mut members, mut lines) = (Vec::new(), Lines::new());
     for Behind { link, axes, .. } in behind {
         let (device, line) = attach(link, plan, wish)?;
         lines.push(line);
-        members.push(Member { device, axes, serial_number: link.serial_number.clone() });
+        members.push(Member {
+            device,
+            axes,
+            serial_number: link.serial_number.clone(),
+        });
     }
     Ok((together(members, plan.axes().unwrap_or(1)), lines))
 }
@@ -56,11 +76,13 @@ fn attach(link: &DeviceLink, plan: &RigPlan, wish: &Wish) -> Result<Attached, Ri
     let failed = |error: std::io::Error| RigFault::Device(format!("{}: {error}", link.port));
     let port: Box<dyn Port> = match &link.port {
         PortPlan::Serial { path, baud } => Box::new(SerialPort::open(path, *baud).map_err(failed)?),
-        PortPlan::Tcp { address } => Box::new(TcpPort::connect(address, CONNECTING).map_err(failed)?),
+        PortPlan::Tcp { address } => {
+            Box::new(TcpPort::connect(address, CONNECTING).map_err(failed)?)
+        }
     };
     let emergency = port.emergency().map_err(failed)?;
     let clock: Box<dyn Clock> = Box::new(MonotonicClock::start());
-    let device = device::open(link, port, clock, wish.clone(), plan.settle.timeout);
+    let device = controllers::open(link, port, clock, wish.clone(), plan.settle.timeout);
     let bytes = device.emergency();
     Ok((device, (emergency, bytes)))
 }

@@ -42,8 +42,19 @@ pub(super) struct Holds {
 impl Holds {
     fn from(home: &[f64], least: f64) -> Self {
         let start = home.first().copied().unwrap_or(0.0);
-        let told = Held { slopes: vec![(0.0, 0.0); home.len()], ..Held::default() };
-        Self { least, home: start, low: start, high: start, now: None, outward: 0.0, told }
+        let told = Held {
+            slopes: vec![(0.0, 0.0); home.len()],
+            ..Held::default()
+        };
+        Self {
+            least,
+            home: start,
+            low: start,
+            high: start,
+            now: None,
+            outward: 0.0,
+            told,
+        }
     }
 
     /// A settled reading at this target (m).
@@ -72,7 +83,9 @@ impl Holds {
     /// With the hold that is not over yet.
     fn so_far(&self) -> Held {
         let mut told = self.told.clone();
-        let Some((first, last)) = &self.now else { return told };
+        let Some((first, last)) = &self.now else {
+            return told;
+        };
         let seconds = last.time - first.time;
         if seconds.is_nan() || seconds <= 0.0 || seconds < self.least {
             return told;
@@ -82,7 +95,10 @@ impl Holds {
         let of = |one: &[f64], other: &[f64], axis: usize| other[axis] - one[axis];
         for (axis, (force, displacement)) in told.slopes.iter_mut().enumerate() {
             faster(force, of(&first.force, &last.force, axis) / seconds);
-            faster(displacement, of(&first.displacement, &last.displacement, axis) / seconds);
+            faster(
+                displacement,
+                of(&first.displacement, &last.displacement, axis) / seconds,
+            );
         }
         if self.outward != 0.0 {
             let grown = self.outward * of(&first.force, &last.force, 0);
@@ -112,7 +128,9 @@ impl Guard<'_> {
 
     /// What they told; none is watched any more.
     pub fn take_held(&mut self) -> Held {
-        self.holds.take().map_or_else(Held::default, |holds| holds.so_far())
+        self.holds
+            .take()
+            .map_or_else(Held::default, |holds| holds.so_far())
     }
 
     /// It sets off from where it is.
@@ -129,7 +147,12 @@ mod tests {
     use super::*;
 
     fn reading(time: f64, force: f64) -> Reading {
-        Reading { time, displacement: vec![1e-6 * time], force: vec![force], raw: Vec::new() }
+        Reading {
+            time,
+            displacement: vec![1e-6 * time],
+            force: vec![force],
+            raw: Vec::new(),
+        }
     }
 
     /// Holds at these places (m), each of two seconds in which the force changes by so much, N.
@@ -147,13 +170,27 @@ mod tests {
 
     #[test]
     fn slopes_are_told_of_every_hold_and_growth_only_where_it_is_farthest_out() {
-        let told = held(&[(0.001, -4.0), (0.003, -1.0), (0.002, 7.0), (-0.001, 0.5), (0.003, 0.25)]);
+        let told = held(&[
+            (0.001, -4.0),
+            (0.003, -1.0),
+            (0.002, 7.0),
+            (-0.001, 0.5),
+            (0.003, 0.25),
+        ]);
         assert_eq!((told.count, told.longest), (5, 2.0));
         assert!((told.slopes[0].0 - 3.5).abs() < 1e-12 && (told.slopes[0].1 - 1e-6).abs() < 1e-18);
         // On the other side a force that grows away from 0 falls.
-        assert_eq!(told.grown, Some(0.25), "the one after the unloading is told only");
+        assert_eq!(
+            told.grown,
+            Some(0.25),
+            "the one after the unloading is told only"
+        );
         assert_eq!(held(&[(-0.001, -0.5)]).grown, Some(0.5));
-        assert_eq!(held(&[(0.0, 3.0)]).grown, None, "where it began nothing relaxes and nothing loads");
+        assert_eq!(
+            held(&[(0.0, 3.0)]).grown,
+            None,
+            "where it began nothing relaxes and nothing loads"
+        );
     }
 
     #[test]
@@ -161,7 +198,13 @@ mod tests {
         let mut told = Holds::from(&[0.0], 1.5);
         told.see(&[0.001], &reading(0.0, 1.0));
         told.see(&[0.001], &reading(1.0, 2.0));
-        assert_eq!(told.so_far(), Held { slopes: vec![(0.0, 0.0)], ..Held::default() });
+        assert_eq!(
+            told.so_far(),
+            Held {
+                slopes: vec![(0.0, 0.0)],
+                ..Held::default()
+            }
+        );
         told.see(&[0.001], &reading(2.0, 3.0));
         assert_eq!((told.so_far().count, told.so_far().grown), (1, Some(2.0)));
         assert_eq!(told.so_far().count, 1, "asking changes nothing");

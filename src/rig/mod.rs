@@ -1,50 +1,33 @@
-//! The door to hardware. A [`Rig`] moves actuators to absolute targets and reads displacement and force, one entry a
-//! degree of freedom. A virtual rig and a real one are the same to `run`, which drives them only through the guard.
+//! The hardware abstraction. A [`Rig`] moves actuators to absolute targets and reads displacement
+//! and force, one entry per axis. Virtual and real rigs are the same to `run`, which drives them
+//! through the guard only. It knows no procedure.
 
-mod actuator;
 mod connect;
-pub mod device;
-pub mod dialect;
-pub mod failpoint;
-#[cfg(test)]
-pub(crate) mod fault_table;
+pub mod controllers;
 mod guard;
-mod guard_about;
-mod guard_glide;
-mod guard_halt;
-mod guard_read;
-mod guard_speed;
-mod guard_way;
-mod halted;
 mod holds;
-mod live;
-mod load_cell;
-mod moved;
-mod one_or_several;
-pub mod port;
+mod motion;
 pub mod real;
 pub mod safety;
-mod settling;
+mod scalar_or_list;
 #[cfg(test)]
 pub(crate) mod testing;
-mod virtual_frame;
+pub mod transport;
 mod virtual_rig;
-mod wish;
 
 use serde::{Deserialize, Serialize};
 
-use crate::mechanics::path::Path;
+use crate::physics::tracking::trajectory::Path;
 use crate::plan::Plan;
-use crate::quantity::{Dimension, display};
+use crate::units::{Dimension, display};
 
 pub use connect::{Connected, connect};
 pub use guard::{Guard, Traversed};
-pub use halted::{Halted, place_and_force};
 pub use holds::Held;
-pub use live::{Felt, Live};
-pub use virtual_frame::VirtualFrame;
+pub use safety::final_hold::{Halted, place_and_force};
+pub use safety::live::{Felt, Live};
+pub use safety::stop_request::Wish;
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
-pub use wish::Wish;
 
 /// Who the rig says it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,11 +46,7 @@ pub struct Identity {
 /// one.
 #[must_use]
 pub fn virtual_rig(plan: &Plan) -> Box<dyn Rig> {
-    let link = plan.rig.link.as_virtual().copied().unwrap_or_default();
-    match plan.specimen_on_the_rig().and_then(|specimen| specimen.frame.as_ref()) {
-        Some(frame) => Box::new(VirtualFrame::new(&plan.rig.name, link, plan.rig.settle, frame, plan.rig.sign)),
-        None => Box::new(VirtualRig::of_plan(plan)),
-    }
+    Box::new(VirtualRig::of_plan(plan))
 }
 
 /// What stands for the word of a power-up where a device that has none was seen to start anew.
@@ -107,7 +86,7 @@ pub struct Offer {
 pub struct LastMove {
     pub id: u64,
     /// One an axis, m. On record a rig of one axis has a number here, not a list.
-    #[serde(rename = "target", with = "one_or_several")]
+    #[serde(rename = "target", with = "scalar_or_list")]
     pub targets: Vec<f64>,
 }
 
@@ -137,13 +116,18 @@ impl Tally {
 impl std::fmt::Display for Tally {
     /// Only what is not zero.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let counted =
-            [(self.resent, "frame", "sent again"), (self.ignored, "reply", "ignored"), (self.reread, "reading", "taken again")];
-        let said = counted.into_iter().filter(|(count, ..)| *count > 0).map(|(count, what, became)| match (count, what) {
-            (1, _) => format!("1 {what} {became}"),
-            (_, "reply") => format!("{count} replies {became}"),
-            _ => format!("{count} {what}s {became}"),
-        });
+        let counted = [
+            (self.resent, "frame", "sent again"),
+            (self.ignored, "reply", "ignored"),
+            (self.reread, "reading", "taken again"),
+        ];
+        let said = counted.into_iter().filter(|(count, ..)| *count > 0).map(
+            |(count, what, became)| match (count, what) {
+                (1, _) => format!("1 {what} {became}"),
+                (_, "reply") => format!("{count} replies {became}"),
+                _ => format!("{count} {what}s {became}"),
+            },
+        );
         f.write_str(&said.collect::<Vec<_>>().join(", "))
     }
 }
@@ -187,9 +171,21 @@ pub enum RigFault {
 }
 
 /// Six digits, since a value just beyond its limit must not read as the limit itself.
-fn breach(quantity: LimitedQuantity, axis: Option<usize>, value: f64, low: f64, high: f64) -> String {
+fn breach(
+    quantity: LimitedQuantity,
+    axis: Option<usize>,
+    value: f64,
+    low: f64,
+    high: f64,
+) -> String {
     let shown = |value| display::plain(value, quantity.dimension(), 6);
-    format!("{quantity}{} {} is outside its limit {} .. {}", of_axis(axis), shown(value), shown(low), shown(high))
+    format!(
+        "{quantity}{} {} is outside its limit {} .. {}",
+        of_axis(axis),
+        shown(value),
+        shown(low),
+        shown(high)
+    )
 }
 
 /// ` of axis 2`, or nothing.
@@ -227,7 +223,10 @@ impl LimitedQuantity {
     #[must_use]
     pub const fn dimension(self) -> Dimension {
         match self {
-            Self::TargetDisplacement | Self::MeasuredDisplacement | Self::Increment | Self::TrackingError => Dimension::LENGTH,
+            Self::TargetDisplacement
+            | Self::MeasuredDisplacement
+            | Self::Increment
+            | Self::TrackingError => Dimension::LENGTH,
             Self::Force => Dimension::FORCE,
             Self::Speed => Dimension::VELOCITY,
             Self::EnergyError | Self::TrackingEnergyError | Self::NrmsError => Dimension::NUMBER,
@@ -307,7 +306,13 @@ pub trait Rig {
     ///
     /// # Errors
     /// As `execute`, `read` and `each`; fewer than two readings, where as many are wanted.
-    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault>;
+    fn traverse(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault>;
 
     /// Follows smooth paths, one a degree of freedom and equally long, and reads at `samples` equal times on the way, the
     /// last at the end, where it goes on moving until it is told the next path or to hold. Each reading is given to `each`
@@ -315,9 +320,16 @@ pub trait Rig {
     ///
     /// # Errors
     /// As `traverse`; a rig that must be told a target at a time follows no path.
-    fn glide(&mut self, _paths: &[Path], _samples: usize, _each: EachReading<'_>) -> Result<(), RigFault> {
+    fn glide(
+        &mut self,
+        _paths: &[Path],
+        _samples: usize,
+        _each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         self.hold();
-        Err(RigFault::Device("this rig follows no path without stopping".to_owned()))
+        Err(RigFault::Device(
+            "this rig follows no path without stopping".to_owned(),
+        ))
     }
 
     /// The rest of a traverse that was cut off after some of its readings, from where the rig stands: no part of it is gone
@@ -325,7 +337,12 @@ pub trait Rig {
     ///
     /// # Errors
     /// As `traverse`.
-    fn traverse_on(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
+    fn traverse_on(
+        &mut self,
+        cut_off: &CutOff<'_>,
+        velocity: f64,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         self.traverse(cut_off.to, velocity, cut_off.left(), each)
     }
 
@@ -333,9 +350,17 @@ pub trait Rig {
     ///
     /// # Errors
     /// As `glide`.
-    fn glide_on(&mut self, _paths: &[Path], _samples: usize, _done: usize, _each: EachReading<'_>) -> Result<(), RigFault> {
+    fn glide_on(
+        &mut self,
+        _paths: &[Path],
+        _samples: usize,
+        _done: usize,
+        _each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         self.hold();
-        Err(RigFault::Device("this rig follows no path without stopping".to_owned()))
+        Err(RigFault::Device(
+            "this rig follows no path without stopping".to_owned(),
+        ))
     }
 
     /// Stops all motion and keeps the load.

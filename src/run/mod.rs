@@ -1,142 +1,27 @@
-//! Plan × rig → record: one file a procedure. Every target and reading passes the rig's guard.
+//! The run loop: plan and rig to record. It opens the session, checks the rig, performs each
+//! procedure and ends the run. Every target and reading passes the guard. It knows no equation and
+//! no printed form.
 
-mod attribution;
-mod axes;
-#[cfg(test)]
-mod balance_tests;
-mod blow;
-mod bounded;
-#[cfg(test)]
-mod contacts_tests;
-mod continuous;
-#[cfg(test)]
-mod continuous_tests;
-mod curve;
-mod cycle;
-mod cycle_doubts;
-mod cycle_rounding;
-#[cfg(test)]
-mod cycle_rounding_tests;
-#[cfg(test)]
-mod cycle_tests;
-mod damping_sweep;
-#[cfg(test)]
-mod degrees_tests;
-pub mod driven;
-#[cfg(test)]
-mod driven_tests;
-mod ending;
-mod escalate;
-#[cfg(test)]
-mod escalate_tests;
-mod followed;
-#[cfg(test)]
-mod followed_tests;
-#[cfg(test)]
-mod forecast_tests;
-mod foreseen;
-#[cfg(test)]
-mod foreseen_tests;
-mod frame_doubts;
-#[cfg(test)]
-mod frame_doubts_tests;
-#[cfg(test)]
-mod frame_sequence_tests;
-mod frame_steps;
-mod gate;
-mod gliding;
-#[cfg(test)]
-mod gliding_doubts_tests;
-#[cfg(test)]
-mod growth_tests;
-mod hold;
-mod hold_rounding;
-#[cfg(test)]
-mod hold_rounding_tests;
-mod impact;
-#[cfg(test)]
-mod impact_tests;
-mod inputs;
-mod inspect;
-#[cfg(test)]
-mod matrix_doubts_tests;
+mod driver;
 mod motion;
-mod move_to;
-pub mod need;
-#[cfg(test)]
-mod need_tests;
-#[cfg(test)]
-mod path_matrix_tests;
-mod propagation;
-#[cfg(test)]
-mod propagation_tests;
-mod ramp_doubts;
+pub(crate) mod pretest_check;
 pub mod rehearsal;
-mod request;
-mod rest_doubts;
-#[cfg(test)]
-mod rest_doubts_tests;
-mod results;
-#[cfg(test)]
-mod rig_fault_tests;
-mod rounding_doubts;
-#[cfg(test)]
-mod rounding_doubts_tests;
-mod samples;
-mod secant_doubts;
-#[cfg(test)]
-mod sequence_tests;
-mod session;
-#[cfg(test)]
-mod settled_hold_tests;
-mod shake;
-mod shake_doubts;
-mod shake_results;
-mod shaking;
+pub mod replay;
+pub(crate) mod session;
+mod shutdown;
 pub mod start;
-mod stepping;
-mod stiffer;
-#[cfg(test)]
-mod stiffer_tests;
-mod stiffness_on_the_way;
-mod stiffness_ramp;
-mod stop;
-mod storey_doubts;
-mod storey_impact;
-mod storey_summary;
-mod strike;
-mod striking;
-mod study;
-#[cfg(test)]
-mod sweep_lag_tests;
-pub mod tape;
-#[cfg(test)]
-pub(crate) mod testing;
-#[cfg(test)]
-mod tests;
-#[cfg(test)]
-mod time_step_tests;
-mod triggers;
-mod unload;
-#[cfg(test)]
-mod unload_tests;
-mod watch;
-mod zero;
+pub(crate) mod stop;
+pub mod storage_bound;
+pub(crate) mod zero_drift;
 
-pub use damping_sweep::MOST_SAMPLES;
+pub use crate::remote::request::{Parting, Request};
+pub use driver::{run, run_with};
 pub use motion::{Extent, Motion};
-pub use request::{Parting, Request};
-pub use study::MOST_DRAWS;
 
 use serde::{Deserialize, Serialize};
 
-use crate::formula::ProcedureId;
-use crate::mechanics::monitor::Tracking;
-use crate::plan::{DriftCheck, Plan, Procedure, ProcedureKind, ZeroAfter};
-use crate::record::{Event, EventKind, History, NamedResult, Outcome, ProcedureRecord, Record};
-use crate::rig::Rig;
-use inputs::Inputs;
-use session::Session;
+use crate::physics::tracking::monitor::Tracking;
+use crate::record::{Event, History, NamedResult};
 use stop::Stop;
 
 /// Who watches a run: a progress bar, a live screen, a journal, a person.
@@ -159,9 +44,9 @@ pub trait Observer {
     fn release(&mut self, note: &str, _motion: &Motion) -> Inspection {
         self.inspect(note)
     }
-    /// The run has ended early, and the rig holds: whether it may take the load off. `declared`: the plan's safe state is to unload.
+    /// The run has ended early, and the rig holds: whether it may take the load off.
     /// None: nobody wants it, and the rig stays held. Asked again while it is [`Inspection::Wait`].
-    fn may_unload(&mut self, _question: &str, _motion: &Motion, _declared: bool) -> Option<Inspection> {
+    fn may_unload(&mut self, _question: &str, _motion: &Motion) -> Option<Inspection> {
         None
     }
     /// What a person wants between two steps. Asked until it is [`Next::GoOn`].
@@ -233,7 +118,10 @@ pub struct AxisReport {
 impl StepReport {
     /// Target (m), measured displacement (m) and force (N) of every axis.
     pub fn axes(&self) -> impl Iterator<Item = (f64, f64, f64)> {
-        let others = self.others.iter().map(|axis| (axis.command, axis.displacement, axis.force));
+        let others = self
+            .others
+            .iter()
+            .map(|axis| (axis.command, axis.displacement, axis.force));
         std::iter::once((self.command, self.displacement, self.force)).chain(others)
     }
 }
@@ -260,7 +148,10 @@ impl Inspection {
     /// Goes on with nothing to say.
     #[must_use]
     pub const fn go_on() -> Self {
-        Self::GoOn { note: None, by: None }
+        Self::GoOn {
+            note: None,
+            by: None,
+        }
     }
 }
 
@@ -277,99 +168,22 @@ impl Observer for Unwatched {
 }
 
 /// What a procedure leaves, also when it was stopped: everything recorded up to there and what follows from it.
-struct Performed {
-    history: History,
+pub(crate) struct Performed {
+    pub(crate) history: History,
     /// In the schema's order, every one of them.
-    results: Vec<NamedResult>,
-    stop: Option<Stop>,
+    pub(crate) results: Vec<NamedResult>,
+    pub(crate) stop: Option<Stop>,
 }
 
-/// Runs every procedure of the plan in order on the rig. Never fails: what went wrong is the record's outcome.
-#[must_use]
-pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Record {
-    let identity = rig.identity();
-    let mut record =
-        Record { rig: identity, procedures: Vec::new(), events: Vec::new(), outcome: Outcome::Completed, drift: None };
-    let mut session = match Session::begin(plan, rig, observer) {
-        Ok(session) => session,
-        Err(ended) => {
-            let (event, stop) = *ended;
-            return Record { events: vec![event], outcome: stop.outcome(), ..record };
-        }
-    };
-    if let Some(link) = plan.rig.link.as_real()
-        && let Err(stop) = gate::pass(plan, link, afterwards(plan), &mut session)
-    {
-        session.end(&stop);
-        return Record { events: session.finish(), outcome: stop.outcome(), ..record };
-    }
-    let home = session.guard.commanded().to_vec();
-    match plan.rig.drift.map(|check| zero::before(check, &mut session)).transpose() {
-        Ok(drift) => record.drift = drift,
-        Err(stop) => {
-            session.end(&stop);
-            return Record { events: session.finish(), outcome: stop.outcome(), ..record };
-        }
-    }
-    for procedure in &plan.procedures {
-        if let Err(stop) = session.stop_if_requested() {
-            record.outcome = session.end_as_declared(&stop, plan);
-            break;
-        }
-        session.enter(procedure, plan);
-        let mut inputs = Inputs::new(&record, ProcedureId(record.procedures.len()));
-        let Performed { mut history, mut results, stop } = perform(procedure, plan, &mut inputs, &mut session);
-        inputs.take_observations().into_iter().for_each(|text| session.event(EventKind::Remark, text));
-        attribution::attribute(&procedure.kind, &history, plan, (&inputs, session.guard.declared_noise()), &mut results);
-        rounding_doubts::floor(&mut history, &results);
-        let inputs = inputs.into_recorded();
-        record.procedures.push(ProcedureRecord {
-            name: procedure.name.clone(),
-            kind: procedure.kind.keyword(),
-            complete: stop.is_none(),
-            inputs,
-            results,
-            history,
-        });
-        if let Some(stop) = stop {
-            record.outcome = session.end_as_declared(&stop, plan);
-            break;
-        }
-        session.leave();
-    }
-    if let Some(drift) = &mut record.drift {
-        drift.held = session.guard.take_held();
-        if record.outcome == Outcome::Completed
-            && let Err(stop) = session.stop_if_requested().and_then(|()| zero::after(drift, &home, &mut session))
-        {
-            session.end(&stop);
-            record.outcome = stop.outcome();
-        }
-    }
-    record.events = session.finish();
-    record
+/// Settings of a run that its plan does not state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Whether the uncertainty of the results is evaluated; fits keep the standard errors of their scatter.
+    pub uncertainty: bool,
 }
 
-/// What a real rig does once it has proved itself.
-fn afterwards(plan: &Plan) -> &'static str {
-    match plan.rig.drift {
-        Some(DriftCheck { after: ZeroAfter::Start, .. }) => "as the plan says, and at its end back to where it began",
-        _ => "as the plan says",
-    }
-}
-
-fn perform(procedure: &Procedure, plan: &Plan, inputs: &mut Inputs<'_>, session: &mut Session<'_>) -> Performed {
-    match &procedure.kind {
-        ProcedureKind::StiffnessRamp(ramp) => stiffness_ramp::perform(ramp, plan, inputs, session),
-        ProcedureKind::DampingSweep(sweep) => damping_sweep::perform(sweep, plan, inputs, session),
-        ProcedureKind::Impact(impact) => impact::perform(impact, plan, inputs, session),
-        ProcedureKind::StoreyImpact(impact) => storey_impact::perform(impact, plan, inputs, session),
-        ProcedureKind::Shake(shaking) => shake::perform(shaking, plan, inputs, session),
-        ProcedureKind::Cycle(cycling) => cycle::perform(cycling, plan, inputs, session),
-        ProcedureKind::Escalate(escalate) => escalate::perform(escalate, plan, inputs, session),
-        ProcedureKind::Unload(unload) => unload::perform(unload, plan, inputs, session),
-        ProcedureKind::FrameUnload(unload) => unload::perform_frame(unload, plan, inputs, session),
-        ProcedureKind::Move(to) => move_to::perform(to, inputs, session),
-        ProcedureKind::Inspect { note } => inspect::perform(note, session),
+impl Default for Settings {
+    fn default() -> Self {
+        Self { uncertainty: true }
     }
 }

@@ -2,9 +2,9 @@
 //! motion. Out: lines of text. Pure: every prompt that lets a rig move says the same things in the same order.
 
 use crate::plan::{Interval, Limits, Plan};
-use crate::quantity::Dimension;
-use crate::quantity::display::{plain, readable, stated};
 use crate::rig::Identity;
+use crate::units::Dimension;
+use crate::units::display::{plain, readable, stated};
 
 /// A motion that waits for its release.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,14 @@ impl Motion {
     /// What the rig of a plan does, as far as its plan alone says.
     #[must_use]
     pub fn of(plan: &Plan, identity: Identity, does: String) -> Self {
-        Self { rig: plan.rig.name.clone(), identity, stands: None, does, expected: Extent::default(), limits: plan.limits }
+        Self {
+            rig: plan.rig.name.clone(),
+            identity,
+            stands: None,
+            does,
+            expected: Extent::default(),
+            limits: plan.limits,
+        }
     }
 
     /// The same motion, of which this is known where nothing was known before.
@@ -59,7 +66,12 @@ impl Motion {
     /// The lines of a prompt: which rig, what it does, how far, how hard, how fast, how long.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
-        let Extent { travel, force, speed, duration } = self.expected;
+        let Extent {
+            travel,
+            force,
+            speed,
+            duration,
+        } = self.expected;
         let speed = speed.map(|speed| format!("up to {}", readable(speed, Dimension::VELOCITY)));
         let stands = self.stands.as_ref().map(|stands| row("stands", stands));
         let first = std::iter::once(row("rig", &self.who())).chain(stands);
@@ -75,18 +87,36 @@ impl Motion {
             ),
             row(
                 "force",
-                &within(force.map(|force| span(force, Dimension::FORCE, readable)), self.limits.force, Dimension::FORCE),
+                &within(
+                    force.map(|force| span(force, Dimension::FORCE, readable)),
+                    self.limits.force,
+                    Dimension::FORCE,
+                ),
             ),
-            row("speed", &within(speed, self.limits.speed, Dimension::VELOCITY)),
-            row("duration", &duration.map_or_else(|| "not known".to_owned(), about)),
+            row(
+                "speed",
+                &within(speed, self.limits.speed, Dimension::VELOCITY),
+            ),
+            row(
+                "duration",
+                &duration.map_or_else(|| "not known".to_owned(), about),
+            ),
         ];
         first.chain(rest).collect()
     }
 
     /// The rig's name, and who answered there.
     fn who(&self) -> String {
-        let Identity { model, serial, simulated, .. } = &self.identity;
-        let said: Vec<&str> = [model.as_str(), serial.as_str()].into_iter().filter(|word| !word.is_empty()).collect();
+        let Identity {
+            model,
+            serial,
+            simulated,
+            ..
+        } = &self.identity;
+        let said: Vec<&str> = [model.as_str(), serial.as_str()]
+            .into_iter()
+            .filter(|word| !word.is_empty())
+            .collect();
         let simulated = if *simulated { ", simulated" } else { "" };
         format!("{} ({}{simulated})", self.rig, said.join(" "))
     }
@@ -112,14 +142,22 @@ fn within(expected: Option<String>, limit: Interval, dimension: Dimension) -> St
 }
 
 fn span(interval: Interval, dimension: Dimension, written: fn(f64, Dimension) -> String) -> String {
-    format!("{} .. {}", written(interval.low, dimension), written(interval.high, dimension))
+    format!(
+        "{} .. {}",
+        written(interval.low, dimension),
+        written(interval.high, dimension)
+    )
 }
 
 /// How long a motion takes, in words.
 fn about(seconds: f64) -> String {
     match seconds {
-        seconds if seconds < 60.0 => format!("about {} s", plain(seconds.max(0.1), Dimension::NUMBER, 2)),
-        seconds if seconds < 5400.0 => format!("about {} min", plain(seconds / 60.0, Dimension::NUMBER, 2)),
+        seconds if seconds < 60.0 => {
+            format!("about {} s", plain(seconds.max(0.1), Dimension::NUMBER, 2))
+        }
+        seconds if seconds < 5400.0 => {
+            format!("about {} min", plain(seconds / 60.0, Dimension::NUMBER, 2))
+        }
         seconds => format!("about {} h", plain(seconds / 3600.0, Dimension::NUMBER, 2)),
     }
 }
@@ -127,14 +165,20 @@ fn about(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::testing::empty_plan;
+    use crate::tests::testing::empty_plan;
 
     #[test]
     fn a_motion_names_the_rig_and_how_far_how_hard_how_fast_and_how_long() {
         let mut plan = empty_plan();
         plan.rig.name = "bench".to_owned();
-        plan.limits.displacement = Interval { low: -5e-3, high: 10e-3 };
-        plan.limits.speed = Interval { low: 0.0, high: 0.2 };
+        plan.limits.displacement = Interval {
+            low: -5e-3,
+            high: 10e-3,
+        };
+        plan.limits.speed = Interval {
+            low: 0.0,
+            high: 0.2,
+        };
         let text = |word: &str| word.to_owned();
         let identity = Identity {
             name: text("bench"),
@@ -157,16 +201,32 @@ mod tests {
             ]
         );
         let expected = Extent {
-            travel: Some(Interval { low: 0.0, high: 8.165e-3 }),
-            force: Some(Interval { low: 0.0, high: 2450.0 }),
+            travel: Some(Interval {
+                low: 0.0,
+                high: 8.165e-3,
+            }),
+            force: Some(Interval {
+                low: 0.0,
+                high: 2450.0,
+            }),
             speed: Some(0.02),
             duration: Some(90.0),
         };
         let known = unknown.expecting(expected);
         let lines = known.lines();
-        assert!(lines[2].ends_with("8.165 mm; limits −5 mm .. 10 mm") && lines[3].ends_with("2.450 kN; no limit"), "{lines:#?}");
-        assert!(lines[4].contains("20.00 mm/s") && lines[5] == "duration  about 1.5 min", "{lines:#?}");
-        let moved = known.expecting(Extent { duration: Some(1.0), ..Extent::default() });
+        assert!(
+            lines[2].ends_with("8.165 mm; limits −5 mm .. 10 mm")
+                && lines[3].ends_with("2.450 kN; no limit"),
+            "{lines:#?}"
+        );
+        assert!(
+            lines[4].contains("20.00 mm/s") && lines[5] == "duration  about 1.5 min",
+            "{lines:#?}"
+        );
+        let moved = known.expecting(Extent {
+            duration: Some(1.0),
+            ..Extent::default()
+        });
         assert_eq!(moved.expected, expected, "what is known stays");
     }
 }

@@ -2,7 +2,7 @@
 //! gate and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen that is as
 //! stiff as the measured one. It moves nothing.
 
-use crate::formula::ResultValue;
+use crate::plan::formula::ResultValue;
 use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
 use crate::record::{History, RampHistory, Record};
 use crate::rig::VirtualRig;
@@ -24,9 +24,19 @@ pub enum Unrehearsed {
 /// Procedures of the plan, from the first on, that a rehearsal runs on the rig: stiffness ramps, with the inspections
 /// before and between them.
 fn leading(plan: &Plan) -> usize {
-    let quiet = |kind: &ProcedureKind| matches!(kind, ProcedureKind::StiffnessRamp(_) | ProcedureKind::Inspect { .. });
-    let quiet = plan.procedures.iter().take_while(|procedure| quiet(&procedure.kind));
-    let ramps = quiet.enumerate().filter(|(_, procedure)| matches!(procedure.kind, ProcedureKind::StiffnessRamp(_)));
+    let quiet = |kind: &ProcedureKind| {
+        matches!(
+            kind,
+            ProcedureKind::StiffnessRamp(_) | ProcedureKind::Inspect { .. }
+        )
+    };
+    let quiet = plan
+        .procedures
+        .iter()
+        .take_while(|procedure| quiet(&procedure.kind));
+    let ramps = quiet
+        .enumerate()
+        .filter(|(_, procedure)| matches!(procedure.kind, ProcedureKind::StiffnessRamp(_)));
     ramps.map(|(place, _)| place + 1).last().unwrap_or(0)
 }
 
@@ -37,33 +47,57 @@ fn leading(plan: &Plan) -> usize {
 /// There would be nothing to predict the rest on.
 pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     let ramps = leading(plan);
-    let bent = VirtualRig::specimen_of(plan).filter(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none());
+    let bent = VirtualRig::specimen_of(plan)
+        .filter(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none());
     if let Some(specimen) = bent.filter(|_| ramps == 0) {
         return Err(Unrehearsed::NothingMeasured(specimen.name.clone()));
     }
     let mut part = plan.clone();
     let left = part.procedures.split_off(ramps);
     let names = |procedures: &[crate::plan::Procedure]| {
-        procedures.iter().map(|procedure| procedure.name.as_str()).collect::<Vec<_>>().join(", ")
+        procedures
+            .iter()
+            .map(|procedure| procedure.name.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
     };
     let gate = plan.rig.link.as_real().map(|_| "the gate");
-    let ran: Vec<String> = gate.into_iter().map(str::to_owned).chain((ramps > 0).then(|| names(&part.procedures))).collect();
-    let ran = if ran.is_empty() { "nothing".to_owned() } else { ran.join(" and ") };
-    let predicted = if left.is_empty() { "nothing".to_owned() } else { names(&left) };
-    let text = format!("{ran} ran on the rig; {predicted} did not run and was predicted on a virtual specimen");
+    let ran: Vec<String> = gate
+        .into_iter()
+        .map(str::to_owned)
+        .chain((ramps > 0).then(|| names(&part.procedures)))
+        .collect();
+    let ran = if ran.is_empty() {
+        "nothing".to_owned()
+    } else {
+        ran.join(" and ")
+    };
+    let predicted = if left.is_empty() {
+        "nothing".to_owned()
+    } else {
+        names(&left)
+    };
+    let text = format!(
+        "{ran} ran on the rig; {predicted} did not run and was predicted on a virtual specimen"
+    );
     part.particulars.push((REHEARSAL, text));
     part.rehearses = Some(Box::new(plan.clone()));
     part.requirements.clear();
     // The zeros are those of a test: a rehearsal goes nowhere for them.
     part.rig.drift = None;
-    part.report.figures.retain(|figure| figure.procedures().all(|procedure| procedure.0 < ramps));
+    part.report
+        .figures
+        .retain(|figure| figure.procedures().all(|procedure| procedure.0 < ramps));
     Ok(part)
 }
 
 /// What the rehearsal of a plan is of, where it is one.
 #[must_use]
 pub fn told(plan: &Plan) -> Option<&str> {
-    plan.particulars.iter().find(|(field, _)| *field == REHEARSAL).map(|(_, text)| text.as_str())
+    plan.particulars
+        .iter()
+        .find(|(field, _)| *field == REHEARSAL)
+        .map(|(_, text)| text.as_str())
 }
 
 /// The whole plan on a virtual specimen as stiff as `measured` says, with the noise and the quanta of the rig. Noise is
@@ -75,20 +109,27 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
     let mut model = plan.clone();
     let mut link = match &plan.rig.link {
         Link::Virtual(link) => *link,
-        Link::Real(link) => {
-            VirtualLink { noise: link.readings.noise, resolution: link.readings.resolution, ..VirtualLink::default() }
-        }
+        Link::Real(link) => VirtualLink {
+            noise: link.readings.noise,
+            resolution: link.readings.resolution,
+            ..VirtualLink::default()
+        },
     };
     link.noise = link.noise.max(scatter(measured));
     model.rig.link = Link::Virtual(link);
     for (procedure, record) in plan.procedures.iter().zip(&measured.procedures) {
-        let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else { continue };
+        let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else {
+            continue;
+        };
         let stiffness = match record.result("stiffness").map(|result| &result.value) {
-            Some(ResultValue::Number { value: Some(value), .. }) if *value > 0.0 => *value,
+            Some(ResultValue::Number {
+                value: Some(value), ..
+            }) if *value > 0.0 => *value,
             _ => return Err(Unrehearsed::NoStiffness(procedure.name.clone())),
         };
         if let Some(specimen) = model.specimens.get_mut(ramp.specimen) {
-            specimen.behaviour = Some(curve_of(&record.history).unwrap_or_else(|| as_stiff_as(stiffness, specimen)));
+            specimen.behaviour =
+                Some(curve_of(&record.history).unwrap_or_else(|| as_stiff_as(stiffness, specimen)));
         }
     }
     Ok(model)
@@ -96,9 +137,24 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
 
 /// The specimen that a ramp past yield measured, where its fitted curve is one: as it yielded, not as the plan expected.
 fn curve_of(history: &History) -> Option<Behaviour> {
-    let History::Ramp(RampHistory { steps, multilinear: Some(fit), .. }) = history else { return None };
-    let reach =
-        steps.iter().map(|step| step.displacement).fold(0.0, |most, x| if fit.way * x > fit.way * most { x } else { most });
+    let History::Ramp(RampHistory {
+        steps,
+        multilinear: Some(fit),
+        ..
+    }) = history
+    else {
+        return None;
+    };
+    let reach = steps
+        .iter()
+        .map(|step| step.displacement)
+        .fold(0.0, |most, x| {
+            if fit.way * x > fit.way * most {
+                x
+            } else {
+                most
+            }
+        });
     let corners = fit.corners(reach).filter(|corners| corners.len() > 1)?;
     Some(Behaviour::Multilinear { corners })
 }
@@ -107,10 +163,15 @@ fn curve_of(history: &History) -> Option<Behaviour> {
 /// breaks at the displacements of the plan.
 fn as_stiff_as(stiffness: f64, specimen: &Specimen) -> Behaviour {
     // A pause lets relax what relaxes before the reading.
-    let expected = specimen.behaviour.as_ref().map(|behaviour| (behaviour, behaviour.relaxed_stiffness()));
+    let expected = specimen
+        .behaviour
+        .as_ref()
+        .map(|behaviour| (behaviour, behaviour.relaxed_stiffness()));
     match expected {
         // Exactly as measured, which a quotient would not be.
-        None | Some((Behaviour::Elastic { .. } | Behaviour::Beam(_), _)) => Behaviour::Elastic { stiffness },
+        None | Some((Behaviour::Elastic { .. } | Behaviour::Beam(_), _)) => {
+            Behaviour::Elastic { stiffness }
+        }
         Some((behaviour, expected)) if expected > 0.0 => behaviour.scaled(stiffness / expected),
         Some(_) => Behaviour::Elastic { stiffness },
     }
@@ -118,20 +179,31 @@ fn as_stiff_as(stiffness: f64, specimen: &Specimen) -> Behaviour {
 
 /// Standard deviation of a force reading over all pauses of the ramps, N; 0 where each had one reading.
 fn scatter(measured: &Record) -> f64 {
-    let steps = measured.procedures.iter().flat_map(|procedure| match &procedure.history {
-        History::Ramp(history) => history.steps.as_slice(),
-        _ => &[],
+    let steps = measured
+        .procedures
+        .iter()
+        .flat_map(|procedure| match &procedure.history {
+            History::Ramp(history) => history.steps.as_slice(),
+            _ => &[],
+        });
+    let (count, sum) = steps.fold((0.0, 0.0), |(count, sum), step| {
+        (count + 1.0, sum + step.force_scatter.powi(2))
     });
-    let (count, sum) = steps.fold((0.0, 0.0), |(count, sum), step| (count + 1.0, sum + step.force_scatter.powi(2)));
-    if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
+    if count > 0.0 {
+        f64::sqrt(sum / count)
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{elastic_plan, impact, ramp, result_of, run_unwatched, struck_frame};
     use super::*;
-    use crate::formula::Formula::Constant;
+    use crate::plan::formula::Formula::Constant;
     use crate::plan::{BreakCount, InspectTrigger, Move, RampFit};
+    use crate::tests::testing::{
+        elastic_plan, impact, ramp, result_of, run_unwatched, struck_frame,
+    };
 
     /// A frame has its storeys' behaviours: nothing of it is measured first, and the blow is predicted on them.
     #[test]
@@ -139,9 +211,15 @@ mod tests {
         let plan = struck_frame();
         let part = measured_part(&plan).unwrap();
         assert!(part.procedures.is_empty());
-        assert_eq!(told(&part), Some("nothing ran on the rig; p0 did not run and was predicted on a virtual specimen"));
+        assert_eq!(
+            told(&part),
+            Some("nothing ran on the rig; p0 did not run and was predicted on a virtual specimen")
+        );
         let model = prediction(&plan, &run_unwatched(&part)).unwrap();
-        assert_eq!(format!("{:?}", run_unwatched(&model).procedures), format!("{:?}", run_unwatched(&plan).procedures));
+        assert_eq!(
+            format!("{:?}", run_unwatched(&model).procedures),
+            format!("{:?}", run_unwatched(&plan).procedures)
+        );
     }
 
     fn plan() -> Plan {
@@ -150,10 +228,17 @@ mod tests {
         elastic_plan(
             320.0,
             vec![
-                ProcedureKind::Inspect { note: "look".to_owned() },
+                ProcedureKind::Inspect {
+                    note: "look".to_owned(),
+                },
                 ProcedureKind::StiffnessRamp(ramp(1e-3)),
-                ProcedureKind::Inspect { note: "again".to_owned() },
-                ProcedureKind::Move(Move { to: Constant(0.001), speed: None }),
+                ProcedureKind::Inspect {
+                    note: "again".to_owned(),
+                },
+                ProcedureKind::Move(Move {
+                    to: Constant(0.001),
+                    speed: None,
+                }),
                 ProcedureKind::StiffnessRamp(ramp(2e-3)),
                 ProcedureKind::Impact(blow),
             ],
@@ -166,7 +251,9 @@ mod tests {
         assert_eq!(part.procedures.len(), 2, "not what comes after the move");
         assert_eq!(
             told(&part),
-            Some("p0, p1 ran on the rig; p2, p3, p4, p5 did not run and was predicted on a virtual specimen")
+            Some(
+                "p0, p1 ran on the rig; p2, p3, p4, p5 did not run and was predicted on a virtual specimen"
+            )
         );
         assert_eq!(told(&plan()), None);
         let mut blind = plan();
@@ -174,28 +261,58 @@ mod tests {
         assert_eq!(leading(&blind), 0);
         assert!(measured_part(&blind).is_ok(), "the plan says how it bends");
         blind.specimens[0].behaviour = None;
-        assert_eq!(measured_part(&blind).err(), Some(Unrehearsed::NothingMeasured("beam".to_owned())));
+        assert_eq!(
+            measured_part(&blind).err(),
+            Some(Unrehearsed::NothingMeasured("beam".to_owned()))
+        );
     }
 
     #[test]
     fn the_virtual_specimen_is_as_stiff_as_the_measured_one_and_yields_where_the_plan_says() {
         let mut expected = plan();
-        expected.specimens[0].behaviour = Some(Behaviour::Bilinear { stiffness: 400.0, yield_force: 40.0, hardening: 0.1 });
+        expected.specimens[0].behaviour = Some(Behaviour::Bilinear {
+            stiffness: 400.0,
+            yield_force: 40.0,
+            hardening: 0.1,
+        });
         // The rig bends 320 N/m where the plan expects 400.
         let record = run_unwatched(&measured_part(&plan()).unwrap());
         let model = prediction(&expected, &record).unwrap();
-        let Some(Behaviour::Bilinear { stiffness, yield_force, hardening }) = model.specimens[0].behaviour else { panic!() };
-        assert!((stiffness - 320.0).abs() < 1e-9 && (yield_force / stiffness - 0.1).abs() < 1e-12 && hardening == 0.1);
+        let Some(Behaviour::Bilinear {
+            stiffness,
+            yield_force,
+            hardening,
+        }) = model.specimens[0].behaviour
+        else {
+            panic!()
+        };
+        assert!(
+            (stiffness - 320.0).abs() < 1e-9
+                && (yield_force / stiffness - 0.1).abs() < 1e-12
+                && hardening == 0.1
+        );
         // A ramp past yield measured how it yields, whatever the plan expects: here 250 N/m and 30 N, a twentieth on.
         let mut yielding = measured_part(&plan()).unwrap();
-        yielding.specimens[0].behaviour = Some(Behaviour::Bilinear { stiffness: 250.0, yield_force: 30.0, hardening: 0.05 });
+        yielding.specimens[0].behaviour = Some(Behaviour::Bilinear {
+            stiffness: 250.0,
+            yield_force: 30.0,
+            hardening: 0.05,
+        });
         let mut curve = ramp(2.5e-2);
         curve.fit = RampFit::Multilinear(BreakCount::ByCriterion { most: 4 });
         yielding.procedures[1].kind = ProcedureKind::StiffnessRamp(curve);
         let model = prediction(&expected, &run_unwatched(&yielding)).unwrap();
-        let Some(Behaviour::Multilinear { corners }) = &model.specimens[0].behaviour else { panic!() };
-        assert!((corners[0][0] - 0.12).abs() < 1e-9 && (corners[0][1] - 30.0).abs() < 1e-6, "{corners:?}");
-        assert!((corners[1][1] - 30.0 - 12.5 * 0.13).abs() < 1e-6, "{corners:?}");
+        let Some(Behaviour::Multilinear { corners }) = &model.specimens[0].behaviour else {
+            panic!()
+        };
+        assert!(
+            (corners[0][0] - 0.12).abs() < 1e-9 && (corners[0][1] - 30.0).abs() < 1e-6,
+            "{corners:?}"
+        );
+        assert!(
+            (corners[1][1] - 30.0 - 12.5 * 0.13).abs() < 1e-6,
+            "{corners:?}"
+        );
         expected.specimens[0].behaviour = None;
         let model = prediction(&expected, &record).unwrap();
         assert!(

@@ -1,13 +1,12 @@
 //! One run as it goes: the guarded rig, who watches, and the events so far. In: what procedures do. Out: events.
 //! It knows no procedure's physics.
 
-use super::escalate::most_moves;
 use super::stop::Stop;
-use super::study::Unknown;
-use super::{AxisReport, Inspection, Motion, Next, Observer, StepReport};
-use crate::plan::{BlowOn, Plan, Procedure, ProcedureKind};
+use super::{AxisReport, Inspection, Motion, Next, Observer, Settings, StepReport};
+use crate::plan::{Plan, Procedure};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Identity, Reading, Rig, RigFault, Tally};
+use crate::uncertainty::engine::{Tick, Unknown};
 
 /// A reading, when the rig went on its last move (s), and what ends the run.
 pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
@@ -16,8 +15,8 @@ pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
 /// sign of life at least this often.
 const BREATH: f64 = 0.01;
 
-pub(super) struct Session<'run> {
-    pub(super) guard: Guard<'run>,
+pub(crate) struct Session<'run> {
+    pub(crate) guard: Guard<'run>,
     pub(super) observer: &'run mut dyn Observer,
     /// Who the rig says it is.
     identity: Identity,
@@ -30,9 +29,10 @@ pub(super) struct Session<'run> {
     /// Where the rig was found, m.
     pub(super) home: Vec<f64>,
     /// [`Plan::unloads_at_once`]
-    pub(super) unloads_at_once: bool,
+    pub(crate) unloads_at_once: bool,
     /// A person was asked to look, or has paused the run: somebody may stand at the specimen.
     pub(super) attended: bool,
+    pub(crate) settings: Settings,
     /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
     /// rig, and has a watchdog as any.
     reckoned: bool,
@@ -40,7 +40,7 @@ pub(super) struct Session<'run> {
 
 impl<'run> Session<'run> {
     /// Takes the rig behind its guard. The error is the event to record and what ended the run.
-    pub(super) fn begin(
+    pub(crate) fn begin(
         plan: &Plan,
         rig: &'run mut dyn Rig,
         observer: &'run mut dyn Observer,
@@ -55,9 +55,17 @@ impl<'run> Session<'run> {
             Guard::of_axes(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
         } else {
             rig.hold();
-            let degrees =
-                |count| if count == 1 { "one degree of freedom".to_owned() } else { format!("{count} degrees of freedom") };
-            Err(RigFault::Device(format!("these procedures move {}, and the rig has {axes}", degrees(wanted))))
+            let degrees = |count| {
+                if count == 1 {
+                    "one degree of freedom".to_owned()
+                } else {
+                    format!("{count} degrees of freedom")
+                }
+            };
+            Err(RigFault::Device(format!(
+                "these procedures move {}, and the rig has {axes}",
+                degrees(wanted)
+            )))
         };
         match guard {
             Ok(guard) => {
@@ -73,6 +81,7 @@ impl<'run> Session<'run> {
                     home,
                     unloads_at_once: plan.unloads_at_once,
                     attended: false,
+                    settings: Settings::default(),
                     reckoned,
                 })
             }
@@ -82,7 +91,13 @@ impl<'run> Session<'run> {
                     RigFault::LimitBreached { .. } if datum => Stop::AtRest(fault),
                     fault => Stop::Rig(fault),
                 };
-                let event = Event { time, procedure: None, step: None, kind: stop.event_kind(), text: stop.to_string() };
+                let event = Event {
+                    time,
+                    procedure: None,
+                    step: None,
+                    kind: stop.event_kind(),
+                    text: stop.to_string(),
+                };
                 observer.event(&event);
                 Err(Box::new((event, stop)))
             }
@@ -90,7 +105,7 @@ impl<'run> Session<'run> {
     }
 
     /// The events, the last of which says what was mended on the lines of the rig: a deviation, though it did no harm.
-    pub(super) fn finish(mut self) -> Vec<Event> {
+    pub(crate) fn finish(mut self) -> Vec<Event> {
         let tally = self.guard.tally();
         if tally != Tally::default() {
             self.event(EventKind::Mended, tally.to_string());
@@ -99,15 +114,22 @@ impl<'run> Session<'run> {
     }
 
     /// The guard, who watches, and where events go.
-    pub(super) fn parts(&mut self) -> (&mut Guard<'run>, &mut (dyn Observer + 'run), &mut Vec<Event>) {
+    pub(crate) fn parts(
+        &mut self,
+    ) -> (
+        &mut Guard<'run>,
+        &mut (dyn Observer + 'run),
+        &mut Vec<Event>,
+    ) {
         (&mut self.guard, &mut *self.observer, &mut self.events)
     }
 
-    pub(super) fn enter(&mut self, procedure: &Procedure, plan: &Plan) {
+    pub(super) fn enter(&mut self, procedure: &Procedure, steps: Option<u64>) {
         self.procedure = Some(procedure.name.clone());
         self.step = None;
         self.remarks.clear();
-        self.observer.procedure_started(&procedure.name, procedure.kind.keyword(), steps(&procedure.kind, plan));
+        self.observer
+            .procedure_started(&procedure.name, procedure.kind.keyword(), steps);
     }
 
     pub(super) fn leave(&mut self) {
@@ -120,14 +142,20 @@ impl<'run> Session<'run> {
         }
     }
 
-    pub(super) fn event(&mut self, kind: EventKind, text: String) {
-        let event = Event { time: self.guard.time(), procedure: self.procedure.clone(), step: self.step, kind, text };
+    pub(crate) fn event(&mut self, kind: EventKind, text: String) {
+        let event = Event {
+            time: self.guard.time(),
+            procedure: self.procedure.clone(),
+            step: self.step,
+            kind,
+            text,
+        };
         self.observer.event(&event);
         self.events.push(event);
     }
 
     /// What a reader must know of a blow, once: of further blows of the same procedure it is counted.
-    pub(super) fn remark(&mut self, text: String) {
+    pub(crate) fn remark(&mut self, text: String) {
         if let Some((_, again)) = self.remarks.iter_mut().find(|(known, _)| *known == text) {
             *again += 1;
             return;
@@ -137,20 +165,26 @@ impl<'run> Session<'run> {
     }
 
     /// Says what was so of more blows than one.
-    pub(super) fn remark_again(&mut self) {
+    pub(crate) fn remark_again(&mut self) {
         for (text, again) in std::mem::take(&mut self.remarks) {
             match again {
                 0 => {}
                 1 => self.event(EventKind::Remark, format!("after one more blow: {text}")),
-                _ => self.event(EventKind::Remark, format!("after {again} more blows: {text}")),
+                _ => self.event(
+                    EventKind::Remark,
+                    format!("after {again} more blows: {text}"),
+                ),
             }
         }
     }
 
     /// Tells who watches that a step is done, and asks whether to go on.
-    pub(super) fn step_done(&mut self, report: StepReport) -> Result<(), Stop> {
+    pub(crate) fn step_done(&mut self, report: StepReport) -> Result<(), Stop> {
         self.step = Some(report.step);
-        self.observer.step_done(&StepReport { speed: self.guard.speed(), ..report });
+        self.observer.step_done(&StepReport {
+            speed: self.guard.speed(),
+            ..report
+        });
         loop {
             self.stop_if_requested()?;
             match self.observer.next() {
@@ -168,33 +202,44 @@ impl<'run> Session<'run> {
     }
 
     /// Lets a person look at the specimen; what was said, and by whom, is an event.
-    pub(super) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
+    pub(crate) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
         self.ask(note, &mut |observer| observer.inspect(note))
     }
 
     /// Asks for the release of a rig that has not moved yet. Whoever does not give it stops nothing: nothing was begun.
     pub(super) fn release(&mut self, note: &str, motion: &Motion) -> Result<(), Stop> {
-        self.ask(note, &mut |observer| observer.release(note, motion)).map_err(|stop| match stop {
-            Stop::Person { reason } => Stop::NotReleased { reason },
-            stop => stop,
-        })
+        self.ask(note, &mut |observer| observer.release(note, motion))
+            .map_err(|stop| match stop {
+                Stop::Person { reason } => Stop::NotReleased { reason },
+                stop => stop,
+            })
     }
 
-    fn ask(&mut self, note: &str, ask: &mut dyn FnMut(&mut dyn Observer) -> Inspection) -> Result<(), Stop> {
+    fn ask(
+        &mut self,
+        note: &str,
+        ask: &mut dyn FnMut(&mut dyn Observer) -> Inspection,
+    ) -> Result<(), Stop> {
         self.attended = true;
         self.look_at_a_hold()?;
         loop {
             match ask(self.observer) {
                 Inspection::GoOn { note: said, by } => {
                     let said = said.map_or_else(String::new, |said| format!(": {said}"));
-                    self.event(EventKind::Inspection, format!("{note}{said}{}", signed(by.as_deref())));
+                    self.event(
+                        EventKind::Inspection,
+                        format!("{note}{said}{}", signed(by.as_deref())),
+                    );
                     self.look_at_a_hold()?;
                     self.attended = false;
                     return Ok(());
                 }
                 Inspection::Stop { reason, by } => {
                     self.guard.hold();
-                    self.event(EventKind::Inspection, format!("{note}: {reason}{}", signed(by.as_deref())));
+                    self.event(
+                        EventKind::Inspection,
+                        format!("{note}: {reason}{}", signed(by.as_deref())),
+                    );
                     return Err(Stop::Person { reason });
                 }
                 Inspection::Wait => {
@@ -219,33 +264,45 @@ impl<'run> Session<'run> {
     }
 
     /// Whether nothing real is moved, so that what the plan says of the specimen is what the specimen does.
-    pub(super) const fn reckoned(&self) -> bool {
+    pub(crate) const fn reckoned(&self) -> bool {
         self.reckoned
     }
 
     /// While a study of the run is under way, of which so much is done: who watches is told, and a real rig is heard from.
-    pub(super) fn study(&mut self, done: usize, of: usize) -> Result<(), Stop> {
+    fn study(&mut self, done: usize, of: usize) -> Result<(), Stop> {
         self.observer.studying(done, of);
         self.breathe()
     }
 
-    /// Why a study came to nothing is an event, unless the rig failed meanwhile.
-    pub(super) fn told_of(&mut self, study: Result<(), Unknown>) -> Option<Stop> {
-        match study {
+    /// Evaluates the uncertainty of results, unless the run asks for none. Why it is not known is an event; the stop is that of a rig that
+    /// failed meanwhile.
+    pub(crate) fn evaluate_uncertainty(
+        &mut self,
+        study: impl FnOnce(Tick<'_, Stop>) -> Result<(), Unknown<Stop>>,
+    ) -> Option<Stop> {
+        if !self.settings.uncertainty {
+            return None;
+        }
+        match study(&mut |done, of| self.study(done, of)) {
             Ok(()) => None,
-            Err(Unknown::Stop(stop)) => Some(stop),
+            Err(Unknown::Ended(stop)) => Some(stop),
             Err(Unknown::Reason(reason)) => {
-                self.event(EventKind::Remark, format!("the uncertainty of the results is not known: {reason}"));
+                self.event(
+                    EventKind::Remark,
+                    format!("the uncertainty of the results is not known: {reason}"),
+                );
                 None
             }
         }
     }
 
     /// Holds where a person wants the end. Asked after every step, and before anything else begins to move.
-    pub(super) fn stop_if_requested(&mut self) -> Result<(), Stop> {
+    pub(crate) fn stop_if_requested(&mut self) -> Result<(), Stop> {
         if self.observer.stop_requested() {
             self.guard.hold();
-            return Err(Stop::Person { reason: "stopped on request".to_owned() });
+            return Err(Stop::Person {
+                reason: "stopped on request".to_owned(),
+            });
         }
         Ok(())
     }
@@ -259,16 +316,33 @@ impl<'run> Session<'run> {
     }
 
     /// [`Self::step_done`] of a procedure that integrates nothing: rig time is its time.
-    pub(super) fn measured(&mut self, step: u64, time: f64, displacement: f64, force: f64) -> Result<(), Stop> {
+    pub(crate) fn measured(
+        &mut self,
+        step: u64,
+        time: f64,
+        displacement: f64,
+        force: f64,
+    ) -> Result<(), Stop> {
         self.at_rest(step, time, &[displacement], &[force])
     }
 
     /// The same of every axis.
-    pub(super) fn measured_all(&mut self, step: u64, time: f64, reading: &Reading) -> Result<(), Stop> {
+    pub(crate) fn measured_all(
+        &mut self,
+        step: u64,
+        time: f64,
+        reading: &Reading,
+    ) -> Result<(), Stop> {
         self.at_rest(step, time, &reading.displacement, &reading.force)
     }
 
-    fn at_rest(&mut self, step: u64, time: f64, displacement: &[f64], force: &[f64]) -> Result<(), Stop> {
+    fn at_rest(
+        &mut self,
+        step: u64,
+        time: f64,
+        displacement: &[f64],
+        force: &[f64],
+    ) -> Result<(), Stop> {
         let places = self.guard.commanded().iter().zip(displacement).zip(force);
         let mut axes = places.map(|((command, displacement), force)| AxisReport {
             command: *command,
@@ -277,7 +351,9 @@ impl<'run> Session<'run> {
             acceleration: 0.0,
             force: *force,
         });
-        let Some(first) = axes.next() else { return Ok(()) };
+        let Some(first) = axes.next() else {
+            return Ok(());
+        };
         let others = axes.collect();
         self.step_done(StepReport {
             step,
@@ -296,26 +372,30 @@ impl<'run> Session<'run> {
     }
 
     /// Where the last target was, m.
-    pub(super) fn commanded(&self) -> f64 {
+    pub(crate) fn commanded(&self) -> f64 {
         self.guard.commanded()[0]
     }
 
     /// One reading: displacement (m) and force (N).
-    pub(super) fn read(&mut self) -> Result<(f64, f64), Stop> {
+    pub(crate) fn read(&mut self) -> Result<(f64, f64), Stop> {
         Ok(first(&self.guard.read()?))
     }
 
     /// One reading of every axis, and what ends the run where it breaks a limit: it was made all the same, and is kept.
-    pub(super) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
+    pub(crate) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
         let read = self.guard.read();
         self.kept(read)
     }
 
     /// The same, with when the rig went on its last move: begin and end of the even motion that stands for it, s.
-    pub(super) fn read_moved_kept(&mut self) -> Result<MovedReading, Stop> {
+    pub(crate) fn read_moved_kept(&mut self) -> Result<MovedReading, Stop> {
         let read = self.guard.read_moved();
-        let (read, moved) = read.map_or_else(|fault| (Err(fault), None), |(reading, moved)| (Ok(reading), moved));
-        self.kept(read).map(|(reading, stop)| (reading, moved, stop))
+        let (read, moved) = read.map_or_else(
+            |fault| (Err(fault), None),
+            |(reading, moved)| (Ok(reading), moved),
+        );
+        self.kept(read)
+            .map(|(reading, stop)| (reading, moved, stop))
     }
 
     fn kept(&mut self, read: Result<Reading, RigFault>) -> Result<(Reading, Option<Stop>), Stop> {
@@ -329,12 +409,12 @@ impl<'run> Session<'run> {
     }
 
     /// Back to `place` (m), as one move or, where increments are limited, as equal ones.
-    pub(super) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
+    pub(crate) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
         self.go_to_all(&[place], speed)
     }
 
     /// The same of every axis.
-    pub(super) fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
+    pub(crate) fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
         for target in self.guard.way_to(places) {
             self.guard.move_to(&target, speed)?;
         }
@@ -347,39 +427,13 @@ pub(super) fn signed(by: Option<&str>) -> String {
 }
 
 /// Standard deviation of the base shear as the cells of all floors read it, N.
-pub(super) fn of_base_shear(session: &Session<'_>) -> f64 {
+pub(crate) fn of_base_shear(session: &Session<'_>) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
     let floors = session.guard.commanded().len() as f64;
     session.guard.declared_noise().force * floors.sqrt()
 }
 
 /// Displacement (m) and force (N) of the one degree of freedom.
-pub(super) fn first(reading: &Reading) -> (f64, f64) {
+pub(crate) fn first(reading: &Reading) -> (f64, f64) {
     (reading.displacement[0], reading.force[0])
-}
-
-/// Upper bound of a procedure's steps, where the plan alone tells.
-fn steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
-    match kind {
-        ProcedureKind::StiffnessRamp(ramp) => {
-            let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
-            Some(once * u64::from(ramp.repeats))
-        }
-        ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => None,
-        ProcedureKind::Impact(impact) => impact.known_steps(plan.strikers.get(impact.striker)?),
-        ProcedureKind::Escalate(escalate) => {
-            let fastest = escalate.fastest(plan.strikers.get(escalate.striker())?);
-            let blow = match &escalate.blow {
-                BlowOn::Specimen(blow) => blow.known_steps(&fastest)?,
-                BlowOn::Storey(blow) => blow.known_steps(plan, &fastest)?,
-            };
-            let blow = blow.saturating_add(most_moves(escalate.between));
-            Some(blow.saturating_mul(escalate.velocities.len() as u64))
-        }
-        ProcedureKind::StoreyImpact(impact) => impact.known_steps(plan, plan.strikers.get(impact.striker)?),
-        ProcedureKind::Shake(shaking) => shaking.known_steps(plan),
-        ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
-        ProcedureKind::Move(_) => Some(1),
-        ProcedureKind::Inspect { .. } => Some(0),
-    }
 }

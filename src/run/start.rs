@@ -1,29 +1,43 @@
 //! Where a real rig must stand when a run begins: at the plan's zero. The plan's targets count from there, so that a rig that stands
 //! elsewhere would be sent all the way there by its first one. In: readings at rest. Out: why the run does not begin.
 
-use super::gate::{remedy, within};
+use super::pretest_check::{remedy, within};
+use super::replay::Bands;
 use super::session::Session;
 use super::stop::Stop;
-use super::tape::Bands;
 use crate::plan::{Datum, Plan, RealLink};
-use crate::quantity::Dimension;
-use crate::quantity::display::{plain, readable, stated};
 use crate::record::EventKind;
-use crate::rig::failpoint::{self, Guarding};
+use crate::rig::safety::failpoint;
+use crate::rig::safety::failpoint::Guarding;
 use crate::rig::{named_axis, place_and_force};
+use crate::units::Dimension;
+use crate::units::display::{plain, readable, stated};
 
 /// Displacements of every axis, m, and forces, N.
 pub(super) type AtRest<'a> = (&'a [f64], &'a [f64]);
 
 /// How near the axis at this place must stand to the plan's zero, m: as near as it settles at a target.
 pub fn band(plan: &Plan, link: &RealLink, axis: usize) -> f64 {
-    let settled = Bands::of(&plan.rig, link).displacement.get(axis).copied().unwrap_or(0.0);
+    let settled = Bands::of(&plan.rig, link)
+        .displacement
+        .get(axis)
+        .copied()
+        .unwrap_or(0.0);
     // A rig that settles anywhere is near enough where its tiny move is nothing to the specimen.
-    if settled > 0.0 { settled } else { link.gate_of(axis).probe }
+    if settled > 0.0 {
+        settled
+    } else {
+        link.gate_of(axis).probe
+    }
 }
 
 /// Whether the rig stands at the plan's zero. Records of older versions say nothing of where that lies, and nobody asked.
-pub(super) fn check(plan: &Plan, link: &RealLink, session: &Session<'_>, (places, forces): AtRest<'_>) -> Result<(), Stop> {
+pub(super) fn check(
+    plan: &Plan,
+    link: &RealLink,
+    session: &Session<'_>,
+    (places, forces): AtRest<'_>,
+) -> Result<(), Stop> {
     if session.guard.datum().is_none() || !failpoint::on(Guarding::GateStart) {
         return Ok(());
     }
@@ -32,7 +46,8 @@ pub(super) fn check(plan: &Plan, link: &RealLink, session: &Session<'_>, (places
         if within(place.abs(), 0.0, band) {
             continue;
         }
-        let who = named_axis(axis, places.len()).map_or_else(|| "it".to_owned(), |axis| format!("axis {axis}"));
+        let who = named_axis(axis, places.len())
+            .map_or_else(|| "it".to_owned(), |axis| format!("axis {axis}"));
         let at = readable(*place, Dimension::LENGTH);
         let remedy = match link.datum {
             Datum::Machine if within(force.abs(), 0.0, gate.zero) => {
@@ -59,13 +74,34 @@ pub(super) fn told(session: &Session<'_>) -> String {
     if own.iter().all(|place| *place == 0.0) {
         return stands;
     }
-    let own: Vec<String> = own.iter().map(|place| plain(*place, Dimension::LENGTH, 6)).collect();
-    format!("{stands}; the plan's zero is {} of the rig's own", own.join(", "))
+    let own: Vec<String> = own
+        .iter()
+        .map(|place| plain(*place, Dimension::LENGTH, 6))
+        .collect();
+    format!(
+        "{stands}; the plan's zero is {} of the rig's own",
+        own.join(", ")
+    )
 }
 
 /// Puts on record where the plan's zero lies, where that is not the rig's own.
 pub(super) fn tell(link: &RealLink, session: &mut Session<'_>) {
-    let Some(datum) = session.guard.datum().filter(|_| link.datum != Datum::Machine) else { return };
-    let places: Vec<String> = datum.iter().map(|place| plain(*place, Dimension::LENGTH, 6)).collect();
-    session.event(EventKind::Note, format!("the plan's zero is where the rig stands: {} of its own", places.join(", ")));
+    let Some(datum) = session
+        .guard
+        .datum()
+        .filter(|_| link.datum != Datum::Machine)
+    else {
+        return;
+    };
+    let places: Vec<String> = datum
+        .iter()
+        .map(|place| plain(*place, Dimension::LENGTH, 6))
+        .collect();
+    session.event(
+        EventKind::Note,
+        format!(
+            "the plan's zero is where the rig stands: {} of its own",
+            places.join(", ")
+        ),
+    );
 }

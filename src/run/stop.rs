@@ -2,15 +2,15 @@
 
 use std::borrow::Cow;
 
-use crate::formula::FormulaError;
-use crate::quantity::Dimension;
-use crate::quantity::display::stated;
+use crate::plan::formula::FormulaError;
 use crate::record::{EventKind, Outcome};
 use crate::rig::RigFault;
+use crate::units::Dimension;
+use crate::units::display::stated;
 
 /// What ends a run before its end. The rig holds by then.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Stop {
+pub(crate) enum Stop {
     Rig(RigFault),
     /// A reading outside its limit before anything was told to move.
     AtRest(RigFault),
@@ -42,15 +42,21 @@ pub(super) enum Stop {
 
 impl Stop {
     /// Limits and people abort a run; an input that cannot be used blocks it; a rig that fails is a fault.
-    pub(super) fn outcome(&self) -> Outcome {
+    pub(crate) fn outcome(&self) -> Outcome {
         let reason = self.to_string();
         match self {
-            Self::Rig(RigFault::LimitBreached { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
+            Self::Rig(
+                RigFault::LimitBreached { .. }
+                | RigFault::NotSettled { .. }
+                | RigFault::Interrupted,
+            )
             | Self::AtRest(_)
             | Self::Person { .. } => Outcome::Aborted { reason },
             Self::NotReleased { .. } => Outcome::NotReleased { reason },
             Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Blocked { reason },
-            Self::Rig(RigFault::Device(_) | RigFault::Following { .. }) | Self::Gate { .. } => Outcome::Faulted { reason },
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. }) | Self::Gate { .. } => {
+                Outcome::Faulted { reason }
+            }
         }
     }
 
@@ -58,23 +64,30 @@ impl Stop {
     pub(super) const fn leaves_the_rig_sound(&self) -> bool {
         !matches!(
             self,
-            Self::Rig(RigFault::Device(_) | RigFault::Following { .. } | RigFault::NotSettled { .. } | RigFault::Interrupted)
-                | Self::Gate { .. }
+            Self::Rig(
+                RigFault::Device(_)
+                    | RigFault::Following { .. }
+                    | RigFault::NotSettled { .. }
+                    | RigFault::Interrupted
+            ) | Self::Gate { .. }
                 | Self::NotReleased { .. }
         )
     }
 
     /// Whether it was a person who ended the run.
     pub(super) const fn is_a_persons(&self) -> bool {
-        matches!(self, Self::Person { .. } | Self::NotReleased { .. } | Self::Rig(RigFault::Interrupted))
+        matches!(
+            self,
+            Self::Person { .. } | Self::NotReleased { .. } | Self::Rig(RigFault::Interrupted)
+        )
     }
 
-    pub(super) const fn event_kind(&self) -> EventKind {
+    pub(crate) const fn event_kind(&self) -> EventKind {
         match self {
             Self::Rig(RigFault::LimitBreached { .. }) | Self::AtRest(_) => EventKind::LimitBreach,
-            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted) | Self::Person { .. } | Self::NotReleased { .. } => {
-                EventKind::Hold
-            }
+            Self::Rig(RigFault::NotSettled { .. } | RigFault::Interrupted)
+            | Self::Person { .. }
+            | Self::NotReleased { .. } => EventKind::Hold,
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
             | Self::Gate { .. }
             | Self::NoInput { .. }
@@ -95,8 +108,17 @@ impl std::fmt::Display for Stop {
             Self::Person { reason } | Self::NotReleased { reason } => f.write_str(reason),
             Self::Gate { reason } => write!(f, "the rig did not pass the gate: {reason}"),
             Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
-            Self::BadInput { field, value, dimension, wanted } => {
-                write!(f, "`{field}` came out as {}, but must be {wanted}", stated(*value, *dimension))
+            Self::BadInput {
+                field,
+                value,
+                dimension,
+                wanted,
+            } => {
+                write!(
+                    f,
+                    "`{field}` came out as {}, but must be {wanted}",
+                    stated(*value, *dimension)
+                )
             }
         }
     }

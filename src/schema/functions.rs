@@ -1,6 +1,6 @@
 //! The functions of expressions.
 
-use crate::formula::Function;
+use crate::plan::formula::Function;
 
 /// A function, and what it takes.
 #[derive(Debug)]
@@ -12,17 +12,67 @@ pub struct FunctionKind {
     pub doc: &'static str,
 }
 
-const fn function(name: &'static str, function: Function, many: bool, doc: &'static str) -> FunctionKind {
-    FunctionKind { name, function, many, doc }
+const fn function(
+    name: &'static str,
+    function: Function,
+    many: bool,
+    doc: &'static str,
+) -> FunctionKind {
+    FunctionKind {
+        name,
+        function,
+        many,
+        doc,
+    }
 }
 
 pub const FUNCTIONS: &[FunctionKind] = &[
-    function("abs", Function::Abs, false, "the size of a number, without its sign"),
-    function("min", Function::Min, true, "the smallest of several values or of a list"),
-    function("max", Function::Max, true, "the largest of several values or of a list"),
-    function("sum", Function::Sum, true, "the sum of several values or of a list"),
-    function("mean", Function::Mean, true, "the mean of several values or of a list"),
-    function("sqrt", Function::Sqrt, false, "the square root; its unit is the root of the unit"),
-    function("sin", Function::Sin, false, "the sine of an angle in radians"),
-    function("cos", Function::Cos, false, "the cosine of an angle in radians"),
+    function(
+        "abs",
+        Function::Abs,
+        false,
+        "the size of a number, without its sign",
+    ),
+    function(
+        "min",
+        Function::Min,
+        true,
+        "the smallest of several values or of a list",
+    ),
+    function(
+        "max",
+        Function::Max,
+        true,
+        "the largest of several values or of a list",
+    ),
+    function(
+        "sum",
+        Function::Sum,
+        true,
+        "the sum of several values or of a list",
+    ),
+    function(
+        "mean",
+        Function::Mean,
+        true,
+        "the mean of several values or of a list",
+    ),
+    function(
+        "sqrt",
+        Function::Sqrt,
+        false,
+        "the square root; its unit is the root of the unit",
+    ),
+    function(
+        "sin",
+        Function::Sin,
+        false,
+        "the sine of an angle in radians",
+    ),
+    function(
+        "cos",
+        Function::Cos,
+        false,
+        "the cosine of an angle in radians",
+    ),
 ];

@@ -1,51 +1,41 @@
-//! The vocabulary, as data: every block, field, variant, default, range, result and function of the language, written
-//! once. The checker, the suggestions, the reference and the tools read it. It knows nothing of syntax or of plans.
+//! The vocabulary as data: every block, field, variant, default, range, result and function,
+//! written once. The check, the suggestions, the reference and the tools read it. It knows no
+//! syntax and no plan.
 
-mod behaviours;
-mod columns;
-mod curves;
-mod cyclic;
-mod declarations;
-mod devices;
-mod frames;
+pub mod blocks;
+pub(crate) mod columns;
 mod functions;
-mod golden;
 mod later;
-mod limits;
-mod methods;
-mod plan_block;
-mod procedures;
 mod reference;
-mod report;
-mod results;
-mod rig;
-mod sequences;
 mod types;
 
-pub use columns::{Column, columns};
+pub(crate) use blocks::{curves, procedures};
+pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use reference::reference;
-pub use types::{BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant};
+pub use types::{
+    BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant,
+};
 
 /// Every kind of block, in the order of the reference.
 pub const BLOCKS: &[&BlockKind] = &[
-    &plan_block::PLAN,
-    &declarations::SPECIMEN,
-    &declarations::STRIKER,
-    &frames::GROUND,
-    &limits::LIMITS,
-    &rig::RIG,
-    &procedures::STIFFNESS_RAMP,
-    &procedures::DAMPING_SWEEP,
-    &procedures::IMPACT,
-    &cyclic::CYCLE,
-    &frames::SHAKE,
-    &sequences::ESCALATE,
-    &sequences::UNLOAD,
-    &procedures::MOVE,
-    &procedures::INSPECT,
-    &report::REPORT,
-    &golden::GOLDEN,
+    &blocks::plan_block::PLAN,
+    &blocks::declarations::SPECIMEN,
+    &blocks::declarations::STRIKER,
+    &blocks::frames::GROUND,
+    &blocks::limits::LIMITS,
+    &blocks::rig::RIG,
+    &blocks::procedures::stiffness_ramp::BLOCK,
+    &blocks::procedures::damping_sweep::BLOCK,
+    &blocks::procedures::impact::BLOCK,
+    &blocks::procedures::cycle::BLOCK,
+    &blocks::procedures::base_excitation::BLOCK,
+    &blocks::procedures::impact_series::BLOCK,
+    &blocks::procedures::unload::BLOCK,
+    &blocks::procedures::move_to::BLOCK,
+    &blocks::procedures::inspect::BLOCK,
+    &blocks::report::REPORT,
+    &blocks::golden::GOLDEN,
     &later::STUDY,
 ];
 
@@ -55,13 +45,21 @@ pub const ITEM_WORDS: &[&str] = &["use", "param", "let", "require"];
 /// The kind whose keyword begins these words: the longest that fits.
 #[must_use]
 pub fn block_of_words(words: &[&str]) -> Option<&'static BlockKind> {
-    BLOCKS.iter().copied().filter(|block| words.starts_with(block.keyword)).max_by_key(|block| block.keyword.len())
+    BLOCKS
+        .iter()
+        .copied()
+        .filter(|block| words.starts_with(block.keyword))
+        .max_by_key(|block| block.keyword.len())
 }
 
 /// The kind of block the program calls `kind`.
 #[must_use]
 pub fn block(kind: Kind) -> &'static BlockKind {
-    BLOCKS.iter().copied().find(|block| block.kind == kind).unwrap_or(&plan_block::PLAN)
+    BLOCKS
+        .iter()
+        .copied()
+        .find(|block| block.kind == kind)
+        .unwrap_or(&blocks::plan_block::PLAN)
 }
 
 #[cfg(test)]
@@ -70,8 +68,14 @@ mod tests {
 
     #[test]
     fn the_longest_keyword_wins_and_a_name_is_no_part_of_it() {
-        assert_eq!(block_of_words(&["stiffness", "ramp", "k0"]).map(|block| block.kind), Some(Kind::StiffnessRamp));
-        assert_eq!(block_of_words(&["inspect"]).map(|block| block.kind), Some(Kind::Inspect));
+        assert_eq!(
+            block_of_words(&["stiffness", "ramp", "k0"]).map(|block| block.kind),
+            Some(Kind::StiffnessRamp)
+        );
+        assert_eq!(
+            block_of_words(&["inspect"]).map(|block| block.kind),
+            Some(Kind::Inspect)
+        );
         assert!(block_of_words(&["stiffness", "k0"]).is_none());
     }
 
@@ -80,9 +84,11 @@ mod tests {
         /// The field, its arguments, and theirs.
         fn all(field: &'static Field) -> Vec<&'static Field> {
             let inner: Vec<&Field> = match field.ty {
-                FieldType::Choice(variants) | FieldType::Choices(variants) => {
-                    variants.iter().flat_map(|variant| variant.arguments).flat_map(all).collect()
-                }
+                FieldType::Choice(variants) | FieldType::Choices(variants) => variants
+                    .iter()
+                    .flat_map(|variant| variant.arguments)
+                    .flat_map(all)
+                    .collect(),
                 _ => Vec::new(),
             };
             [vec![field], inner].concat()
@@ -91,7 +97,12 @@ mod tests {
             if let (Need::Default { unit, .. }, Some(dimension)) = (field.need, field.dimension())
                 && !unit.is_empty()
             {
-                assert_eq!(crate::quantity::unit::parse(unit).unwrap().dimension, dimension, "{}", field.name);
+                assert_eq!(
+                    crate::units::unit::parse(unit).unwrap().dimension,
+                    dimension,
+                    "{}",
+                    field.name
+                );
             }
         }
     }
@@ -100,7 +111,11 @@ mod tests {
     fn no_block_says_a_name_twice() {
         for block in BLOCKS {
             for names in [
-                block.fields.iter().map(|field| field.name).collect::<Vec<_>>(),
+                block
+                    .fields
+                    .iter()
+                    .map(|field| field.name)
+                    .collect::<Vec<_>>(),
                 block.results.iter().map(|result| result.name).collect(),
             ] {
                 let mut sorted = names.clone();

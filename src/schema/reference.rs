@@ -3,11 +3,13 @@
 
 use std::fmt::Write as _;
 
-use super::{BLOCKS, BlockKind, FUNCTIONS, Field, FieldType, Kind, Naming, Need, Range, ResultKind, Variant};
-use crate::diagnostic::Code;
-use crate::quantity::Dimension;
-use crate::quantity::display::{si_unit, significant};
-use crate::quantity::unit::{PREFIXES, UNITS};
+use super::{
+    BLOCKS, BlockKind, FUNCTIONS, Field, FieldType, Kind, Naming, Need, Range, ResultKind, Variant,
+};
+use crate::text::diagnostic::Code;
+use crate::units::Dimension;
+use crate::units::display::{si_unit, significant};
+use crate::units::unit::{PREFIXES, UNITS};
 
 /// The generated part of `grammar/LANGUAGE.md`: every block, field, choice and result, then functions, units and codes.
 #[must_use]
@@ -32,8 +34,17 @@ fn write_block(text: &mut String, block: &BlockKind) {
         Naming::Unnamed => "",
         Naming::MaybeNamed => " [NAME]",
     };
-    let _ = write!(text, "\n### `{}{naming} {{ … }}`\n\n{}.", block.words(), block.doc);
-    let _ = writeln!(text, "{}\n", if block.procedure { " A procedure." } else { "" });
+    let _ = write!(
+        text,
+        "\n### `{}{naming} {{ … }}`\n\n{}.",
+        block.words(),
+        block.doc
+    );
+    let _ = writeln!(
+        text,
+        "{}\n",
+        if block.procedure { " A procedure." } else { "" }
+    );
     let _ = writeln!(text, "| field | takes | if absent | |\n|---|---|---|---|");
     for field in block.fields.iter().filter(|field| field.available) {
         let real = match (field.real_rig_only, field.of_frames) {
@@ -41,7 +52,14 @@ fn write_block(text: &mut String, block: &BlockKind) {
             (_, true) => "; of frames only",
             _ => "",
         };
-        let _ = writeln!(text, "| `{}` | {} | {} | {}{real} |", field.name, takes(field), absent(field), field.doc);
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | {}{real} |",
+            field.name,
+            takes(field),
+            absent(field),
+            field.doc
+        );
     }
     let mut written = Vec::new();
     for field in block.fields {
@@ -52,25 +70,45 @@ fn write_block(text: &mut String, block: &BlockKind) {
     }
     write_values(text, "what follows", block.exports);
     write_values(text, "result", block.results);
-    let later: Vec<String> =
-        block.fields.iter().filter(|field| !field.available).map(|field| format!("`{}`", field.name)).collect();
+    let later: Vec<String> = block
+        .fields
+        .iter()
+        .filter(|field| !field.available)
+        .map(|field| format!("`{}`", field.name))
+        .collect();
     if !later.is_empty() {
         let _ = writeln!(text, "\nNot in this version: {}.", later.join(", "));
     }
 }
 
 /// A choice's words, each with its arguments below it; those of a list that stands in this block already are not said again.
-fn write_variants(text: &mut String, variants: &[Variant], depth: usize, written: &mut Vec<Vec<&'static str>>) {
+fn write_variants(
+    text: &mut String,
+    variants: &[Variant],
+    depth: usize,
+    written: &mut Vec<Vec<&'static str>>,
+) {
     let indent = "  ".repeat(depth);
     for variant in variants {
-        let names: Vec<&str> = variant.arguments.iter().map(|argument| argument.name).collect();
-        let many = variant.arguments.iter().any(|argument| matches!(argument.ty, FieldType::Inners));
+        let names: Vec<&str> = variant
+            .arguments
+            .iter()
+            .map(|argument| argument.name)
+            .collect();
+        let many = variant
+            .arguments
+            .iter()
+            .any(|argument| matches!(argument.ty, FieldType::Inners));
         let brackets = match (names.is_empty(), many) {
             (true, _) => String::new(),
             (false, true) => "(a, b, …)".to_owned(),
             (false, false) => format!("({})", names.join(", ")),
         };
-        let _ = writeln!(text, "{indent}- `{}{brackets}`: {}", variant.name, variant.doc);
+        let _ = writeln!(
+            text,
+            "{indent}- `{}{brackets}`: {}",
+            variant.name, variant.doc
+        );
         let signature = [vec![variant.name], names].concat();
         if written.contains(&signature) {
             let _ = writeln!(text, "{indent}  - as above");
@@ -85,7 +123,13 @@ fn write_variants(text: &mut String, variants: &[Variant], depth: usize, written
                 words if argument.need == Need::Required => format!("; {words}"),
                 words => format!("; if absent {words}"),
             };
-            let _ = writeln!(text, "{indent}  - `{}`: {}; {}{absent}", argument.name, argument.doc, takes(argument));
+            let _ = writeln!(
+                text,
+                "{indent}  - `{}`: {}; {}{absent}",
+                argument.name,
+                argument.doc,
+                takes(argument)
+            );
             match argument.ty {
                 FieldType::Choice(inner) if is_written(inner, written) => {
                     let _ = writeln!(text, "{indent}    - as above");
@@ -99,8 +143,15 @@ fn write_variants(text: &mut String, variants: &[Variant], depth: usize, written
 
 /// Whether every word of a choice that takes arguments stands in this block already.
 fn is_written(variants: &[Variant], written: &[Vec<&'static str>]) -> bool {
-    let mut with = variants.iter().filter(|variant| !variant.arguments.is_empty()).peekable();
-    let known = |name: &str| written.iter().any(|signature| signature.first() == Some(&name));
+    let mut with = variants
+        .iter()
+        .filter(|variant| !variant.arguments.is_empty())
+        .peekable();
+    let known = |name: &str| {
+        written
+            .iter()
+            .any(|signature| signature.first() == Some(&name))
+    };
     with.peek().is_some() && with.all(|variant| known(variant.name))
 }
 
@@ -110,11 +161,27 @@ fn write_values(text: &mut String, head: &str, values: &[ResultKind]) {
     }
     let _ = writeln!(text, "\n| {head} | unit | |\n|---|---|---|");
     for value in values {
-        let unit = if value.dimension == Dimension::NUMBER { String::new() } else { format!("`{}`", si_unit(value.dimension)) };
-        let measured = if value.measured { ", with its standard uncertainty `.u`" } else { "" };
+        let unit = if value.dimension == Dimension::NUMBER {
+            String::new()
+        } else {
+            format!("`{}`", si_unit(value.dimension))
+        };
+        let measured = if value.measured {
+            ", with its standard uncertainty `.u`"
+        } else {
+            ""
+        };
         let list = if value.list { "; a list" } else { "" };
-        let storey = if value.of_storey { "; of frames only" } else { "" };
-        let _ = writeln!(text, "| `{}` | {unit} | {}{measured}{list}{storey} |", value.name, value.doc);
+        let storey = if value.of_storey {
+            "; of frames only"
+        } else {
+            ""
+        };
+        let _ = writeln!(
+            text,
+            "| `{}` | {unit} | {}{measured}{list}{storey} |",
+            value.name, value.doc
+        );
     }
 }
 
@@ -164,16 +231,32 @@ fn measure(dimension: Dimension) -> String {
 /// The range of a value, `, above 0`; a limit of a dimension stands in its SI unit.
 fn allowed(range: Range, dimension: Dimension) -> String {
     let shown = |value: f64| {
-        let value = if dimension == Dimension::NUMBER { (value * 1e4).round() / 1e4 } else { value };
-        let number = if value.abs() < 1e7 { value.to_string() } else { significant(value, 2) };
-        if value == 0.0 || dimension == Dimension::NUMBER { number } else { format!("{number} {}", si_unit(dimension)) }
+        let value = if dimension == Dimension::NUMBER {
+            (value * 1e4).round() / 1e4
+        } else {
+            value
+        };
+        let number = if value.abs() < 1e7 {
+            value.to_string()
+        } else {
+            significant(value, 2)
+        };
+        if value == 0.0 || dimension == Dimension::NUMBER {
+            number
+        } else {
+            format!("{number} {}", si_unit(dimension))
+        }
     };
     match (range.low.is_finite(), range.high.is_finite()) {
         (false, false) => String::new(),
         (true, false) if range.above => format!(", above {}", shown(range.low)),
         (true, false) => format!(", at least {}", shown(range.low)),
         (false, true) => format!(", at most {}", shown(range.high)),
-        (true, true) if range.above => format!(", above {} and at most {}", shown(range.low), shown(range.high)),
+        (true, true) if range.above => format!(
+            ", above {} and at most {}",
+            shown(range.low),
+            shown(range.high)
+        ),
         (true, true) => format!(", {} to {}", shown(range.low), shown(range.high)),
     }
 }
@@ -187,7 +270,10 @@ fn absent(field: &Field) -> String {
 }
 
 fn write_later(text: &mut String) {
-    let _ = writeln!(text, "\n### Not in this version\n\nKnown words that this version of psd does not carry out.\n");
+    let _ = writeln!(
+        text,
+        "\n### Not in this version\n\nKnown words that this version of psd does not carry out.\n"
+    );
     for block in BLOCKS.iter().filter(|block| block.kind == Kind::Later) {
         let _ = writeln!(text, "- `{}`: {}", block.words(), block.doc);
     }
@@ -197,27 +283,52 @@ fn write_functions(text: &mut String) {
     let _ = writeln!(text, "\n## Functions\n\n| function | |\n|---|---|");
     for function in FUNCTIONS {
         let arguments = if function.many { "a, b, …" } else { "a" };
-        let _ = writeln!(text, "| `{}({arguments})` | {} |", function.name, function.doc);
+        let _ = writeln!(
+            text,
+            "| `{}({arguments})` | {} |",
+            function.name, function.doc
+        );
     }
 }
 
 fn write_units(text: &mut String) {
-    let _ = writeln!(text, "\n## Units\n\n| unit | | measures | prefixes | in SI |\n|---|---|---|---|---|");
+    let _ = writeln!(
+        text,
+        "\n## Units\n\n| unit | | measures | prefixes | in SI |\n|---|---|---|---|---|"
+    );
     for unit in UNITS {
         let prefixes = if unit.prefixes { "yes" } else { "" };
-        let base = if unit.dimension == Dimension::NUMBER { String::new() } else { format!(" `{}`", si_unit(unit.dimension)) };
+        let base = if unit.dimension == Dimension::NUMBER {
+            String::new()
+        } else {
+            format!(" `{}`", si_unit(unit.dimension))
+        };
         let (symbol, doc, measures) = (unit.symbol, unit.doc, unit.dimension.describe());
-        let _ = writeln!(text, "| `{symbol}` | {doc} | {measures} | {prefixes} | {}{base} |", unit.factor);
+        let _ = writeln!(
+            text,
+            "| `{symbol}` | {doc} | {measures} | {prefixes} | {}{base} |",
+            unit.factor
+        );
     }
-    let prefixes: Vec<String> = PREFIXES.iter().map(|(prefix, factor)| format!("`{prefix}` {factor:e}")).collect();
+    let prefixes: Vec<String> = PREFIXES
+        .iter()
+        .map(|(prefix, factor)| format!("`{prefix}` {factor:e}"))
+        .collect();
     let _ = writeln!(text, "\nPrefixes: {}.", prefixes.join(", "));
 }
 
 fn write_codes(text: &mut String) {
-    let _ =
-        writeln!(text, "\n## Diagnostic codes\n\nWarnings start with W. `psd explain CODE` tells more.\n\n| code | |\n|---|---|");
+    let _ = writeln!(
+        text,
+        "\n## Diagnostic codes\n\nWarnings start with W. `psd explain CODE` tells more.\n\n| code | |\n|---|---|"
+    );
     for code in Code::ALL {
-        let title = code.page().lines().next().and_then(|line| line.split_once(": ")).map_or("", |(_, title)| title);
+        let title = code
+            .page()
+            .lines()
+            .next()
+            .and_then(|line| line.split_once(": "))
+            .map_or("", |(_, title)| title);
         let _ = writeln!(text, "| {code} | {title} |");
     }
 }

@@ -1,6 +1,6 @@
 //! What an entry of the vocabulary is made of, and small look-ups in it.
 
-use crate::quantity::Dimension;
+use crate::units::Dimension;
 
 /// Which block the program deals with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +58,10 @@ pub struct BlockKind {
 }
 
 /// One field of a block, or one argument of a variant (in positional order).
-#[expect(clippy::struct_excessive_bools, reason = "each says one thing of a field, and none follows from another")]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each says one thing of a field, and none follows from another"
+)]
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     pub name: &'static str,
@@ -172,17 +175,28 @@ pub struct Range {
 }
 
 impl Range {
-    pub const ANY: Self = Self { low: f64::NEG_INFINITY, above: false, high: f64::INFINITY };
+    pub const ANY: Self = Self {
+        low: f64::NEG_INFINITY,
+        above: false,
+        high: f64::INFINITY,
+    };
 
     /// Whether `value` is allowed; NaN never is.
     #[must_use]
     pub fn contains(self, value: f64) -> bool {
-        (if self.above { value > self.low } else { value >= self.low }) && value <= self.high
+        (if self.above {
+            value > self.low
+        } else {
+            value >= self.low
+        }) && value <= self.high
     }
 }
 
 /// A value that can be read from outside a block.
-#[expect(clippy::struct_excessive_bools, reason = "each says one thing of a result, and none follows from another")]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each says one thing of a result, and none follows from another"
+)]
 #[derive(Clone, Copy, Debug)]
 pub struct ResultKind {
     pub name: &'static str,
@@ -265,37 +279,76 @@ impl Field {
         Self::new(name, FieldType::Inners, doc)
     }
 
-    pub(super) const fn quantity(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+    pub(super) const fn quantity(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
         Self::new(name, FieldType::Quantity(dimension), doc)
     }
 
     pub(super) const fn angle(name: &'static str, doc: &'static str) -> Self {
-        Self { angle: true, ..Self::quantity(name, Dimension::NUMBER, doc) }
+        Self {
+            angle: true,
+            ..Self::quantity(name, Dimension::NUMBER, doc)
+        }
     }
 
-    pub(super) const fn quantities(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+    pub(super) const fn quantities(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
         Self::new(name, FieldType::Quantities(dimension), doc)
     }
 
-    pub(super) const fn bounds(name: &'static str, dimension: Dimension, symmetric: bool, doc: &'static str) -> Self {
-        Self::new(name, FieldType::Bounds { dimension, symmetric }, doc)
+    pub(super) const fn bounds(
+        name: &'static str,
+        dimension: Dimension,
+        symmetric: bool,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(
+            name,
+            FieldType::Bounds {
+                dimension,
+                symmetric,
+            },
+            doc,
+        )
     }
 
-    pub(super) const fn interval(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+    pub(super) const fn interval(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
         Self::new(name, FieldType::Interval(dimension), doc)
     }
 
     pub(super) const fn count(name: &'static str, low: f64, high: f64, doc: &'static str) -> Self {
         let mut field = Self::new(name, FieldType::Count, doc);
-        field.range = Range { low, above: false, high };
+        field.range = Range {
+            low,
+            above: false,
+            high,
+        };
         field
     }
 
-    pub(super) const fn choice(name: &'static str, variants: &'static [Variant], doc: &'static str) -> Self {
+    pub(super) const fn choice(
+        name: &'static str,
+        variants: &'static [Variant],
+        doc: &'static str,
+    ) -> Self {
         Self::new(name, FieldType::Choice(variants), doc)
     }
 
-    pub(super) const fn choices(name: &'static str, variants: &'static [Variant], doc: &'static str) -> Self {
+    pub(super) const fn choices(
+        name: &'static str,
+        variants: &'static [Variant],
+        doc: &'static str,
+    ) -> Self {
         Self::new(name, FieldType::Choices(variants), doc)
     }
 
@@ -319,7 +372,12 @@ impl Field {
     }
 
     /// Must stand on a rig of this kind; elsewhere the words hold.
-    pub(super) const fn required_on(mut self, rig: RigKind, example: &'static str, otherwise: &'static str) -> Self {
+    pub(super) const fn required_on(
+        mut self,
+        rig: RigKind,
+        example: &'static str,
+        otherwise: &'static str,
+    ) -> Self {
         self.need = Need::RequiredOn(rig, otherwise);
         self.example = example;
         self
@@ -346,23 +404,39 @@ impl Field {
     }
 
     pub(super) const fn above_zero(mut self) -> Self {
-        self.range = Range { low: 0.0, above: true, high: f64::INFINITY };
+        self.range = Range {
+            low: 0.0,
+            above: true,
+            high: f64::INFINITY,
+        };
         self
     }
 
     pub(super) const fn at_least_zero(mut self) -> Self {
-        self.range = Range { low: 0.0, above: false, high: f64::INFINITY };
+        self.range = Range {
+            low: 0.0,
+            above: false,
+            high: f64::INFINITY,
+        };
         self
     }
 
     /// Above 0 and at most `high`.
     pub(super) const fn above_zero_up_to(mut self, high: f64) -> Self {
-        self.range = Range { low: 0.0, above: true, high };
+        self.range = Range {
+            low: 0.0,
+            above: true,
+            high,
+        };
         self
     }
 
     pub(super) const fn within(mut self, low: f64, high: f64) -> Self {
-        self.range = Range { low, above: false, high };
+        self.range = Range {
+            low,
+            above: false,
+            high,
+        };
         self
     }
 
@@ -387,7 +461,9 @@ impl Field {
             Need::Default { number, unit } => Some(format!("{number} {unit}")),
             Need::Said(words) => Some(words.to_owned()),
             Need::RequiredOn(rig, "") => Some(format!("**required** on a {} rig", rig.name())),
-            Need::RequiredOn(rig, words) => Some(format!("{words}; **required** on a {} rig", rig.name())),
+            Need::RequiredOn(rig, words) => {
+                Some(format!("{words}; **required** on a {} rig", rig.name()))
+            }
             Need::Required | Need::Optional => None,
         }
     }
@@ -397,7 +473,9 @@ impl Field {
     pub fn default_number(&self) -> Option<f64> {
         match self.need {
             Need::Default { number, unit: "" } => Some(number),
-            Need::Default { number, unit } => crate::quantity::unit::parse(unit).ok().map(|unit| number * unit.factor),
+            Need::Default { number, unit } => crate::units::unit::parse(unit)
+                .ok()
+                .map(|unit| number * unit.factor),
             _ => None,
         }
     }
@@ -405,11 +483,23 @@ impl Field {
 
 impl Variant {
     pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
-        Self { name, arguments: &[], doc }
+        Self {
+            name,
+            arguments: &[],
+            doc,
+        }
     }
 
-    pub(super) const fn with(name: &'static str, arguments: &'static [Field], doc: &'static str) -> Self {
-        Self { name, arguments, doc }
+    pub(super) const fn with(
+        name: &'static str,
+        arguments: &'static [Field],
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            arguments,
+            doc,
+        }
     }
 
     #[must_use]
@@ -420,29 +510,60 @@ impl Variant {
 
 impl ResultKind {
     pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { name, dimension, measured: false, count: false, list: false, of_storey: false, doc }
+        Self {
+            name,
+            dimension,
+            measured: false,
+            count: false,
+            list: false,
+            of_storey: false,
+            doc,
+        }
     }
 
     /// Of an impact on a storey only.
     pub(super) const fn of_storey(self) -> Self {
-        Self { of_storey: true, ..self }
+        Self {
+            of_storey: true,
+            ..self
+        }
     }
 
-    pub(super) const fn measured(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { measured: true, ..Self::new(name, dimension, doc) }
+    pub(super) const fn measured(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            measured: true,
+            ..Self::new(name, dimension, doc)
+        }
     }
 
     pub(super) const fn count(name: &'static str, doc: &'static str) -> Self {
-        Self { count: true, ..Self::new(name, Dimension::NUMBER, doc) }
+        Self {
+            count: true,
+            ..Self::new(name, Dimension::NUMBER, doc)
+        }
     }
 
     /// Several numbers of one dimension.
     pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { list: true, ..Self::new(name, dimension, doc) }
+        Self {
+            list: true,
+            ..Self::new(name, dimension, doc)
+        }
     }
 
     /// The same, each with its uncertainty.
-    pub(super) const fn measured_list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
-        Self { measured: true, ..Self::list(name, dimension, doc) }
+    pub(super) const fn measured_list(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            measured: true,
+            ..Self::list(name, dimension, doc)
+        }
     }
 }

@@ -3,8 +3,8 @@
 //! everything that is printed.
 
 use super::{Contribution, Source, combined};
-use crate::formula::{ProcedureId, Results};
-use crate::mechanics::student;
+use crate::physics::statistics::student_t;
+use crate::plan::formula::{ProcedureId, Results};
 
 /// Draws of the readings' errors of one blow, at most: the standard uncertainty they give is known to 1/√(2·64), 9 %.
 pub const MOST_DRAWS: u16 = 64;
@@ -25,13 +25,16 @@ impl Known {
     /// By nothing that was estimated from few readings.
     #[must_use]
     pub const fn surely(standard: f64) -> Self {
-        Self { standard, degrees: f64::INFINITY }
+        Self {
+            standard,
+            degrees: f64::INFINITY,
+        }
     }
 
     /// k, so that ±k·u hold 95.45 % of the cases.
     #[must_use]
     pub fn coverage(self) -> f64 {
-        student::coverage(self.degrees)
+        student_t::coverage(self.degrees)
     }
 
     /// U = k·u
@@ -79,22 +82,41 @@ pub fn known(parts: &[Contribution], results: &dyn Results) -> Option<Known> {
         }
     }
     let variance: f64 = parts.iter().map(|part| part.amount * part.amount).sum();
-    let spread: f64 = estimates.iter().map(|(_, squares, degrees)| squares * squares / degrees).sum();
-    let degrees = if spread > 0.0 { variance * variance / spread } else { f64::INFINITY };
+    let spread: f64 = estimates
+        .iter()
+        .map(|(_, squares, degrees)| squares * squares / degrees)
+        .sum();
+    let degrees = if spread > 0.0 {
+        variance * variance / spread
+    } else {
+        f64::INFINITY
+    };
     Some(Known { standard, degrees })
 }
 
 /// The same of each of `count` entries of a list.
 #[must_use]
-pub fn known_entries(parts: &[Contribution], count: usize, results: &dyn Results) -> Vec<Option<Known>> {
-    let of_entry = |entry| parts.iter().filter(|part| part.entry == entry).copied().collect::<Vec<Contribution>>();
-    (0..count).map(|entry| known(&of_entry(entry), results)).collect()
+pub fn known_entries(
+    parts: &[Contribution],
+    count: usize,
+    results: &dyn Results,
+) -> Vec<Option<Known>> {
+    let of_entry = |entry| {
+        parts
+            .iter()
+            .filter(|part| part.entry == entry)
+            .copied()
+            .collect::<Vec<Contribution>>()
+    };
+    (0..count)
+        .map(|entry| known(&of_entry(entry), results))
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formula::{ResultReference, ResultValue};
+    use crate::plan::formula::{ResultReference, ResultValue};
 
     /// Two fits: that of procedure 0 with 4 degrees of freedom, that of procedure 1 with 9.
     struct Two;
@@ -106,7 +128,10 @@ mod tests {
 
         fn degrees(&self, source: Source) -> f64 {
             match source {
-                Source::Fit { procedure: ProcedureId(0), .. } => 4.0,
+                Source::Fit {
+                    procedure: ProcedureId(0),
+                    ..
+                } => 4.0,
                 Source::Fit { .. } => 9.0,
                 _ => f64::INFINITY,
             }
@@ -114,7 +139,13 @@ mod tests {
     }
 
     fn fit(procedure: usize, result: &'static str, amount: f64) -> Contribution {
-        Contribution::new(Source::Fit { procedure: ProcedureId(procedure), result }, amount)
+        Contribution::new(
+            Source::Fit {
+                procedure: ProcedureId(procedure),
+                result,
+            },
+            amount,
+        )
     }
 
     fn degrees(parts: &[Contribution]) -> f64 {
@@ -125,12 +156,19 @@ mod tests {
     #[test]
     fn estimates_combine_by_welch_and_satterthwaite() {
         let by_hand = 625.0 / (81.0 / 4.0 + 256.0 / 9.0);
-        assert!((degrees(&[fit(0, "stiffness", 3.0), fit(1, "damping", -4.0)]) - by_hand).abs() < 1e-12);
+        assert!(
+            (degrees(&[fit(0, "stiffness", 3.0), fit(1, "damping", -4.0)]) - by_hand).abs() < 1e-12
+        );
         let stated = Contribution::new(Source::ForceScale(0), 4.0);
-        assert!((degrees(&[fit(0, "stiffness", 3.0), stated]) - 625.0 / (81.0 / 4.0)).abs() < 1e-12);
+        assert!(
+            (degrees(&[fit(0, "stiffness", 3.0), stated]) - 625.0 / (81.0 / 4.0)).abs() < 1e-12
+        );
         assert_eq!(degrees(&[stated]), f64::INFINITY);
         assert_eq!(known(&[], &Two), None);
-        assert_eq!(known(&[fit(0, "stiffness", 0.0)], &Two), Some(Known::surely(0.0)));
+        assert_eq!(
+            known(&[fit(0, "stiffness", 0.0)], &Two),
+            Some(Known::surely(0.0))
+        );
     }
 
     /// JCGM 100:2008, G.4.1, example: components of 0.25 %, 0.57 % and 0.82 % with 9, 4 and 14 degrees of freedom have 19. Here the
@@ -143,16 +181,49 @@ mod tests {
                 None
             }
             fn degrees(&self, source: Source) -> f64 {
-                if matches!(source, Source::Fit { procedure: ProcedureId(0), .. }) { 4.0 } else { 14.0 }
+                if matches!(
+                    source,
+                    Source::Fit {
+                        procedure: ProcedureId(0),
+                        ..
+                    }
+                ) {
+                    4.0
+                } else {
+                    14.0
+                }
             }
         }
-        let draw = |draw| Contribution::new(Source::Readings { procedure: ProcedureId(2), draw }, 0.25 / 3.0);
-        let parts: Vec<Contribution> = (0..9).map(draw).chain([fit(0, "a", 0.57), fit(1, "b", 0.82)]).collect();
+        let draw = |draw| {
+            Contribution::new(
+                Source::Readings {
+                    procedure: ProcedureId(2),
+                    draw,
+                },
+                0.25 / 3.0,
+            )
+        };
+        let parts: Vec<Contribution> = (0..9)
+            .map(draw)
+            .chain([fit(0, "a", 0.57), fit(1, "b", 0.82)])
+            .collect();
         let known = known(&parts, &Guide).unwrap();
-        assert!((known.standard - 1.03).abs() < 0.005 && (known.degrees - 19.0).abs() < 0.05, "{known:?}");
+        assert!(
+            (known.standard - 1.03).abs() < 0.005 && (known.degrees - 19.0).abs() < 0.05,
+            "{known:?}"
+        );
         // Of the next blow they are another nine.
-        let next = |draw| Contribution::new(Source::Readings { procedure: ProcedureId(2), draw }, 1.0);
-        let of_two: Vec<Contribution> = (0..9).chain(MOST_DRAWS..MOST_DRAWS + 9).map(next).collect();
+        let next = |draw| {
+            Contribution::new(
+                Source::Readings {
+                    procedure: ProcedureId(2),
+                    draw,
+                },
+                1.0,
+            )
+        };
+        let of_two: Vec<Contribution> =
+            (0..9).chain(MOST_DRAWS..MOST_DRAWS + 9).map(next).collect();
         assert!((super::known(&of_two, &Guide).unwrap().degrees - 18.0).abs() < 1e-9);
     }
 
@@ -163,8 +234,21 @@ mod tests {
         let known = known(&parts, &Two).unwrap();
         assert!((known.degrees - 4.0).abs() < 1e-12);
         assert!((known.expanded() / (2.87 * 8_f64.sqrt()) - 1.0).abs() < 2e-3);
-        let entries = [parts[0], Contribution { entry: 2, ..parts[1] }];
+        let entries = [
+            parts[0],
+            Contribution {
+                entry: 2,
+                ..parts[1]
+            },
+        ];
         let of = known_entries(&entries, 3, &Two);
-        assert_eq!((of[0].map(|known| known.degrees), of[1], of[2].map(|known| known.standard)), (Some(4.0), None, Some(2.0)));
+        assert_eq!(
+            (
+                of[0].map(|known| known.degrees),
+                of[1],
+                of[2].map(|known| known.standard)
+            ),
+            (Some(4.0), None, Some(2.0))
+        );
     }
 }

@@ -2,8 +2,8 @@
 //! displacement is partial, and gives no expanded uncertainty: no guard band follows from it. In: a plan and its results. Out:
 //! the same results, and of each why it has no U.
 
-use crate::formula::{ResultReference, ResultValue, Results};
 use crate::plan::Plan;
+use crate::plan::formula::{ResultReference, ResultValue, Results};
 use crate::uncertainty::{Contribution, Source};
 
 /// Results of a run on the rig of a plan.
@@ -15,9 +15,13 @@ pub(crate) struct Declared<'a> {
 
 impl<'a> Declared<'a> {
     pub(crate) fn of(plan: &Plan, results: &'a dyn Results) -> Self {
-        let undeclared =
-            plan.rig.link.as_real().map_or_else(Vec::new, |_| plan.rig.undeclared_calibrations(plan.degrees_of_freedom()));
-        Self { results, undeclared }
+        let undeclared = plan.rig.link.as_real().map_or_else(Vec::new, |_| {
+            plan.rig.undeclared_calibrations(plan.degrees_of_freedom())
+        });
+        Self {
+            results,
+            undeclared,
+        }
     }
 }
 
@@ -40,10 +44,14 @@ impl Results for Declared<'_> {
 
     fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
         let partial = || {
-            let uncertain = !self.undeclared.is_empty() && !self.results.contributions(reference).is_empty();
+            let uncertain =
+                !self.undeclared.is_empty() && !self.results.contributions(reference).is_empty();
             let name = reference.name;
             uncertain.then(|| {
-                format!("the budget of `{name}` is partial: the plan does not declare {}", self.undeclared.join(" and "))
+                format!(
+                    "the budget of `{name}` is partial: the plan does not declare {}",
+                    self.undeclared.join(" and ")
+                )
             })
         };
         self.results.no_uncertainty(reference).or_else(partial)

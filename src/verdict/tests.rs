@@ -1,7 +1,7 @@
 //! Verdicts at and about their limits, by both rules of decision.
 
 use super::*;
-use crate::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
 use crate::record::{History, NamedResult, ProcedureRecord};
 use crate::rig::Identity;
 
@@ -26,7 +26,10 @@ fn record(outcome: Outcome) -> Record {
             kind: "impact",
             complete: true,
             inputs: Vec::new(),
-            results: vec![number("max_displacement", Some(8.0), Some(0.1)), number("stop_time", None, None)],
+            results: vec![
+                number("max_displacement", Some(8.0), Some(0.1)),
+                number("stop_time", None, None),
+            ],
             history: History::Inspect,
         }],
         events: Vec::new(),
@@ -36,19 +39,35 @@ fn record(outcome: Outcome) -> Record {
 }
 
 fn result(name: &'static str) -> Formula {
-    Formula::Result(ResultReference { procedure: ProcedureId(0), name, part: Part::Value })
+    Formula::Result(ResultReference {
+        procedure: ProcedureId(0),
+        name,
+        part: Part::Value,
+    })
 }
 
 fn condition(value: Formula, test: Test) -> Condition {
-    Condition { text: "as written".to_owned(), value, test, dimension: Dimension::LENGTH }
+    Condition {
+        text: "as written".to_owned(),
+        value,
+        test,
+        dimension: Dimension::LENGTH,
+    }
 }
 
 fn compare(comparison: Comparison, limit: f64) -> Test {
-    Test::Compare { comparison, limit: Formula::Constant(limit) }
+    Test::Compare {
+        comparison,
+        limit: Formula::Constant(limit),
+    }
 }
 
 fn outcome_of(test: Test) -> ConditionOutcome {
-    assess_condition(&condition(result("max_displacement"), test), DecisionRule::Simple, &record(Outcome::Completed))
+    assess_condition(
+        &condition(result("max_displacement"), test),
+        DecisionRule::Simple,
+        &record(Outcome::Completed),
+    )
 }
 
 #[test]
@@ -65,11 +84,21 @@ fn a_comparison_passes_or_fails_with_its_margin_and_uncertainty() {
 #[test]
 fn a_relative_tolerance_is_of_the_size_of_the_target() {
     let within = |target, tolerance, relative| {
-        outcome_of(Test::Within { target: Formula::Constant(target), tolerance: Formula::Constant(tolerance), relative })
+        outcome_of(Test::Within {
+            target: Formula::Constant(target),
+            tolerance: Formula::Constant(tolerance),
+            relative,
+        })
     };
     let near = within(10.0, 0.25, true);
     assert_eq!((near.verdict, near.margin), (Verdict::Pass, Some(0.5)));
-    assert_eq!(near.bound, Some(Bound::Within { target: 10.0, tolerance: 2.5 }));
+    assert_eq!(
+        near.bound,
+        Some(Bound::Within {
+            target: 10.0,
+            tolerance: 2.5
+        })
+    );
     assert_eq!(within(10.0, 0.25, false).verdict, Verdict::Fail);
     assert_eq!(within(-10.0, 1.9, true).verdict, Verdict::Pass);
 }
@@ -78,22 +107,59 @@ fn a_relative_tolerance_is_of_the_size_of_the_target() {
 #[test]
 fn what_is_equal_but_for_rounding_is_equal() {
     use Comparison::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
-    for (value, limit) in [(3.0 * 1e-4, 3e-4), (14.999_999_999_999_998, 15.0), (0.1 + 0.2, 0.3)] {
+    for (value, limit) in [
+        (3.0 * 1e-4, 3e-4),
+        (14.999_999_999_999_998, 15.0),
+        (0.1 + 0.2, 0.3),
+    ] {
         for (value, limit) in [(value, limit), (limit, value), (-value, -limit)] {
             let holds = |comparison| Bound::Compare { comparison, limit }.holds(value);
             let held = [LessEqual, GreaterEqual, Equal, Less, Greater, NotEqual].map(holds);
-            assert_eq!(held, [true, true, true, false, false, false], "{value} against {limit}");
-            assert_eq!(Bound::Compare { comparison: LessEqual, limit }.margin(value), 0.0);
+            assert_eq!(
+                held,
+                [true, true, true, false, false, false],
+                "{value} against {limit}"
+            );
+            assert_eq!(
+                Bound::Compare {
+                    comparison: LessEqual,
+                    limit
+                }
+                .margin(value),
+                0.0
+            );
         }
     }
-    assert!(Bound::Within { target: 1.0, tolerance: 0.1 }.holds(1.1), "1.1 − 1 is more than 0.1 by its rounding");
+    assert!(
+        Bound::Within {
+            target: 1.0,
+            tolerance: 0.1
+        }
+        .holds(1.1),
+        "1.1 − 1 is more than 0.1 by its rounding"
+    );
     for comparison in [LessEqual, Equal] {
         for limit in [1.0 - 2e-12, f64::NEG_INFINITY] {
-            assert!(!Bound::Compare { comparison, limit }.holds(1.0), "what differs is told apart");
+            assert!(
+                !Bound::Compare { comparison, limit }.holds(1.0),
+                "what differs is told apart"
+            );
         }
     }
-    assert!(!Bound::Within { target: 1.0, tolerance: 0.1 }.holds(1.1 + 1e-11));
-    assert!(!Bound::Within { target: f64::INFINITY, tolerance: 0.1 }.holds(1.1));
+    assert!(
+        !Bound::Within {
+            target: 1.0,
+            tolerance: 0.1
+        }
+        .holds(1.1 + 1e-11)
+    );
+    assert!(
+        !Bound::Within {
+            target: f64::INFINITY,
+            tolerance: 0.1
+        }
+        .holds(1.1)
+    );
 }
 
 #[test]
@@ -103,38 +169,83 @@ fn a_missing_result_is_inconclusive_and_says_so() {
         DecisionRule::Guarded,
         &record(Outcome::Completed),
     );
-    assert_eq!((outcome.verdict, outcome.value, outcome.margin), (Verdict::Inconclusive, None, None));
+    assert_eq!(
+        (outcome.verdict, outcome.value, outcome.margin),
+        (Verdict::Inconclusive, None, None)
+    );
     assert!(outcome.reason.unwrap().contains("stop_time"));
-    assert_eq!(outcome.bound, Some(Bound::Compare { comparison: Comparison::Less, limit: 1.0 }));
+    assert_eq!(
+        outcome.bound,
+        Some(Bound::Compare {
+            comparison: Comparison::Less,
+            limit: 1.0
+        })
+    );
 }
 
 #[test]
 fn the_whole_takes_its_worst_part_and_the_end_of_the_run() {
-    let mut plan = crate::run::testing::empty_plan();
+    let mut plan = crate::tests::testing::empty_plan();
     let requirement = |limit| Requirement {
         label: "travel".to_owned(),
-        conditions: vec![condition(result("max_displacement"), compare(Comparison::Less, limit))],
+        conditions: vec![condition(
+            result("max_displacement"),
+            compare(Comparison::Less, limit),
+        )],
     };
-    assert_eq!(assess(&plan, &record(Outcome::Completed)).verdict, Verdict::Completed, "nothing was required");
+    assert_eq!(
+        assess(&plan, &record(Outcome::Completed)).verdict,
+        Verdict::Completed,
+        "nothing was required"
+    );
     plan.requirements = vec![requirement(9.0)];
-    assert_eq!(assess(&plan, &record(Outcome::Completed)).verdict, Verdict::Pass);
-    let blocked = record(Outcome::Blocked { reason: String::new() });
+    assert_eq!(
+        assess(&plan, &record(Outcome::Completed)).verdict,
+        Verdict::Pass
+    );
+    let blocked = record(Outcome::Blocked {
+        reason: String::new(),
+    });
     assert_eq!(assess(&plan, &blocked).verdict, Verdict::Inconclusive);
     plan.requirements.push(requirement(7.0));
     assert_eq!(assess(&plan, &blocked).verdict, Verdict::Fail);
     let assessed = assess(&plan, &record(Outcome::Completed));
     assert_eq!(assessed.verdict, Verdict::Fail);
     assert_eq!(assessed.requirements[0].verdict, Verdict::Pass);
-    let stopped = assess(&plan, &record(Outcome::Aborted { reason: String::new() }));
-    assert_eq!((stopped.verdict, stopped.requirements[1].verdict), (Verdict::Aborted, Verdict::Fail));
-    assert_eq!(assess(&plan, &record(Outcome::Faulted { reason: String::new() })).verdict, Verdict::Error);
+    let stopped = assess(
+        &plan,
+        &record(Outcome::Aborted {
+            reason: String::new(),
+        }),
+    );
+    assert_eq!(
+        (stopped.verdict, stopped.requirements[1].verdict),
+        (Verdict::Aborted, Verdict::Fail)
+    );
+    assert_eq!(
+        assess(
+            &plan,
+            &record(Outcome::Faulted {
+                reason: String::new()
+            })
+        )
+        .verdict,
+        Verdict::Error
+    );
 }
 
 /// Of 8.0 with u = 0.125: w = 0.25, and every number here is exact in binary.
 fn guarded(test: Test) -> ConditionOutcome {
     let mut record = record(Outcome::Completed);
-    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: Some(0.125) };
-    assess_condition(&condition(result("max_displacement"), test), DecisionRule::Guarded, &record)
+    record.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: Some(0.125),
+    };
+    assess_condition(
+        &condition(result("max_displacement"), test),
+        DecisionRule::Guarded,
+        &record,
+    )
 }
 
 #[test]
@@ -164,7 +275,11 @@ fn between_pass_and_fail_lies_a_guard_band_of_two_standard_uncertainties() {
     ];
     for (comparison, limit, verdict) in cases {
         let outcome = guarded(compare(comparison, limit));
-        assert_eq!((outcome.verdict, outcome.guard_band), (verdict, Some(0.25)), "8 {comparison:?} {limit}");
+        assert_eq!(
+            (outcome.verdict, outcome.guard_band),
+            (verdict, Some(0.25)),
+            "8 {comparison:?} {limit}"
+        );
         assert_eq!(outcome.reason.is_some(), verdict == Inconclusive);
     }
 }
@@ -172,14 +287,27 @@ fn between_pass_and_fail_lies_a_guard_band_of_two_standard_uncertainties() {
 #[test]
 fn a_tolerance_narrower_than_the_band_is_never_kept() {
     let within = |target, tolerance, relative| {
-        let test = Test::Within { target: Formula::Constant(target), tolerance: Formula::Constant(tolerance), relative };
+        let test = Test::Within {
+            target: Formula::Constant(target),
+            tolerance: Formula::Constant(tolerance),
+            relative,
+        };
         guarded(test).verdict
     };
     assert_eq!(within(8.0, 0.25, false), Verdict::Pass);
     assert_eq!(within(8.0, 0.125, false), Verdict::Inconclusive);
-    assert_eq!([8.5, 7.5].map(|target| within(target, 0.75, false)), [Verdict::Pass; 2]);
-    assert_eq!([8.5, 7.5].map(|target| within(target, 0.25, false)), [Verdict::Inconclusive; 2]);
-    assert_eq!([8.5, 7.5].map(|target| within(target, 0.125, false)), [Verdict::Fail; 2]);
+    assert_eq!(
+        [8.5, 7.5].map(|target| within(target, 0.75, false)),
+        [Verdict::Pass; 2]
+    );
+    assert_eq!(
+        [8.5, 7.5].map(|target| within(target, 0.25, false)),
+        [Verdict::Inconclusive; 2]
+    );
+    assert_eq!(
+        [8.5, 7.5].map(|target| within(target, 0.125, false)),
+        [Verdict::Fail; 2]
+    );
     assert_eq!(within(10.0, 0.225, true), Verdict::Pass);
     assert_eq!(within(10.0, 0.2, true), Verdict::Inconclusive);
 }
@@ -191,79 +319,144 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
     let mut record = record(Outcome::Completed);
     let exact = |name, value| NamedResult {
         name,
-        value: ResultValue::Number { value: Some(value), uncertainty: None },
+        value: ResultValue::Number {
+            value: Some(value),
+            uncertainty: None,
+        },
         dimension: Dimension::NUMBER,
         contributions: Vec::new(),
     };
-    record.procedures[0].results.extend([exact("steps", 20.0), exact("energy_error", 0.01)]);
+    record.procedures[0]
+        .results
+        .extend([exact("steps", 20.0), exact("energy_error", 0.01)]);
     let at = |record: &Record, name, limit| {
         let condition = condition(result(name), compare(Comparison::LessEqual, limit));
         assess_condition(&condition, DecisionRule::Guarded, record)
     };
-    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: Some(0.0) };
+    record.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: Some(0.0),
+    };
     assert_eq!(
-        (at(&record, "max_displacement", 8.0).verdict, at(&record, "max_displacement", 8.0).guard_band),
+        (
+            at(&record, "max_displacement", 8.0).verdict,
+            at(&record, "max_displacement", 8.0).guard_band
+        ),
         (Verdict::Pass, None)
     );
-    assert_eq!(at(&record, "max_displacement", 7.999).verdict, Verdict::Fail);
-    assert_eq!([20.0, 19.0].map(|limit| at(&record, "steps", limit).verdict), [Verdict::Pass, Verdict::Fail]);
+    assert_eq!(
+        at(&record, "max_displacement", 7.999).verdict,
+        Verdict::Fail
+    );
+    assert_eq!(
+        [20.0, 19.0].map(|limit| at(&record, "steps", limit).verdict),
+        [Verdict::Pass, Verdict::Fail]
+    );
     assert_eq!(at(&record, "energy_error", 0.02).verdict, Verdict::Pass);
-    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: None };
+    record.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: None,
+    };
     for limit in [8.0, 800.0, 0.08] {
         let found = at(&record, "max_displacement", limit);
-        assert_eq!((found.verdict, found.guard_band), (Verdict::Inconclusive, None), "{limit}");
-        assert_eq!(found.reason.unwrap(), "no uncertainty of `max_displacement` is known, and a guard band needs one");
+        assert_eq!(
+            (found.verdict, found.guard_band),
+            (Verdict::Inconclusive, None),
+            "{limit}"
+        );
+        assert_eq!(
+            found.reason.unwrap(),
+            "no uncertainty of `max_displacement` is known, and a guard band needs one"
+        );
     }
-    let simple = condition(result("max_displacement"), compare(Comparison::LessEqual, 8.5));
-    assert_eq!(assess_condition(&simple, DecisionRule::Simple, &record).verdict, Verdict::Pass);
+    let simple = condition(
+        result("max_displacement"),
+        compare(Comparison::LessEqual, 8.5),
+    );
+    assert_eq!(
+        assess_condition(&simple, DecisionRule::Simple, &record).verdict,
+        Verdict::Pass
+    );
 }
 
 /// 8 with u = 0.125 (normal): at its limit one half, at one u inside 84.1 %; between limits ±0.125 either side 68.3 %, which U exceeds.
 #[test]
 fn a_probability_of_conformity_is_told_under_either_rule() {
     let mut record = record(Outcome::Completed);
-    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: Some(0.125) };
+    record.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: Some(0.125),
+    };
     for rule in [DecisionRule::Simple, DecisionRule::Guarded] {
         let of = |test| {
-            let found = assess_condition(&condition(result("max_displacement"), test), rule, &record);
+            let found =
+                assess_condition(&condition(result("max_displacement"), test), rule, &record);
             (found.conforms.unwrap(), found.wider_than_tolerance)
         };
-        let near =
-            |found: (f64, bool), p: f64, wider| assert!((found.0 - p).abs() < 1e-6 && found.1 == wider, "{found:?}, not {p}");
+        let near = |found: (f64, bool), p: f64, wider| {
+            assert!(
+                (found.0 - p).abs() < 1e-6 && found.1 == wider,
+                "{found:?}, not {p}"
+            );
+        };
         near(of(compare(Comparison::LessEqual, 8.0)), 0.5, false);
-        near(of(compare(Comparison::LessEqual, 8.125)), 0.841_344_7, false);
+        near(
+            of(compare(Comparison::LessEqual, 8.125)),
+            0.841_344_7,
+            false,
+        );
         near(of(compare(Comparison::Greater, 8.125)), 0.158_655_3, false);
-        let within =
-            |tolerance| Test::Within { target: Formula::Constant(8.0), tolerance: Formula::Constant(tolerance), relative: false };
+        let within = |tolerance| Test::Within {
+            target: Formula::Constant(8.0),
+            tolerance: Formula::Constant(tolerance),
+            relative: false,
+        };
         near(of(within(0.125)), 0.682_689_5, true);
         near(of(within(0.25)), 0.954_499_7, false);
         near(of(within(0.5)), 0.999_936_7, false);
     }
-    record.procedures[0].results[0].value = ResultValue::Number { value: Some(8.0), uncertainty: None };
-    let unknown = condition(result("max_displacement"), compare(Comparison::LessEqual, 8.5));
-    assert_eq!(assess_condition(&unknown, DecisionRule::Simple, &record).conforms, None);
+    record.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: None,
+    };
+    let unknown = condition(
+        result("max_displacement"),
+        compare(Comparison::LessEqual, 8.5),
+    );
+    assert_eq!(
+        assess_condition(&unknown, DecisionRule::Simple, &record).conforms,
+        None
+    );
 }
 
 /// On a real rig no guard band follows from a budget without both calibrations; on a simulated one it does.
 #[test]
 fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {
-    let mut plan = crate::rig::fault_table::stage::plan();
+    let mut plan = crate::tests::fault_table::stage::plan();
     plan.decision_rule = DecisionRule::Guarded;
     plan.requirements = vec![Requirement {
         label: "travel".to_owned(),
-        conditions: vec![condition(result("max_displacement"), compare(Comparison::LessEqual, 9.0))],
+        conditions: vec![condition(
+            result("max_displacement"),
+            compare(Comparison::LessEqual, 9.0),
+        )],
     }];
     let record = record(Outcome::Completed);
-    plan.rig.calibration = crate::plan::Calibration { force_uncertainty: 0.01, ..crate::plan::Calibration::default() };
+    plan.rig.calibration = crate::plan::Calibration {
+        force_uncertainty: 0.01,
+        ..crate::plan::Calibration::default()
+    };
     let partial = assess(&plan, &record);
     assert_eq!(partial.verdict, Verdict::Inconclusive);
     assert_eq!(
         partial.requirements[0].conditions[0].reason.as_deref(),
-        Some("the budget of `max_displacement` is partial: the plan does not declare the calibration of the displacement")
+        Some(
+            "the budget of `max_displacement` is partial: the plan does not declare the calibration of the displacement"
+        )
     );
     plan.rig.calibration.displacement_uncertainty = 0.01;
     assert_eq!(assess(&plan, &record).verdict, Verdict::Pass);
-    plan.rig = crate::run::testing::empty_plan().rig;
+    plan.rig = crate::tests::testing::empty_plan().rig;
     assert_eq!(assess(&plan, &record).verdict, Verdict::Pass);
 }
 
@@ -271,15 +464,24 @@ fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {
 fn a_limit_that_was_measured_widens_the_band_and_the_same_result_on_both_sides_does_not() {
     let limit = |factor: f64| {
         let product = Formula::Binary(
-            crate::formula::Operator::Multiply,
+            crate::plan::formula::Operator::Multiply,
             Box::new(Formula::Constant(factor)),
             Box::new(result("max_displacement")),
         );
-        guarded(Test::Compare { comparison: Comparison::LessEqual, limit: product })
+        guarded(Test::Compare {
+            comparison: Comparison::LessEqual,
+            limit: product,
+        })
     };
     // 8 ≤ 2·8: the distance is the result itself, and so is its uncertainty. 8 ≤ 3·8: twice that.
-    assert_eq!([2.0, 3.0].map(|factor| limit(factor).guard_band), [Some(0.25), Some(0.5)]);
-    assert_eq!((limit(1.0).guard_band, limit(1.0).verdict), (None, Verdict::Pass));
+    assert_eq!(
+        [2.0, 3.0].map(|factor| limit(factor).guard_band),
+        [Some(0.25), Some(0.5)]
+    );
+    assert_eq!(
+        (limit(1.0).guard_band, limit(1.0).verdict),
+        (None, Verdict::Pass)
+    );
 }
 
 #[test]
@@ -294,26 +496,48 @@ fn the_simple_rule_knows_no_band() {
 fn what_a_scheme_made_of_its_energy_decides_nothing() {
     let with = |name, error: ResultValue| {
         let mut record = record(Outcome::Completed);
-        let error = NamedResult { name, value: error, dimension: Dimension::NUMBER, contributions: Vec::new() };
+        let error = NamedResult {
+            name,
+            value: error,
+            dimension: Dimension::NUMBER,
+            contributions: Vec::new(),
+        };
         record.procedures[0].results.push(error);
         record
     };
     let verdict = |record: &Record, name| {
-        let wanted =
-            Requirement { label: String::new(), conditions: vec![condition(result(name), compare(Comparison::LessEqual, 8.5))] };
+        let wanted = Requirement {
+            label: String::new(),
+            conditions: vec![condition(result(name), compare(Comparison::LessEqual, 8.5))],
+        };
         assess_requirement(&wanted, DecisionRule::Simple, record, record)
     };
-    let number = |value| ResultValue::Number { value: Some(value), uncertainty: None };
-    for (error, expected) in
-        [(0.49, Verdict::Pass), (-0.49, Verdict::Pass), (0.51, Verdict::Inconclusive), (-94.0, Verdict::Inconclusive)]
-    {
+    let number = |value| ResultValue::Number {
+        value: Some(value),
+        uncertainty: None,
+    };
+    for (error, expected) in [
+        (0.49, Verdict::Pass),
+        (-0.49, Verdict::Pass),
+        (0.51, Verdict::Inconclusive),
+        (-94.0, Verdict::Inconclusive),
+    ] {
         let record = with("energy_error", number(error));
         let found = verdict(&record, "max_displacement");
         assert_eq!(found.verdict, expected, "{error}");
-        assert_eq!(found.conditions[0].reason.is_some(), expected == Verdict::Inconclusive);
+        assert_eq!(
+            found.conditions[0].reason.is_some(),
+            expected == Verdict::Inconclusive
+        );
         assert_eq!(verdict(&record, "energy_error").verdict, Verdict::Pass);
     }
-    assert_eq!(verdict(&with("energy_error", number(f64::NAN)), "max_displacement").verdict, Verdict::Inconclusive);
+    assert_eq!(
+        verdict(&with("energy_error", number(f64::NAN)), "max_displacement").verdict,
+        Verdict::Inconclusive
+    );
     let blows = with("energy_errors", ResultValue::List(vec![0.01, -0.7]));
-    assert_eq!(verdict(&blows, "max_displacement").verdict, Verdict::Inconclusive);
+    assert_eq!(
+        verdict(&blows, "max_displacement").verdict,
+        Verdict::Inconclusive
+    );
 }

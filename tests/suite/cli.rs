@@ -34,7 +34,17 @@ impact hit {
 }
 
 require "stays in travel" hit.max_displacement < 0.16 m
+
+report {
+  figures = []
+  formats = [html, csv]
+}
 "#;
+
+/// The same plan, of which everything is written: all figures, in every format.
+fn with_every_output() -> String {
+    SOUND.split("\nreport {").next().unwrap().to_owned()
+}
 
 /// A folder with plans, and the program run in it.
 struct Bench {
@@ -54,7 +64,11 @@ impl Bench {
 
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-        command.args(arguments).current_dir(self.folder.path()).stdin(Stdio::null()).env_remove("NO_COLOR");
+        command
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .stdin(Stdio::null())
+            .env_remove("NO_COLOR");
         command
     }
 
@@ -80,19 +94,30 @@ struct Ended {
 impl From<Output> for Ended {
     fn from(output: Output) -> Self {
         let text = |bytes| String::from_utf8(bytes).unwrap();
-        Self { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+        Self {
+            code: output.status.code(),
+            stdout: text(output.stdout),
+            stderr: text(output.stderr),
+        }
     }
 }
 
 impl Ended {
     #[track_caller]
     fn with(self, code: i32) -> Self {
-        assert_eq!(self.code, Some(code), "stdout:\n{}\nstderr:\n{}", self.stdout, self.stderr);
+        assert_eq!(
+            self.code,
+            Some(code),
+            "stdout:\n{}\nstderr:\n{}",
+            self.stdout,
+            self.stderr
+        );
         self
     }
 
     fn json(&self) -> Value {
-        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}:\n{}", self.stdout))
+        serde_json::from_str(&self.stdout)
+            .unwrap_or_else(|error| panic!("{error}:\n{}", self.stdout))
     }
 }
 
@@ -111,7 +136,10 @@ pub fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
             if path.is_dir() {
                 open.push(path);
             } else {
-                found.push((path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap()));
+                found.push((
+                    path.strip_prefix(folder).unwrap().to_owned(),
+                    std::fs::read(&path).unwrap(),
+                ));
             }
         }
     }
@@ -121,13 +149,26 @@ pub fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 
 #[test]
 fn a_run_gives_its_folder_on_stdout_and_the_verdict_on_stderr() {
-    let bench = Bench::new(&[("plans/small.psd", SOUND)]);
+    let bench = Bench::new(&[("plans/small.psd", &with_every_output())]);
     let first = bench.psd(&["run", "plans/small.psd"]).with(0);
     assert_eq!(first.stdout, "runs/small-1\n");
-    assert!(first.stderr.contains("PASS") && first.stderr.contains("stays in travel"), "{}", first.stderr);
-    assert!(!first.stderr.contains('\u{1b}'), "no colour and no bar in a pipe");
-    assert_eq!(bench.psd(&["run", "plans/small.psd"]).with(0).stdout, "runs/small-2\n");
-    let (one, two) = (every_file(&bench.path("runs/small-1")), every_file(&bench.path("runs/small-2")));
+    assert!(
+        first.stderr.contains("PASS") && first.stderr.contains("stays in travel"),
+        "{}",
+        first.stderr
+    );
+    assert!(
+        !first.stderr.contains('\u{1b}'),
+        "no colour and no bar in a pipe"
+    );
+    assert_eq!(
+        bench.psd(&["run", "plans/small.psd"]).with(0).stdout,
+        "runs/small-2\n"
+    );
+    let (one, two) = (
+        every_file(&bench.path("runs/small-1")),
+        every_file(&bench.path("runs/small-2")),
+    );
     assert!(one.iter().any(|(path, _)| path.ends_with("summary.json")));
     assert!(one == two, "the same plan gives the same bytes");
 }
@@ -135,8 +176,22 @@ fn a_run_gives_its_folder_on_stdout_and_the_verdict_on_stderr() {
 #[test]
 fn the_summary_is_the_result_where_json_is_asked() {
     let bench = Bench::new(&[("small.psd", SOUND)]);
-    let ended = bench.psd(&["run", "small.psd", "--format", "json", "--out", "here", "--date", "2026-05-31"]).with(0);
-    assert_eq!((&ended.json()["schema"], &ended.json()["verdict"]), (&"psd.summary/1".into(), &"pass".into()));
+    let ended = bench
+        .psd(&[
+            "run",
+            "small.psd",
+            "--format",
+            "json",
+            "--out",
+            "here",
+            "--date",
+            "2026-05-31",
+        ])
+        .with(0);
+    assert_eq!(
+        (&ended.json()["schema"], &ended.json()["verdict"]),
+        (&"psd.summary/1".into(), &"pass".into())
+    );
     assert_eq!(ended.json()["date"], "2026-05-31");
     assert_eq!(bench.read("here/summary.json"), ended.stdout);
 }
@@ -144,7 +199,13 @@ fn the_summary_is_the_result_where_json_is_asked() {
 #[test]
 fn a_missed_requirement_ends_with_one() {
     let bench = Bench::new(&[("small.psd", &changed("< 0.16 m", "< 0.1 m"))]);
-    assert!(bench.psd(&["run", "small.psd"]).with(1).stderr.contains("FAIL"));
+    assert!(
+        bench
+            .psd(&["run", "small.psd"])
+            .with(1)
+            .stderr
+            .contains("FAIL")
+    );
 }
 
 #[test]
@@ -152,7 +213,9 @@ fn a_wrong_plan_ends_with_two_and_leaves_nothing() {
     let bench = Bench::new(&[("small.psd", &changed("velocity =", "velocty ="))]);
     let ended = bench.psd(&["run", "small.psd"]).with(2);
     assert!(
-        ended.stdout.is_empty() && ended.stderr.contains("E202") && ended.stderr.contains("small.psd:14:"),
+        ended.stdout.is_empty()
+            && ended.stderr.contains("E202")
+            && ended.stderr.contains("small.psd:14:"),
         "{}",
         ended.stderr
     );
@@ -170,12 +233,22 @@ fn a_wrong_command_line_ends_with_two() {
         &["run", "small.psd", "--set", "speed"],
         &["run", "small.psd", "--set", "speed=9 m/s"],
         &["run", "small.psd", "--set", "spee=1 m/s"],
-        &["run", "small.psd", "--set", "speed=1 m/s", "--set", "speed=0.9 m/s"],
+        &[
+            "run",
+            "small.psd",
+            "--set",
+            "speed=1 m/s",
+            "--set",
+            "speed=0.9 m/s",
+        ],
         &["run", "small.psd", "--rig", "none"],
         &["explain", "E999"],
     ] {
         let ended = bench.psd(wrong).with(2);
-        assert!(ended.stdout.is_empty() && !ended.stderr.is_empty(), "{wrong:?}");
+        assert!(
+            ended.stdout.is_empty() && !ended.stderr.is_empty(),
+            "{wrong:?}"
+        );
     }
     assert!(bench.psd(&["--help"]).with(0).stdout.contains("Usage"));
 }
@@ -183,17 +256,31 @@ fn a_wrong_command_line_ends_with_two() {
 #[test]
 fn a_setting_changes_the_run_and_its_id() {
     let bench = Bench::new(&[("small.psd", SOUND)]);
-    let id =
-        |arguments: &[&str]| bench.psd(&[&["run", "small.psd", "--format", "json"], arguments].concat()).json()["run_id"].clone();
+    let id = |arguments: &[&str]| {
+        bench
+            .psd(&[&["run", "small.psd", "--format", "json"], arguments].concat())
+            .json()["run_id"]
+            .clone()
+    };
     assert_ne!(id(&[]), id(&["--set", "speed=0.9 m/s"]));
 }
 
 #[test]
 fn files_that_cannot_be_used_end_with_three() {
     let bench = Bench::new(&[("small.psd", SOUND), ("full/precious.txt", "mine")]);
-    assert!(bench.psd(&["run", "none.psd"]).with(3).stderr.contains("none.psd"));
+    assert!(
+        bench
+            .psd(&["run", "none.psd"])
+            .with(3)
+            .stderr
+            .contains("none.psd")
+    );
     let refused = bench.psd(&["run", "small.psd", "--out", "full"]).with(3);
-    assert!(refused.stderr.contains("new or empty"), "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("new or empty"),
+        "{}",
+        refused.stderr
+    );
     assert_eq!(every_file(&bench.path("full")).len(), 1);
 }
 
@@ -212,13 +299,25 @@ fn check_draws_on_stderr_and_gives_json_on_stdout() {
     let wrong = changed("1 kg", "3 mm");
     let bench = Bench::new(&[("good.psd", SOUND), ("plans/wrong.psd", &wrong)]);
     let human = bench.psd(&["check", "good.psd", "plans/wrong.psd"]).with(2);
-    assert!(human.stdout.is_empty() && human.stderr.contains("plans/wrong.psd:8:"), "{}", human.stderr);
-    let json = bench.psd(&["check", "good.psd", "plans/wrong.psd", "--format", "json"]).with(2);
+    assert!(
+        human.stdout.is_empty() && human.stderr.contains("plans/wrong.psd:8:"),
+        "{}",
+        human.stderr
+    );
+    let json = bench
+        .psd(&["check", "good.psd", "plans/wrong.psd", "--format", "json"])
+        .with(2);
     let document = json.json();
     let first = &document["diagnostics"][0];
     assert!(json.stderr.is_empty(), "{}", json.stderr);
-    assert_eq!((&document["schema"], &first["file"]), (&"psd.diagnostics/1".into(), &"plans/wrong.psd".into()));
-    assert_eq!((&first["line"], &first["code"], &first["severity"]), (&8.into(), &"E301".into(), &"error".into()));
+    assert_eq!(
+        (&document["schema"], &first["file"]),
+        (&"psd.diagnostics/1".into(), &"plans/wrong.psd".into())
+    );
+    assert_eq!(
+        (&first["line"], &first["code"], &first["severity"]),
+        (&8.into(), &"E301".into(), &"error".into())
+    );
     let span = |end: &str| usize::try_from(first["span"][end].as_u64().unwrap()).unwrap();
     assert_eq!(&wrong[span("start")..span("end")], "3 mm");
 }
@@ -226,126 +325,296 @@ fn check_draws_on_stderr_and_gives_json_on_stdout() {
 #[test]
 fn explain_predicts_the_run_on_stdout() {
     let bench = Bench::new(&[("small.psd", SOUND)]);
-    let text = bench.psd(&["check", "--explain", "small.psd"]).with(0).stdout;
-    for expected in ["critical time step", "34.71 ms", "10.00 ms", "0.1579 m", "Limits", "−0.1000 .. 0.2000 m", "stays in travel"]
-    {
+    let text = bench
+        .psd(&["check", "--explain", "small.psd"])
+        .with(0)
+        .stdout;
+    for expected in [
+        "critical time step",
+        "34.71 ms",
+        "10.00 ms",
+        "0.1579 m",
+        "Limits",
+        "−0.1000 .. 0.2000 m",
+        "stays in travel",
+    ] {
         assert!(text.contains(expected), "{expected} in\n{text}");
     }
     assert!(!bench.path("runs").exists());
     let bench = Bench::new(&[("small.psd", &changed(".. 0.2 m", ".. 0.1 m"))]);
-    assert!(bench.psd(&["check", "--explain", "small.psd"]).with(4).stdout.contains("would be stopped"));
+    assert!(
+        bench
+            .psd(&["check", "--explain", "small.psd"])
+            .with(4)
+            .stdout
+            .contains("would be stopped")
+    );
 }
 
 #[test]
 fn fmt_shows_the_difference_or_writes_it() {
     let untidy = changed("  mass      = 1 kg", "      mass=1 kg   # equivalent");
-    let bench = Bench::new(&[("plans/untidy.psd", &untidy), ("plans/lib/sound.psd", SOUND), ("wrong.psd", "let a = (1\n")]);
+    let bench = Bench::new(&[
+        ("plans/untidy.psd", &untidy),
+        ("plans/lib/sound.psd", SOUND),
+        ("wrong.psd", "let a = (1\n"),
+    ]);
     let shown = bench.psd(&["fmt", "--check", "plans"]).with(1);
     assert!(
-        shown.stdout.contains("-      mass=1 kg   # equivalent") && shown.stdout.contains("+++ plans/untidy.psd"),
+        shown.stdout.contains("-      mass=1 kg   # equivalent")
+            && shown.stdout.contains("+++ plans/untidy.psd"),
         "{}",
         shown.stdout
     );
     assert_eq!(bench.read("plans/untidy.psd"), untidy);
     bench.psd(&["fmt", "plans"]).with(0);
     assert!(
-        bench.read("plans/untidy.psd").contains("  mass      = 1 kg  # equivalent")
+        bench
+            .read("plans/untidy.psd")
+            .contains("  mass      = 1 kg  # equivalent")
             || bench.read("plans/untidy.psd").contains("= 1 kg")
     );
-    assert!(bench.psd(&["fmt", "--check", "plans"]).with(0).stdout.is_empty());
+    assert!(
+        bench
+            .psd(&["fmt", "--check", "plans"])
+            .with(0)
+            .stdout
+            .is_empty()
+    );
     assert_eq!(bench.read("plans/lib/sound.psd"), SOUND);
-    assert!(bench.psd(&["fmt", "wrong.psd"]).with(2).stderr.contains("E102"));
+    assert!(
+        bench
+            .psd(&["fmt", "wrong.psd"])
+            .with(2)
+            .stderr
+            .contains("E102")
+    );
     assert_eq!(bench.read("wrong.psd"), "let a = (1\n");
 }
 
 #[test]
 fn explain_gives_a_page_the_list_and_a_guess() {
     let bench = Bench::new(&[]);
-    assert!(bench.psd(&["explain", "e202"]).with(0).stdout.starts_with("E202: "));
+    assert!(
+        bench
+            .psd(&["explain", "e202"])
+            .with(0)
+            .stdout
+            .starts_with("E202: ")
+    );
     let all = bench.psd(&["explain"]).with(0).stdout;
-    assert_eq!(all.lines().count(), psd::diagnostic::Code::ALL.len());
-    assert!(all.lines().all(|line| line.len() > 8), "every page has a title:\n{all}");
-    assert!(bench.psd(&["explain", "E22"]).with(2).stderr.contains("did you mean `E2"));
+    assert_eq!(all.lines().count(), psd::text::diagnostic::Code::ALL.len());
+    assert!(
+        all.lines().all(|line| line.len() > 8),
+        "every page has a title:\n{all}"
+    );
+    assert!(
+        bench
+            .psd(&["explain", "E22"])
+            .with(2)
+            .stderr
+            .contains("did you mean `E2")
+    );
 }
 
 #[test]
 fn limits_lists_the_bounds_of_every_stage() {
     let listed = Bench::new(&[]).psd(&["limits"]).with(0).stdout;
-    let has = |bound: String, of: &str| listed.lines().any(|line| line.trim().starts_with(&bound) && line.contains(of));
-    assert!(has(psd::syntax::limits::FILE_BYTES.to_string(), "one file"), "{listed}");
-    assert!(has(psd::check::MOST_FILES.to_string(), "files of one plan"), "{listed}");
-    assert!(has(psd::check::DEEPEST.to_string(), "use files"), "{listed}");
-    assert!(has(psd::check::MOST_ENTRIES.to_string(), "one list or range"), "{listed}");
-    assert!(has(format!("{:.0}", psd::check::MOST_READINGS), "stiffness ramp"), "{listed}");
-    assert!(has(format!("{:.0}", psd::run::MOST_SAMPLES), "damping sweep"), "{listed}");
-    assert!(has(format!("{:.0}", psd::plan::MOST_STEPS), "one impact"), "{listed}");
-    assert!(has(psd::record::journal::MOST_BYTES.to_string(), "the record of one run"), "{listed}");
+    let has = |bound: String, of: &str| {
+        listed
+            .lines()
+            .any(|line| line.trim().starts_with(&bound) && line.contains(of))
+    };
+    assert!(
+        has(
+            psd::language::syntax::limits::FILE_BYTES.to_string(),
+            "one file"
+        ),
+        "{listed}"
+    );
+    assert!(
+        has(
+            psd::language::check::MOST_FILES.to_string(),
+            "files of one plan"
+        ),
+        "{listed}"
+    );
+    assert!(
+        has(psd::language::check::DEEPEST.to_string(), "use files"),
+        "{listed}"
+    );
+    assert!(
+        has(
+            psd::language::check::MOST_ENTRIES.to_string(),
+            "one list or range"
+        ),
+        "{listed}"
+    );
+    assert!(
+        has(
+            format!("{:.0}", psd::procedures::stiffness_ramp::MOST_READINGS),
+            "stiffness ramp"
+        ),
+        "{listed}"
+    );
+    assert!(
+        has(
+            format!("{:.0}", psd::procedures::damping_sweep::MOST_SAMPLES),
+            "damping sweep"
+        ),
+        "{listed}"
+    );
+    assert!(
+        has(format!("{:.0}", psd::plan::MOST_STEPS), "one impact"),
+        "{listed}"
+    );
+    assert!(
+        has(
+            psd::record::journal::MOST_BYTES.to_string(),
+            "the record of one run"
+        ),
+        "{listed}"
+    );
 }
 
 #[test]
 fn a_run_whose_record_nobody_could_read_back_does_not_begin() {
-    let bench = Bench::new(&[("long.psd", &changed("time_step = 10 ms", "time_step = 0.1 us"))]);
+    let bench = Bench::new(&[(
+        "long.psd",
+        &changed("time_step = 10 ms", "time_step = 0.1 us"),
+    )]);
     let told = bench.psd(&["check", "long.psd"]).with(2).stderr;
-    assert!(told.contains("E653") && told.contains("10000000 steps"), "{told}");
-    let told = bench.psd(&["run", "long.psd", "--out", "long"]).with(2).stderr;
-    assert!(told.contains("none of more than 4.3 GB is read back") && told.contains("a longer `time_step`"), "{told}");
-    assert!(!bench.folder.path().join("long").exists(), "nothing is left of it");
+    assert!(
+        told.contains("E653") && told.contains("10000000 steps"),
+        "{told}"
+    );
+    let told = bench
+        .psd(&["run", "long.psd", "--out", "long"])
+        .with(2)
+        .stderr;
+    assert!(
+        told.contains("none of more than 4.3 GB is read back")
+            && told.contains("a longer `time_step`"),
+        "{told}"
+    );
+    assert!(
+        !bench.folder.path().join("long").exists(),
+        "nothing is left of it"
+    );
 }
 
 #[test]
 fn colour_is_used_when_told_and_only_then() {
     let bench = Bench::new(&[("small.psd", &changed("velocity =", "velocty ="))]);
-    let colored =
-        |arguments: &[&str]| bench.psd(&[arguments, &["check", "small.psd"]].concat()).with(2).stderr.contains('\u{1b}');
+    let colored = |arguments: &[&str]| {
+        bench
+            .psd(&[arguments, &["check", "small.psd"]].concat())
+            .with(2)
+            .stderr
+            .contains('\u{1b}')
+    };
     assert!(colored(&["--color", "always"]));
     assert!(!colored(&[]) && !colored(&["--color", "never"]));
-    let output = bench.command(&["--color", "auto", "check", "small.psd"]).env("NO_COLOR", "1").output().unwrap();
+    let output = bench
+        .command(&["--color", "auto", "check", "small.psd"])
+        .env("NO_COLOR", "1")
+        .output()
+        .unwrap();
     assert!(!Ended::from(output).stderr.contains('\u{1b}'));
 }
 
 #[test]
 fn bless_writes_beside_the_plans_folder() {
-    let bench = Bench::new(&[("plans/small.psd", SOUND), ("reports/small/stale.txt", "old"), ("reports/other/kept.txt", "kept")]);
-    bench.psd(&["run", "plans/small.psd", "--bless", "--out", "here"]).with(0);
-    assert_eq!(bench.read("reports/small/summary.json"), bench.read("here/summary.json"));
-    assert!(bench.path("reports/small/certificate.html").exists() && bench.path("reports/small/tables/hit.csv").exists());
-    assert!(!bench.path("reports/small/stale.txt").exists() && bench.path("reports/other/kept.txt").exists());
+    let bench = Bench::new(&[
+        ("plans/small.psd", SOUND),
+        ("reports/small/stale.txt", "old"),
+        ("reports/other/kept.txt", "kept"),
+    ]);
+    bench
+        .psd(&["run", "plans/small.psd", "--bless", "--out", "here"])
+        .with(0);
+    assert_eq!(
+        bench.read("reports/small/summary.json"),
+        bench.read("here/summary.json")
+    );
+    assert!(
+        bench.path("reports/small/certificate.html").exists()
+            && bench.path("reports/small/tables/hit.csv").exists()
+    );
+    assert!(
+        !bench.path("reports/small/stale.txt").exists()
+            && bench.path("reports/other/kept.txt").exists()
+    );
 }
 
 #[test]
 fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
     // So many steps that the signal comes while they run, however fast the machine.
-    let long =
-        changed("time_step = 10 ms", "time_step = 1 us").replace("duration  = 1 s", "duration  = 1 s\n  until     = duration");
+    let long = changed("time_step = 10 ms", "time_step = 1 us")
+        .replace("duration  = 1 s", "duration  = 1 s\n  until     = duration");
     let bench = Bench::new(&[("long.psd", &long)]);
-    let child =
-        bench.command(&["run", "long.psd", "--out", "here"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let child = bench
+        .command(&["run", "long.psd", "--out", "here"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     let started = std::time::Instant::now();
     // Into the run, so that there is a record of its steps.
-    let recorded = || std::fs::metadata(bench.path("here/journal.psdj")).map_or(0, |record| record.len());
+    let recorded =
+        || std::fs::metadata(bench.path("here/journal.psdj")).map_or(0, |record| record.len());
     while recorded() < 50_000 && started.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(2));
     }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status()
+            .unwrap()
+            .success()
+    );
     let ended = Ended::from(child.wait_with_output().unwrap()).with(4);
     assert!(ended.stderr.contains("ABORTED"), "{}", ended.stderr);
     let summary: Value = serde_json::from_str(&bench.read("here/summary.json")).unwrap();
-    assert_eq!((&summary["verdict"], &summary["procedures"]["hit"]["complete"]), (&"aborted".into(), &false.into()));
+    assert_eq!(
+        (
+            &summary["verdict"],
+            &summary["procedures"]["hit"]["complete"]
+        ),
+        (&"aborted".into(), &false.into())
+    );
 }
 
 #[test]
 fn a_plan_that_cannot_be_read_is_an_error_with_its_place_among_the_others() {
     let bench = Bench::new(&[("good.psd", SOUND)]);
     std::fs::write(bench.path("latin.psd"), b"# a\nplan \"Pr\xfcfung\" { }\n").unwrap();
-    let json = bench.psd(&["check", "good.psd", "latin.psd", "--format", "json"]).with(2).json();
-    assert_eq!((&json["errors"], &json["warnings"]), (&1.into(), &0.into()), "{json}");
+    let json = bench
+        .psd(&["check", "good.psd", "latin.psd", "--format", "json"])
+        .with(2)
+        .json();
+    assert_eq!(
+        (&json["errors"], &json["warnings"]),
+        (&1.into(), &0.into()),
+        "{json}"
+    );
     let found = &json["diagnostics"][0];
     let told = ["code", "file", "line", "column"].map(|key| found[key].to_string());
     assert_eq!(told, ["\"E106\"", "\"latin.psd\"", "2", "9"], "{found}");
-    assert!(found["message"].as_str().unwrap().contains("not UTF-8"), "{found}");
+    assert!(
+        found["message"].as_str().unwrap().contains("not UTF-8"),
+        "{found}"
+    );
 
-    let json = bench.psd(&["check", "nothere.psd", "good.psd", "--format", "json"]).with(3).json();
-    assert_eq!((&json["errors"], &json["diagnostics"][0]["code"]), (&1.into(), &Value::Null), "{json}");
+    let json = bench
+        .psd(&["check", "nothere.psd", "good.psd", "--format", "json"])
+        .with(3)
+        .json();
+    assert_eq!(
+        (&json["errors"], &json["diagnostics"][0]["code"]),
+        (&1.into(), &Value::Null),
+        "{json}"
+    );
     assert_eq!(json["diagnostics"][0]["file"], "nothere.psd");
 }
 
@@ -354,7 +623,11 @@ fn a_file_that_is_not_there_ends_every_command_alike() {
     let bench = Bench::new(&[]);
     for command in ["check", "run", "fmt", "test"] {
         let ended = bench.psd(&[command, "nothere.psd"]).with(3);
-        assert!(ended.stderr.contains("nothere.psd: no such file"), "{command}: {}", ended.stderr);
+        assert!(
+            ended.stderr.contains("nothere.psd: no such file"),
+            "{command}: {}",
+            ended.stderr
+        );
     }
 }
 
@@ -364,7 +637,11 @@ fn a_plan_without_a_procedure_is_not_run() {
     let bench = Bench::new(&[("idle.psd", specimen), ("empty.psd", "")]);
     for plan in ["idle.psd", "empty.psd"] {
         let ended = bench.psd(&["run", plan, "--out", "here"]).with(2);
-        assert!(ended.stderr.contains("no procedure: nothing would run"), "{}", ended.stderr);
+        assert!(
+            ended.stderr.contains("no procedure: nothing would run"),
+            "{}",
+            ended.stderr
+        );
         assert!(!bench.path("here").exists(), "nothing is left behind");
         bench.psd(&["check", plan]).with(0);
     }
@@ -428,28 +705,60 @@ fn results_of_strokes_that_nobody_reads_and_of_coarse_cells_are_made_anew_too() 
     bench.psd(&["verify", "run"]).with(0);
     bench.psd(&["report", "run", "--out", "again"]).with(0);
     let mut diff = Command::new("diff");
-    let compared = diff.args(["-r", "run", "again"]).current_dir(bench.folder.path()).output().unwrap();
-    assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stdout));
+    let compared = diff
+        .args(["-r", "run", "again"])
+        .current_dir(bench.folder.path())
+        .output()
+        .unwrap();
+    assert!(
+        compared.status.success(),
+        "{}",
+        String::from_utf8_lossy(&compared.stdout)
+    );
 }
 
 #[test]
 fn results_made_anew_from_the_record_are_the_same_to_the_byte() {
-    let bench = Bench::new(&[("hit.psd", SOUND)]);
+    let bench = Bench::new(&[("hit.psd", &with_every_output())]);
     assert_eq!(bench.psd(&["run", "hit.psd", "--out", "run"]).code, Some(0));
-    assert_eq!(bench.psd(&["report", "run"]).code, Some(3), "nothing is overwritten");
+    assert_eq!(
+        bench.psd(&["report", "run"]).code,
+        Some(3),
+        "nothing is overwritten"
+    );
     let again = bench.psd(&["report", "run", "--out", "again"]);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
     let mut diff = Command::new("diff");
-    let compared = diff.args(["-r", "run", "again"]).current_dir(bench.folder.path()).output().unwrap();
-    assert!(compared.status.success(), "{}", String::from_utf8_lossy(&compared.stdout));
+    let compared = diff
+        .args(["-r", "run", "again"])
+        .current_dir(bench.folder.path())
+        .output()
+        .unwrap();
+    assert!(
+        compared.status.success(),
+        "{}",
+        String::from_utf8_lossy(&compared.stdout)
+    );
 
-    assert_eq!(bench.psd(&["verify", "again"]).code, Some(0), "it is a run folder like the first");
+    assert_eq!(
+        bench.psd(&["verify", "again"]).code,
+        Some(0),
+        "it is a run folder like the first"
+    );
 
     // A record cut off after its last step but one: said before anything else.
     let record = bench.read("run/journal.psdj");
     let lines: Vec<&str> = record.lines().collect();
     std::fs::create_dir(bench.path("cut")).unwrap();
-    std::fs::write(bench.path("cut/journal.psdj"), lines[..lines.len() - 4].join("\n") + "\n").unwrap();
+    std::fs::write(
+        bench.path("cut/journal.psdj"),
+        lines[..lines.len() - 4].join("\n") + "\n",
+    )
+    .unwrap();
     assert_eq!(bench.psd(&["report", "cut"]).code, Some(3));
-    assert!(bench.read("cut/certificate.html").contains("INCOMPLETE: the record ends here"));
+    assert!(
+        bench
+            .read("cut/certificate.html")
+            .contains("INCOMPLETE: the record ends here")
+    );
 }

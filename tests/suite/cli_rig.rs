@@ -33,7 +33,11 @@ fn rig(arguments: &[&str]) -> (Option<i32>, String, String) {
     let plan: &Path = &folder.path().join("plan.psd");
     std::fs::write(plan, PLAN).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-    command.args(["rig", arguments[0]]).arg(plan).args(&arguments[1..]).stdin(Stdio::null());
+    command
+        .args(["rig", arguments[0]])
+        .arg(plan)
+        .args(&arguments[1..])
+        .stdin(Stdio::null());
     let ended = command.output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (ended.status.code(), text(ended.stdout), text(ended.stderr))
@@ -43,9 +47,16 @@ fn rig(arguments: &[&str]) -> (Option<i32>, String, String) {
 fn probe_says_who_it_is_and_how_far_from_each_limit() {
     let (code, report, told) = rig(&["probe"]);
     assert_eq!(code, Some(0), "{told}");
-    for expected in
-        ["bench (simulated)", "virtual rig", "noise 0.", "-5 mm", "margin 5.000 mm", "10 mm", "margin 10.00 mm", "60 N"]
-    {
+    for expected in [
+        "bench (simulated)",
+        "virtual rig",
+        "noise 0.",
+        "-5 mm",
+        "margin 5.000 mm",
+        "10 mm",
+        "margin 10.00 mm",
+        "60 N",
+    ] {
         assert!(report.contains(expected), "{expected} in\n{report}");
     }
 }
@@ -56,7 +67,12 @@ fn monitor_gives_one_line_a_reading_in_a_pipe() {
     assert_eq!(code, Some(0), "{told}");
     let rows: Vec<&str> = lines.lines().collect();
     assert_eq!((rows.len(), rows[0]), (4, "time_s,displacement_m,force_n"));
-    assert!(rows[1..].iter().all(|row| row.split(',').all(|value| value.parse::<f64>().is_ok())), "{lines}");
+    assert!(
+        rows[1..]
+            .iter()
+            .all(|row| row.split(',').all(|value| value.parse::<f64>().is_ok())),
+        "{lines}"
+    );
 }
 
 #[test]
@@ -66,10 +82,16 @@ fn jog_moves_inside_the_limits_and_only_with_a_yes() {
     assert!(place.starts_with("X 2.500 mm   R 2"), "{place}");
     let (code, place, told) = rig(&["jog", "--to", "11 mm", "--yes"]);
     assert_eq!((code, place.as_str()), (Some(4), ""));
-    assert!(told.contains("target displacement 11 mm is outside its limit -5 mm .. 10 mm"), "{told}");
-    for refused in
-        [&["jog", "--to", "1 mm"][..], &["jog", "--yes"], &["jog", "--to", "1", "--yes"], &["jog", "--to", "1 N", "--yes"]]
-    {
+    assert!(
+        told.contains("target displacement 11 mm is outside its limit -5 mm .. 10 mm"),
+        "{told}"
+    );
+    for refused in [
+        &["jog", "--to", "1 mm"][..],
+        &["jog", "--yes"],
+        &["jog", "--to", "1", "--yes"],
+        &["jog", "--to", "1 N", "--yes"],
+    ] {
         let (code, place, told) = rig(refused);
         assert_eq!((code, place.as_str()), (Some(2), ""), "{refused:?}: {told}");
     }

@@ -43,6 +43,11 @@ move there {
 inspect again {
   note = "Look again"
 }
+
+report {
+  figures = []
+  formats = [html, csv]
+}
 "#;
 
 /// The program on a terminal of 100 × 30.
@@ -63,7 +68,12 @@ impl Terminal {
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
         grantpt(&master).unwrap();
         unlockpt(&master).unwrap();
-        let size = Winsize { ws_row: 30, ws_col: 100, ws_xpixel: 0, ws_ypixel: 0 };
+        let size = Winsize {
+            ws_row: 30,
+            ws_col: 100,
+            ws_xpixel: 0,
+            ws_ypixel: 0,
+        };
         tcsetwinsize(&master, size).unwrap();
         let name = ptsname(&master, Vec::new()).unwrap().into_string().unwrap();
         let slave = File::options().read(true).write(true).open(name).unwrap();
@@ -79,7 +89,14 @@ impl Terminal {
             .stderr(stream())
             .spawn()
             .unwrap();
-        Self { folder, master: File::from(master), slave, child, seen: String::new(), columns: 100 }
+        Self {
+            folder,
+            master: File::from(master),
+            slave,
+            child,
+            seen: String::new(),
+            columns: 100,
+        }
     }
 
     /// Reads until this has been drawn since the last key.
@@ -91,8 +108,13 @@ impl Terminal {
                 panic!("in vain for {text:?}:\n{}", self.seen);
             }
             let count = self.master.read(&mut buffer).unwrap();
-            assert!(count > 0, "the terminal closed before {text:?}:\n{}", self.seen);
-            self.seen.push_str(&String::from_utf8_lossy(&buffer[..count]));
+            assert!(
+                count > 0,
+                "the terminal closed before {text:?}:\n{}",
+                self.seen
+            );
+            self.seen
+                .push_str(&String::from_utf8_lossy(&buffer[..count]));
         }
     }
 
@@ -110,7 +132,16 @@ impl Terminal {
     fn set_size(&mut self, columns: u16) {
         self.columns = columns;
         self.seen.clear();
-        tcsetwinsize(&self.master, Winsize { ws_row: 30, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 }).unwrap();
+        tcsetwinsize(
+            &self.master,
+            Winsize {
+                ws_row: 30,
+                ws_col: columns,
+                ws_xpixel: 0,
+                ws_ypixel: 0,
+            },
+        )
+        .unwrap();
         kill_process(Pid::from_child(&self.child), Signal::WINCH).unwrap();
     }
 
@@ -118,7 +149,11 @@ impl Terminal {
     fn drawn(&mut self, text: &str) {
         let since = Instant::now();
         while !self.seen.contains(text) {
-            assert!(since.elapsed() < PATIENCE, "in vain for {text:?}:\n{}", self.seen);
+            assert!(
+                since.elapsed() < PATIENCE,
+                "in vain for {text:?}:\n{}",
+                self.seen
+            );
             let columns = if self.columns == 100 { 110 } else { 100 };
             self.set_size(columns);
             // Cleared, drawn, and the cursor hidden again.
@@ -134,14 +169,22 @@ impl Terminal {
         self.wait_for("run ");
         let code = self.child.wait().unwrap().code();
         let modes = tcgetattr(&self.slave).unwrap().local_modes;
-        assert!(modes.contains(LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG), "the terminal is as it was");
+        assert!(
+            modes.contains(LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG),
+            "the terminal is as it was"
+        );
         let summary = std::fs::read_to_string(self.folder.path().join("out/summary.json")).unwrap();
         (code, serde_json::from_str(&summary).unwrap())
     }
 }
 
 fn events(summary: &Value) -> Vec<&str> {
-    summary["events"].as_array().unwrap().iter().filter_map(|event| event["text"].as_str()).collect()
+    summary["events"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|event| event["text"].as_str())
+        .collect()
 }
 
 #[test]
@@ -157,7 +200,13 @@ fn an_inspection_is_asked_on_the_screen_and_answered_by_name() {
     terminal.press("yes\r");
     let (code, summary) = terminal.ended();
     assert_eq!(code, Some(0), "{summary:#}");
-    assert_eq!(events(&summary), ["Look at the joints: no crack (A. Engineer)", "Look again (A. Engineer)"]);
+    assert_eq!(
+        events(&summary),
+        [
+            "Look at the joints: no crack (A. Engineer)",
+            "Look again (A. Engineer)"
+        ]
+    );
 }
 
 #[test]
@@ -174,13 +223,20 @@ fn ctrl_c_and_no_and_the_end_of_the_input_stop_and_none_is_a_yes() {
         terminal.press(keys);
         let (code, summary) = terminal.ended();
         assert_eq!(code, Some(4), "{keys:?}: {summary:#}");
-        assert!(events(&summary).iter().any(|text| text.contains(reason)), "{keys:?}: {summary:#}");
+        assert!(
+            events(&summary).iter().any(|text| text.contains(reason)),
+            "{keys:?}: {summary:#}"
+        );
     }
 }
 
 #[test]
 fn the_first_key_after_the_window_got_another_size_is_heard() {
-    for (key, reason) in [("h", "on request"), ("q", "stopped on request"), ("\u{3}", "stopped on request")] {
+    for (key, reason) in [
+        ("h", "on request"),
+        ("q", "stopped on request"),
+        ("\u{3}", "stopped on request"),
+    ] {
         let mut terminal = Terminal::run(&["--operator", "B"]);
         terminal.wait_for("INSPECTION");
         terminal.drawn("type yes");
@@ -189,7 +245,10 @@ fn the_first_key_after_the_window_got_another_size_is_heard() {
         terminal.press(key);
         let (code, summary) = terminal.ended();
         assert_eq!(code, Some(4), "{key:?}: {summary:#}");
-        assert!(events(&summary).iter().any(|text| text.contains(reason)), "{key:?}: {summary:#}");
+        assert!(
+            events(&summary).iter().any(|text| text.contains(reason)),
+            "{key:?}: {summary:#}"
+        );
     }
 }
 
@@ -205,5 +264,8 @@ fn a_short_run_draws_no_screen() {
     };
     assert_eq!(code, Some(0));
     assert!(!seen.contains("\u{1b}[?1049h"), "{seen:?}");
-    assert_eq!(events(&summary)[0], "Look at the joints: answered by --yes (B)");
+    assert_eq!(
+        events(&summary)[0],
+        "Look at the joints: answered by --yes (B)"
+    );
 }

@@ -34,8 +34,13 @@ const INCREMENT: f64 = 1.1e-3;
 #[test]
 fn every_dialect_gives_the_virtual_runs_results_within_its_resolution() {
     let faults = std::thread::scope(|scope| {
-        let running: Vec<_> = CASES.iter().map(|case| (case, scope.spawn(|| run(case)))).collect();
-        let ended = running.into_iter().map(|(case, thread)| (case, thread.join()));
+        let running: Vec<_> = CASES
+            .iter()
+            .map(|case| (case, scope.spawn(|| run(case))))
+            .collect();
+        let ended = running
+            .into_iter()
+            .map(|(case, thread)| (case, thread.join()));
         let faults = ended.filter_map(|(case, ended)| match ended {
             Ok(Ok(())) => None,
             Ok(Err(fault)) => Some(format!("{}: {fault}", case.name)),
@@ -59,7 +64,12 @@ impl Drop for Process {
 fn psd(folder: &Path, output: &str, arguments: &[&str]) -> Process {
     let file = || File::create(folder.join(output)).expect("a log can be made");
     let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-    command.current_dir(folder).args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(file());
+    command
+        .current_dir(folder)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(file());
     Process(command.spawn().expect("psd starts"))
 }
 
@@ -79,7 +89,9 @@ fn end(process: &mut Process) -> Option<ExitStatus> {
 fn ready(folder: &Path) -> bool {
     let until = Instant::now() + PATIENCE;
     while Instant::now() < until {
-        if fs::read_to_string(folder.join("simulator.txt")).is_ok_and(|text| text.contains("stands in until")) {
+        if fs::read_to_string(folder.join("simulator.txt"))
+            .is_ok_and(|text| text.contains("stands in until"))
+        {
             return true;
         }
         std::thread::sleep(Duration::from_millis(20));
@@ -91,8 +103,14 @@ fn ready(folder: &Path) -> bool {
 fn write_plan(case: &Case, folder: &Path, reply_timeout: f64) {
     let beam = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/lib/gfrp_beam.psd");
     fs::copy(beam, folder.join("gfrp_beam.psd")).expect("the beam");
-    let free = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a free port");
-    fs::write(folder.join("plan.psd"), case.plan(folder, &free.to_string(), reply_timeout)).expect("the plan");
+    let free = TcpListener::bind("127.0.0.1:0")
+        .and_then(|listener| listener.local_addr())
+        .expect("a free port");
+    fs::write(
+        folder.join("plan.psd"),
+        case.plan(folder, &free.to_string(), reply_timeout),
+    )
+    .expect("the plan");
 }
 
 /// Runs a case on both rigs; the error says what was wrong, with what both processes said.
@@ -103,19 +121,62 @@ fn run(case: &Case) -> Result<(), String> {
     let said = |what: &str| {
         let log = |name: &str| fs::read_to_string(folder.join(name)).unwrap_or_default();
         let bytes = log("bytes.txt");
-        let last = bytes.lines().rev().take(30).collect::<Vec<_>>().into_iter().rev().collect::<Vec<_>>().join("\n");
-        format!("{what}\n{}\n{}\n{}\n{last}", log("virtual.txt"), log("real.txt"), log("simulator.txt"))
+        let last = bytes
+            .lines()
+            .rev()
+            .take(30)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .rev()
+            .collect::<Vec<_>>()
+            .join("\n");
+        format!(
+            "{what}\n{}\n{}\n{}\n{last}",
+            log("virtual.txt"),
+            log("real.txt"),
+            log("simulator.txt")
+        )
     };
 
-    let mut ideal = psd(folder, "virtual.txt", &["run", "plan.psd", "--rig", "ideal", "--out", "virtual"]);
-    let simulate = ["rig", "simulate", "plan.psd", "--rig", "real", "--once", "--log", "bytes.txt"];
+    let mut ideal = psd(
+        folder,
+        "virtual.txt",
+        &["run", "plan.psd", "--rig", "ideal", "--out", "virtual"],
+    );
+    let simulate = [
+        "rig",
+        "simulate",
+        "plan.psd",
+        "--rig",
+        "real",
+        "--once",
+        "--log",
+        "bytes.txt",
+    ];
     let mut simulator = psd(folder, "simulator.txt", &simulate);
     if !ready(folder) {
         return Err(said("the stand-in does not begin"));
     }
-    let mut real =
-        psd(folder, "real.txt", &["run", "plan.psd", "--rig", "real", "--yes", "--operator", "A. Tester", "--out", "real"]);
-    for (process, what) in [(&mut ideal, "virtual run"), (&mut real, "real run"), (&mut simulator, "stand-in")] {
+    let mut real = psd(
+        folder,
+        "real.txt",
+        &[
+            "run",
+            "plan.psd",
+            "--rig",
+            "real",
+            "--yes",
+            "--operator",
+            "A. Tester",
+            "--out",
+            "real",
+        ],
+    );
+    for (process, what) in [
+        (&mut ideal, "virtual run"),
+        (&mut real, "real run"),
+        (&mut simulator, "stand-in"),
+    ] {
         match end(process) {
             Some(status) if status.success() => {}
             Some(status) => return Err(said(&format!("the {what} ended with {status}"))),
@@ -150,9 +211,15 @@ fn compare(case: &Case, ideal: &Value, real: &Value) -> Result<(), String> {
     if case.sweep {
         error += near(ideal, real, ("c", "damping"), 2.0 * error / 2e-3)? * VELOCITY;
     }
-    let displacement = std::f64::consts::FRAC_2_PI * FREQUENCY * STOP * error / STIFFNESS + case.resolution;
+    let displacement =
+        std::f64::consts::FRAC_2_PI * FREQUENCY * STOP * error / STIFFNESS + case.resolution;
     near(ideal, real, ("hit", "max_displacement"), displacement)?;
-    near(ideal, real, ("hit", "absorbed_energy"), error * VELOCITY * STOP + STIFFNESS * LARGEST * displacement)?;
+    near(
+        ideal,
+        real,
+        ("hit", "absorbed_energy"),
+        error * VELOCITY * STOP + STIFFNESS * LARGEST * displacement,
+    )?;
     let stops = |summary| result(summary, "hit", "stop_time").is_some();
     let whole = case.duration > 1e3 * STOP;
     if stops(ideal) != whole || stops(real) != whole {
@@ -169,10 +236,23 @@ fn compare(case: &Case, ideal: &Value, real: &Value) -> Result<(), String> {
 }
 
 /// By how much a result of the two runs differs, if that is at most `allowed`.
-fn near(ideal: &Value, real: &Value, (procedure, name): (&str, &str), allowed: f64) -> Result<f64, String> {
-    let (expected, found) = (result(ideal, procedure, name), result(real, procedure, name));
-    match expected.zip(found).map(|(expected, found)| (found - expected).abs()) {
+fn near(
+    ideal: &Value,
+    real: &Value,
+    (procedure, name): (&str, &str),
+    allowed: f64,
+) -> Result<f64, String> {
+    let (expected, found) = (
+        result(ideal, procedure, name),
+        result(real, procedure, name),
+    );
+    match expected
+        .zip(found)
+        .map(|(expected, found)| (found - expected).abs())
+    {
         Some(difference) if difference <= allowed => Ok(difference),
-        _ => Err(format!("{procedure}.{name}: {found:?} is not within {allowed} of {expected:?}")),
+        _ => Err(format!(
+            "{procedure}.{name}: {found:?} is not within {allowed} of {expected:?}"
+        )),
     }
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadFault, Loader, Options, check};
 
 struct NoFiles;
 
@@ -21,7 +21,11 @@ fn page(name: &str) -> String {
 #[test]
 fn the_plan_in_the_readme_checks() {
     let readme = page("README.md");
-    let plans: Vec<&str> = readme.split("```psd\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let plans: Vec<&str> = readme
+        .split("```psd\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next())
+        .collect();
     assert!(!plans.is_empty(), "the README shows a plan");
     for plan in plans {
         let checked = check("README.psd", plan, &NoFiles, &Options::default());
@@ -34,7 +38,10 @@ fn links_of_the_pages_lead_somewhere() {
     for name in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"] {
         for rest in page(name).split("](").skip(1) {
             let target = rest.split(')').next().expect("a link ends");
-            assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(target).exists(), "{name} links to {target}");
+            assert!(
+                Path::new(env!("CARGO_MANIFEST_DIR")).join(target).exists(),
+                "{name} links to {target}"
+            );
         }
     }
 }
@@ -44,10 +51,16 @@ fn links_of_the_pages_lead_somewhere() {
 fn places_named_on_the_pages_exist() {
     for name in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
         for quoted in page(name).split('`').skip(1).step_by(2) {
-            let is_place = quoted.starts_with("src/") || quoted.starts_with("tests/") || quoted.starts_with("grammar/");
-            let is_pattern = quoted.contains(['{', ' ']) || quoted.contains("NAME") || quoted.contains("CODE");
+            let is_place = quoted.starts_with("src/")
+                || quoted.starts_with("tests/")
+                || quoted.starts_with("grammar/");
+            let is_pattern =
+                quoted.contains(['{', ' ']) || quoted.contains("NAME") || quoted.contains("CODE");
             if is_place && !is_pattern {
-                assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(quoted).exists(), "{name} names {quoted}");
+                assert!(
+                    Path::new(env!("CARGO_MANIFEST_DIR")).join(quoted).exists(),
+                    "{name} names {quoted}"
+                );
             }
         }
     }
@@ -57,38 +70,74 @@ fn places_named_on_the_pages_exist() {
 fn the_readmes_commands_are_there() {
     let readme = page("README.md");
     assert!(readme.contains("cargo run -- run plans/beam.psd") && readme.contains("cargo test"));
-    assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/beam.psd").exists());
+    assert!(
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("plans/beam.psd")
+            .exists()
+    );
 }
 
 /// Every part of the code stands on the code map.
 #[test]
 fn every_part_of_the_code_is_on_the_map() {
-    let (root, map) = (Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), page("ARCHITECTURE.md"));
+    let (root, map) = (
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
+        page("ARCHITECTURE.md"),
+    );
     for entry in fs::read_dir(root).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        let told = matches!(name.as_str(), "main.rs" | "lib.rs") || map.contains(&format!("`src/{name}"));
+        let told =
+            matches!(name.as_str(), "main.rs" | "lib.rs") || map.contains(&format!("`src/{name}"));
         assert!(told, "ARCHITECTURE.md does not name src/{name}");
     }
 }
 
 /// What `psd … --help` says.
 fn help(words: &[&str]) -> Option<String> {
-    let output = Command::new(env!("CARGO_BIN_EXE_psd")).args(words).arg("--help").output().unwrap();
-    output.status.success().then(|| String::from_utf8(output.stdout).unwrap())
+    let output = Command::new(env!("CARGO_BIN_EXE_psd"))
+        .args(words)
+        .arg("--help")
+        .output()
+        .unwrap();
+    output
+        .status
+        .success()
+        .then(|| String::from_utf8(output.stdout).unwrap())
 }
 
 /// Commands and options of psd that the pages show in code marks or blocks are those of the program.
 #[test]
 fn commands_and_options_on_the_pages_are_those_of_the_program() {
-    let pages = ["README.md", "CONTRIBUTING.md", "docs/rigs.md", "docs/record.md", "docs/golden.md", "docs/uncertainty.md"];
-    let is_word = |word: &&str| word.chars().all(|letter| letter.is_ascii_lowercase() || letter == '-');
+    let pages = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "docs/rigs.md",
+        "docs/record.md",
+        "docs/golden.md",
+        "docs/uncertainty.md",
+    ];
+    let is_word = |word: &&str| {
+        word.chars()
+            .all(|letter| letter.is_ascii_lowercase() || letter == '-')
+    };
     let mut shown = 0;
     for name in pages {
         let page = page(name);
-        let marked = page.split('`').skip(1).step_by(2).filter(|code| code.starts_with("psd ") && !code.contains('\n'));
-        let blocks = page.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next()).flat_map(str::lines);
-        let lines =
-            blocks.filter_map(|line| line.trim().strip_prefix("cargo run -- ").or_else(|| line.trim().strip_prefix("psd ")));
+        let marked = page
+            .split('`')
+            .skip(1)
+            .step_by(2)
+            .filter(|code| code.starts_with("psd ") && !code.contains('\n'));
+        let blocks = page
+            .split("```sh\n")
+            .skip(1)
+            .filter_map(|rest| rest.split("```").next())
+            .flat_map(str::lines);
+        let lines = blocks.filter_map(|line| {
+            line.trim()
+                .strip_prefix("cargo run -- ")
+                .or_else(|| line.trim().strip_prefix("psd "))
+        });
         for line in marked.map(|code| &code[4..]).chain(lines) {
             let line = line.split(" #").next().unwrap_or_default();
             let words: Vec<&str> = line.split_whitespace().collect();
@@ -98,8 +147,15 @@ fn commands_and_options_on_the_pages_are_those_of_the_program() {
                 continue;
             }
             let help = help(&command).unwrap_or_else(|| panic!("{name} shows `psd {line}`"));
-            for option in words.iter().filter_map(|word| word.split('=').next()).filter(|word| word.starts_with("--")) {
-                assert!(help.contains(option), "{name} shows `psd {line}`, and there is no {option}");
+            for option in words
+                .iter()
+                .filter_map(|word| word.split('=').next())
+                .filter(|word| word.starts_with("--"))
+            {
+                assert!(
+                    help.contains(option),
+                    "{name} shows `psd {line}`, and there is no {option}"
+                );
             }
             shown += 1;
         }

@@ -4,10 +4,10 @@
 //! file that both plans may use (`*` stands for any digits). `set="speed=2 m/s"` and `rig="name"` are options of the command line; with `unattended="yes"` a run is to begin
 //! and nobody is there to ask.
 
-use psd::check::{Checked, LoadFault, Loader, Options, check};
-use psd::diagnostic::{Code, OF_THE_MACHINE, Severity};
-use psd::source::Sources;
-use psd::syntax::{format, parse};
+use psd::language::check::{Checked, LoadFault, Loader, Options, check};
+use psd::language::syntax::{format, parse};
+use psd::text::diagnostic::{Code, OF_THE_MACHINE, Severity};
+use psd::text::source::Sources;
 
 /// One fenced block of a page.
 struct Fence {
@@ -34,7 +34,10 @@ fn fences(page: &str) -> Vec<Fence> {
     while let Some((_, after)) = rest.split_once("```psd") {
         let (info, body) = after.split_once('\n').expect("a fence is a line");
         let (text, next) = body.split_once("```").expect("the fence is closed");
-        found.push(Fence { info: info.trim().to_owned(), text: text.to_owned() });
+        found.push(Fence {
+            info: info.trim().to_owned(),
+            text: text.to_owned(),
+        });
         rest = next;
     }
     found
@@ -49,21 +52,36 @@ impl Loader for PageFiles<'_> {
             Some((head, tail)) => path
                 .strip_prefix(head)
                 .and_then(|rest| rest.strip_suffix(tail))
-                .is_some_and(|middle| !middle.is_empty() && middle.bytes().all(|byte| byte.is_ascii_digit())),
+                .is_some_and(|middle| {
+                    !middle.is_empty() && middle.bytes().all(|byte| byte.is_ascii_digit())
+                }),
             None => path == pattern,
         };
-        let found = self.0.iter().find(|fence| fence.option("file").is_some_and(holds));
-        found.map(|fence| fence.text.clone()).ok_or(LoadFault::NotFound)
+        let found = self
+            .0
+            .iter()
+            .find(|fence| fence.option("file").is_some_and(holds));
+        found
+            .map(|fence| fence.text.clone())
+            .ok_or(LoadFault::NotFound)
     }
 }
 
 fn checked(code: Code, kind: &str) -> Checked {
     let fences = fences(code.page());
-    let plan = fences.iter().find(|fence| fence.is(kind)).unwrap_or_else(|| panic!("the page of {code} has a {kind} plan"));
-    let settings = plan.option("set").and_then(|setting| setting.split_once('='));
+    let plan = fences
+        .iter()
+        .find(|fence| fence.is(kind))
+        .unwrap_or_else(|| panic!("the page of {code} has a {kind} plan"));
+    let settings = plan
+        .option("set")
+        .and_then(|setting| setting.split_once('='));
     let options = Options {
         rig: plan.option("rig").map(str::to_owned),
-        settings: settings.into_iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
+        settings: settings
+            .into_iter()
+            .map(|(name, value)| (name.to_owned(), value.to_owned()))
+            .collect(),
         date: None,
         unattended: plan.option("unattended").is_some(),
         recorded: false,
@@ -73,13 +91,20 @@ fn checked(code: Code, kind: &str) -> Checked {
 
 /// `E202 unknown field …` of each diagnostic, for the message of a failing test.
 fn said(checked: &Checked) -> Vec<String> {
-    checked.diagnostics.iter().map(|diagnostic| format!("{}: {}", diagnostic.code, diagnostic.message)).collect()
+    checked
+        .diagnostics
+        .iter()
+        .map(|diagnostic| format!("{}: {}", diagnostic.code, diagnostic.message))
+        .collect()
 }
 
 /// Every code that does not do as `holds` says, with what was found instead.
 fn faults_of(kind: &str, holds: impl Fn(Code, &Checked) -> bool) -> Vec<String> {
     let mut faults = Vec::new();
-    for &code in Code::ALL.iter().filter(|code| !OF_THE_MACHINE.contains(code)) {
+    for &code in Code::ALL
+        .iter()
+        .filter(|code| !OF_THE_MACHINE.contains(code))
+    {
         let checked = checked(code, kind);
         if !holds(code, &checked) {
             faults.push(format!("{code}, {kind} plan: {:?}", said(&checked)));
@@ -92,15 +117,31 @@ fn faults_of(kind: &str, holds: impl Fn(Code, &Checked) -> bool) -> Vec<String> 
 fn every_page_starts_with_its_code_and_has_one_wrong_and_one_right_plan_where_a_plan_gives_it() {
     for &code in Code::ALL {
         let page = code.page();
-        let title = page.lines().next().unwrap_or_default().strip_prefix(&format!("# {code}: "));
-        assert!(title.is_some_and(|title| title.len() > 3), "the page of {code} has no title");
+        let title = page
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .strip_prefix(&format!("# {code}: "));
+        assert!(
+            title.is_some_and(|title| title.len() > 3),
+            "the page of {code} has no title"
+        );
         let fences = fences(page);
         let plans = usize::from(!OF_THE_MACHINE.contains(&code));
         for kind in ["wrong", "right"] {
-            assert_eq!(fences.iter().filter(|fence| fence.is(kind)).count(), plans, "{kind} plans on the page of {code}");
+            assert_eq!(
+                fences.iter().filter(|fence| fence.is(kind)).count(),
+                plans,
+                "{kind} plans on the page of {code}"
+            );
         }
-        let other = fences.iter().find(|fence| !fence.is("wrong") && !fence.is("right") && fence.option("file").is_none());
-        assert!(other.is_none(), "the page of {code} has a plan that is neither wrong, right nor a file");
+        let other = fences.iter().find(|fence| {
+            !fence.is("wrong") && !fence.is("right") && fence.option("file").is_none()
+        });
+        assert!(
+            other.is_none(),
+            "the page of {code} has a plan that is neither wrong, right nor a file"
+        );
     }
 }
 
@@ -108,8 +149,15 @@ fn every_page_starts_with_its_code_and_has_one_wrong_and_one_right_plan_where_a_
 fn the_wrong_plan_of_a_page_gives_its_code_and_no_other() {
     let faults = faults_of("wrong", |code, checked| {
         let relevant: Vec<Code> = match code.severity() {
-            Severity::Error => checked.diagnostics.iter().filter(|it| it.is_error()).map(|it| it.code).collect(),
-            Severity::Warning | Severity::Advice => checked.diagnostics.iter().map(|it| it.code).collect(),
+            Severity::Error => checked
+                .diagnostics
+                .iter()
+                .filter(|it| it.is_error())
+                .map(|it| it.code)
+                .collect(),
+            Severity::Warning | Severity::Advice => {
+                checked.diagnostics.iter().map(|it| it.code).collect()
+            }
         };
         relevant == [code] && checked.plan.is_none() == (code.severity() == Severity::Error)
     });
@@ -119,7 +167,11 @@ fn the_wrong_plan_of_a_page_gives_its_code_and_no_other() {
 #[test]
 fn the_right_plan_of_a_page_gives_no_error_and_not_the_code() {
     let faults = faults_of("right", |code, checked| {
-        checked.plan.is_some() && checked.diagnostics.iter().all(|diagnostic| !diagnostic.is_error() && diagnostic.code != code)
+        checked.plan.is_some()
+            && checked
+                .diagnostics
+                .iter()
+                .all(|diagnostic| !diagnostic.is_error() && diagnostic.code != code)
     });
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
@@ -132,7 +184,11 @@ fn the_plans_of_the_pages_are_written_as_the_formatter_writes_them() {
             let file = sources.add("plan.psd", fence.text.as_str());
             let (ast, faults) = parse(&sources, file);
             if faults.is_empty() {
-                assert_eq!(format(&ast, &fence.text), fence.text, "{code}: psd fmt would change a plan of the page");
+                assert_eq!(
+                    format(&ast, &fence.text),
+                    fence.text,
+                    "{code}: psd fmt would change a plan of the page"
+                );
             }
         }
     }

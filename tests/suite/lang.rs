@@ -5,23 +5,36 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::check::{Checked, LoadFault, Loader, Options, check};
-use psd::diagnostic::render::{Appearance, render_all};
-use psd::diagnostic::{Code, Diagnostic, Severity};
-use psd::quantity::display::readable;
+use psd::language::check::{Checked, LoadFault, Loader, Options, check};
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 use psd::schema::{BLOCKS, Field, FieldType, Kind, Need, RigKind, Variant};
+use psd::text::diagnostic::render::{Appearance, render_all};
+use psd::text::diagnostic::{Code, Diagnostic, Severity};
+use psd::units::display::readable;
 use psd::verdict::{Assessment, Verdict, assess};
 
 /// Where a plan's way ends, and the exit code that goes with it.
-const STAGES: &[(&str, u8)] = &[("ok", 0), ("syntax_error", 2), ("check_error", 2), ("blocked", 1), ("aborted", 4), ("fail", 1)];
+const STAGES: &[(&str, u8)] = &[
+    ("ok", 0),
+    ("syntax_error", 2),
+    ("check_error", 2),
+    ("blocked", 1),
+    ("aborted", 4),
+    ("fail", 1),
+];
 
 /// Codes without a case of their own, and why.
 const WITHOUT_CASE: &[(Code, &str)] = &[
-    (Code::TooManyFiles, "needs 64 files; the page of `psd explain` has the plan"),
-    (Code::NoRoom, "is of the machine; tests/system/disk.rs has a disk that is too small"),
+    (
+        Code::TooManyFiles,
+        "needs 64 files; the page of `psd explain` has the plan",
+    ),
+    (
+        Code::NoRoom,
+        "is of the machine; tests/system/disk.rs has a disk that is too small",
+    ),
 ];
 
 struct Case {
@@ -42,10 +55,21 @@ impl Loader for Folder<'_> {
 
 impl Case {
     fn read(path: &Path) -> Self {
-        let folder = path.parent().expect("a case lies in a folder").to_path_buf();
+        let folder = path
+            .parent()
+            .expect("a case lies in a folder")
+            .to_path_buf();
         Self {
-            stage: folder.file_name().expect("the folder has a name").to_string_lossy().into_owned(),
-            name: path.file_stem().expect("the case has a name").to_string_lossy().into_owned(),
+            stage: folder
+                .file_name()
+                .expect("the folder has a name")
+                .to_string_lossy()
+                .into_owned(),
+            name: path
+                .file_stem()
+                .expect("the case has a name")
+                .to_string_lossy()
+                .into_owned(),
             text: fs::read_to_string(path).expect("the case is text"),
             folder,
         }
@@ -53,13 +77,20 @@ impl Case {
 
     fn options(&self) -> Options {
         let mut options = Options::default();
-        let given = self.text.lines().next().and_then(|line| line.strip_prefix("# options: --")).unwrap_or_default();
+        let given = self
+            .text
+            .lines()
+            .next()
+            .and_then(|line| line.strip_prefix("# options: --"))
+            .unwrap_or_default();
         for given in given.split(" --").filter(|given| !given.is_empty()) {
             let (option, value) = given.split_once(' ').unwrap_or((given, ""));
             let value = value.trim().trim_matches('"');
             match option {
                 "set" => {
-                    let (name, value) = value.split_once('=').expect("`--set` has a name and a value");
+                    let (name, value) = value
+                        .split_once('=')
+                        .expect("`--set` has a name and a value");
                     options.settings.push((name.to_owned(), value.to_owned()));
                 }
                 "rig" => options.rig = Some(value.to_owned()),
@@ -72,7 +103,12 @@ impl Case {
     }
 
     fn check(&self) -> Checked {
-        check(&format!("{}.psd", self.name), &self.text, &Folder(&self.folder), &self.options())
+        check(
+            &format!("{}.psd", self.name),
+            &self.text,
+            &Folder(&self.folder),
+            &self.options(),
+        )
     }
 
     /// The code in the case's name: `e202_unknown_field`.
@@ -126,11 +162,32 @@ fn told(record: &Record, assessment: &Assessment) -> String {
         Outcome::Faulted { reason } => format!("the run failed: {reason}\n"),
     };
     for requirement in &assessment.requirements {
-        let _ = writeln!(text, "{}: {}", requirement.verdict.name(), requirement.label);
+        let _ = writeln!(
+            text,
+            "{}: {}",
+            requirement.verdict.name(),
+            requirement.label
+        );
         for condition in &requirement.conditions {
-            let value = condition.value.map_or_else(|| "none".to_owned(), |value| readable(value, condition.dimension));
-            let _ = write!(text, "  {}: {} = {value}", condition.verdict.name(), condition.text);
-            let _ = writeln!(text, "{}", condition.reason.as_ref().map(|reason| format!(" ({reason})")).unwrap_or_default());
+            let value = condition.value.map_or_else(
+                || "none".to_owned(),
+                |value| readable(value, condition.dimension),
+            );
+            let _ = write!(
+                text,
+                "  {}: {} = {value}",
+                condition.verdict.name(),
+                condition.text
+            );
+            let _ = writeln!(
+                text,
+                "{}",
+                condition
+                    .reason
+                    .as_ref()
+                    .map(|reason| format!(" ({reason})"))
+                    .unwrap_or_default()
+            );
         }
     }
     text
@@ -143,14 +200,21 @@ fn cases_end_where_their_folder_says_and_say_why() {
         let checked = case.check();
         let played = play(&checked);
         let mut text = format!("{}\n----\n", case.text.replace("\r\n", "\n").trim_end());
-        text.push_str(&render_all(&checked.diagnostics, &checked.sources, &Appearance::plain()));
+        text.push_str(&render_all(
+            &checked.diagnostics,
+            &checked.sources,
+            &Appearance::plain(),
+        ));
         if let Some((record, assessment)) = &played {
             text.push_str(&told(record, assessment));
         }
         let exit = exit_code(played.as_ref());
         let _ = writeln!(text, "exit {exit}");
         insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!(text) });
-        let (_, expected) = STAGES.iter().find(|(stage, _)| *stage == case.stage).expect("the folder is a stage");
+        let (_, expected) = STAGES
+            .iter()
+            .find(|(stage, _)| *stage == case.stage)
+            .expect("the folder is a stage");
         assert_eq!(exit, *expected, "{}/{}", case.stage, case.name);
     });
 }
@@ -161,7 +225,10 @@ fn a_case_named_after_a_code_gives_that_code_and_nothing_that_follows_from_it() 
     for case in cases() {
         let Some(code) = case.code() else { continue };
         let checked = case.check();
-        let relevant = checked.diagnostics.iter().filter(|it| code.severity() != Severity::Error || it.is_error());
+        let relevant = checked
+            .diagnostics
+            .iter()
+            .filter(|it| code.severity() != Severity::Error || it.is_error());
         let given: Vec<Code> = relevant.map(|diagnostic| diagnostic.code).collect();
         if given != [code] {
             faults.push(format!("{}/{}: {given:?}", case.stage, case.name));
@@ -173,9 +240,20 @@ fn a_case_named_after_a_code_gives_that_code_and_nothing_that_follows_from_it() 
 #[test]
 fn syntax_faults_lie_in_their_folder_and_sound_plans_are_silent() {
     for case in cases() {
-        let codes: Vec<Code> = case.check().diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
+        let codes: Vec<Code> = case
+            .check()
+            .diagnostics
+            .iter()
+            .map(|diagnostic| diagnostic.code)
+            .collect();
         let of_the_text = codes.iter().any(|code| code.id().starts_with("E1"));
-        assert_eq!(of_the_text, case.stage == "syntax_error", "{}/{}: {codes:?}", case.stage, case.name);
+        assert_eq!(
+            of_the_text,
+            case.stage == "syntax_error",
+            "{}/{}: {codes:?}",
+            case.stage,
+            case.name
+        );
         if case.stage == "ok" && case.code().is_none() {
             assert!(codes.is_empty(), "ok/{}: {codes:?}", case.name);
         }
@@ -188,24 +266,42 @@ fn every_code_has_a_case() {
     for &code in Code::ALL {
         let listed = WITHOUT_CASE.iter().any(|(without, _)| *without == code);
         let found = cases.iter().any(|case| case.code() == Some(code));
-        assert!(found != listed, "{code}: {}", if found { "listed as without a case" } else { "no case in tests/lang" });
+        assert!(
+            found != listed,
+            "{code}: {}",
+            if found {
+                "listed as without a case"
+            } else {
+                "no case in tests/lang"
+            }
+        );
     }
 }
 
 #[test]
 fn line_ends_of_other_systems_are_tested() {
     let crlf = |case: &&Case| case.name == "crlf" && case.text.contains("\r\n");
-    assert_eq!(cases().iter().filter(crlf).count(), 3, "the line ends of tests/lang/*/crlf.psd were changed");
+    assert_eq!(
+        cases().iter().filter(crlf).count(),
+        3,
+        "the line ends of tests/lang/*/crlf.psd were changed"
+    );
 }
 
 /// The names of the cases that leave out a required argument, also of choices inside choices.
 fn argument_cases(field: &Field) -> Vec<String> {
-    let (FieldType::Choice(variants) | FieldType::Choices(variants)) = field.ty else { return Vec::new() };
+    let (FieldType::Choice(variants) | FieldType::Choices(variants)) = field.ty else {
+        return Vec::new();
+    };
     let available = variants.iter();
     let of_variant = |variant: &'static Variant| {
-        let required = variant.arguments.iter().filter(|argument| argument.need == Need::Required);
+        let required = variant
+            .arguments
+            .iter()
+            .filter(|argument| argument.need == Need::Required);
         let own = required.map(|argument| format!("e213_{}_{}", variant.name, argument.name));
-        own.chain(variant.arguments.iter().flat_map(argument_cases)).collect::<Vec<_>>()
+        own.chain(variant.arguments.iter().flat_map(argument_cases))
+            .collect::<Vec<_>>()
     };
     available.flat_map(of_variant).collect()
 }
@@ -218,11 +314,15 @@ fn every_required_field_and_argument_has_a_case() {
         for field in block.fields.iter().filter(|field| field.available) {
             let words = block.words().replace(' ', "_");
             match field.need {
-                Need::Required | Need::RequiredOn(RigKind::Virtual, _) => wanted.push(format!("e209_{words}_{}", field.name)),
+                Need::Required | Need::RequiredOn(RigKind::Virtual, _) => {
+                    wanted.push(format!("e209_{words}_{}", field.name));
+                }
                 Need::RequiredOn(RigKind::Real, _) if block.kind == Kind::Rig => {
                     wanted.push(format!("e606_{words}_{}", field.name));
                 }
-                Need::RequiredOn(RigKind::Real, _) => wanted.push(format!("e209_{words}_{}_on_a_real_rig", field.name)),
+                Need::RequiredOn(RigKind::Real, _) => {
+                    wanted.push(format!("e209_{words}_{}_on_a_real_rig", field.name));
+                }
                 Need::Optional | Need::Default { .. } | Need::Said(_) => {}
             }
             wanted.extend(argument_cases(field));
@@ -230,7 +330,11 @@ fn every_required_field_and_argument_has_a_case() {
     }
     assert!(wanted.len() > 25, "the schema has required fields");
     wanted.retain(|name| !names.contains(name));
-    assert!(wanted.is_empty(), "no case in tests/lang/check_error for: {}", wanted.join(", "));
+    assert!(
+        wanted.is_empty(),
+        "no case in tests/lang/check_error for: {}",
+        wanted.join(", ")
+    );
 }
 
 /// The real rigs of `plans/lib` are whole: a plan on each of them has no fault, and the beam's moves it only when named.
@@ -238,15 +342,24 @@ fn every_required_field_and_argument_has_a_case() {
 fn the_rigs_of_the_library_are_sound() {
     let plans = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans");
     let on = |text: &str, rig: Option<&str>| {
-        let options = Options { rig: rig.map(str::to_owned), ..Options::default() };
+        let options = Options {
+            rig: rig.map(str::to_owned),
+            ..Options::default()
+        };
         let checked = check("plan.psd", text, &Folder(&plans), &options);
-        assert!(!checked.diagnostics.iter().any(Diagnostic::is_error), "{rig:?}: {:?}", checked.diagnostics);
+        assert!(
+            !checked.diagnostics.iter().any(Diagnostic::is_error),
+            "{rig:?}: {:?}",
+            checked.diagnostics
+        );
         checked.plan.expect("no error stands").rig
     };
     let text = "use \"lib/bench_rig.psd\"\nspecimen beam { mass = 1 kg }\nmove out { to = 1 mm }\n";
-    for (rig, dialects) in
-        [("native_frame", ("native", None)), ("stepper_frame", ("grbl", Some("hx711"))), ("laboratory_frame", ("nees", None))]
-    {
+    for (rig, dialects) in [
+        ("native_frame", ("native", None)),
+        ("stepper_frame", ("grbl", Some("hx711"))),
+        ("laboratory_frame", ("nees", None)),
+    ] {
         let chosen = on(text, Some(rig));
         let link = chosen.link.as_real().expect("a real rig");
         let cell = link.load_cell.as_ref().map(|cell| cell.dialect.name());
@@ -255,7 +368,10 @@ fn the_rigs_of_the_library_are_sound() {
     let beam = fs::read_to_string(plans.join("beam.psd")).expect("the plan is there");
     assert_eq!(on(&beam, None).name, "rehearsal");
     assert_eq!(
-        on(&beam, Some("bench")).link.as_real().map(|link| link.actuator.port.to_string()),
+        on(&beam, Some("bench"))
+            .link
+            .as_real()
+            .map(|link| link.actuator.port.to_string()),
         Some("/tmp/psd-bench".to_owned())
     );
 }
@@ -265,7 +381,13 @@ fn every_block_has_a_case_that_is_right() {
     let cases = cases();
     for block in BLOCKS.iter().filter(|block| block.kind != Kind::Later) {
         let head = format!("{} ", block.words());
-        let found = cases.iter().any(|case| case.stage == "ok" && case.text.lines().any(|line| line.starts_with(&head)));
-        assert!(found, "no case in tests/lang/ok has a `{}` block", block.words());
+        let found = cases.iter().any(|case| {
+            case.stage == "ok" && case.text.lines().any(|line| line.starts_with(&head))
+        });
+        assert!(
+            found,
+            "no case in tests/lang/ok has a `{}` block",
+            block.words()
+        );
     }
 }

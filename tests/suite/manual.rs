@@ -4,13 +4,14 @@
 use std::fs;
 use std::path::Path;
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::diagnostic::render::{Appearance, render_all};
+use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::syntax::{format, parse};
 use psd::plan::Interval;
 use psd::record::journal::EntryKind;
-use psd::rig::dialect::native::{self, AxisBounds, Bounds, End, Kind, LONGEST_FRAME, Request};
-use psd::source::Sources;
-use psd::syntax::{format, parse};
+use psd::rig::controllers::native;
+use psd::rig::controllers::native::codec::{AxisBounds, Bounds, End, Kind, LONGEST_FRAME, Request};
+use psd::text::diagnostic::render::{Appearance, render_all};
+use psd::text::source::Sources;
 
 /// The plans of the manual use no file but a ground motion.
 struct Ground;
@@ -18,49 +19,108 @@ struct Ground;
 impl Loader for Ground {
     fn load(&self, path: &str) -> Result<String, LoadFault> {
         let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
-        if path == "ground.csv" { Ok(ground.to_owned()) } else { Err(LoadFault::NotFound) }
+        if path == "ground.csv" {
+            Ok(ground.to_owned())
+        } else {
+            Err(LoadFault::NotFound)
+        }
     }
 }
 
 fn page(name: &str) -> String {
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name)).expect("the page is there")
+    fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("docs")
+            .join(name),
+    )
+    .expect("the page is there")
 }
 
 /// The fenced blocks of a language.
 fn blocks(page: &str, language: &str) -> Vec<String> {
     let fence = format!("```{language}\n");
-    page.split(&fence).skip(1).map(|after| after.split("```").next().unwrap_or_default().to_owned()).collect()
+    page.split(&fence)
+        .skip(1)
+        .map(|after| after.split("```").next().unwrap_or_default().to_owned())
+        .collect()
 }
 
 #[test]
 fn every_rig_block_checks_in_the_plan_around_it() {
     let plans = blocks(&page("rigs.md"), "psd");
-    let (around, rigs): (Vec<&String>, Vec<&String>) = plans.iter().partition(|plan| !plan.starts_with("rig "));
-    assert_eq!(around.len(), 2, "a plan is around every rig of one axis, and another around those of several");
+    let (around, rigs): (Vec<&String>, Vec<&String>) =
+        plans.iter().partition(|plan| !plan.starts_with("rig "));
+    assert_eq!(
+        around.len(),
+        2,
+        "a plan is around every rig of one axis, and another around those of several"
+    );
     assert!(rigs.len() >= 8, "each kind of rig has its block");
     for rig in &rigs {
-        let name = rig.split_whitespace().nth(1).expect("a rig has a name").to_owned();
+        let name = rig
+            .split_whitespace()
+            .nth(1)
+            .expect("a rig has a name")
+            .to_owned();
         let several = rig.contains("  axes ");
-        let plan = around.iter().find(|plan| plan.contains("storey(") == several).expect("the plan around it");
+        let plan = around
+            .iter()
+            .find(|plan| plan.contains("storey(") == several)
+            .expect("the plan around it");
         let plan = format!("{plan}\n{rig}");
         let mut sources = Sources::default();
         let file = sources.add("rigs.md", &plan);
-        assert_eq!(format(&parse(&sources, file).0, &plan), plan, "psd fmt would change `{name}`");
-        let checked = check("rigs.md", &plan, &Ground, &Options { rig: Some(name), ..Options::default() });
+        assert_eq!(
+            format(&parse(&sources, file).0, &plan),
+            plan,
+            "psd fmt would change `{name}`"
+        );
+        let checked = check(
+            "rigs.md",
+            &plan,
+            &Ground,
+            &Options {
+                rig: Some(name),
+                ..Options::default()
+            },
+        );
         let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
-        assert!(checked.plan.is_some() && checked.diagnostics.is_empty(), "{plan}\n{said}");
+        assert!(
+            checked.plan.is_some() && checked.diagnostics.is_empty(),
+            "{plan}\n{said}"
+        );
     }
-    for dialect in ["native", "grbl", "hx711", "indicator", "scpi(", "instron", "mark10", "modbus(", "nees("] {
-        assert!(rigs.iter().any(|rig| rig.contains(dialect)), "{dialect} has no block");
+    for dialect in [
+        "native",
+        "grbl",
+        "hx711",
+        "indicator",
+        "scpi(",
+        "instron",
+        "mark10",
+        "modbus(",
+        "nees(",
+    ] {
+        assert!(
+            rigs.iter().any(|rig| rig.contains(dialect)),
+            "{dialect} has no block"
+        );
     }
 }
 
 /// The frames of the protocol's conversations, of a rig of one axis and of one of two, without their endings.
 fn frames() -> Vec<String> {
     let page = page("rigs.md");
-    let talks: Vec<_> = blocks(&page, "text").into_iter().filter(|block| block.starts_with(">HELLO")).collect();
+    let talks: Vec<_> = blocks(&page, "text")
+        .into_iter()
+        .filter(|block| block.starts_with(">HELLO"))
+        .collect();
     assert_eq!(talks.len(), 2, "two conversations are shown");
-    talks.iter().flat_map(|talk| talk.lines()).map(str::to_owned).collect()
+    talks
+        .iter()
+        .flat_map(|talk| talk.lines())
+        .map(str::to_owned)
+        .collect()
 }
 
 fn metres(word: &str) -> f64 {
@@ -75,7 +135,9 @@ fn newtons(word: &str) -> f64 {
 fn every_request_on_the_page_is_the_frame_the_driver_sends() {
     let mut verbs = Vec::new();
     for shown in frames().iter().filter(|line| line.starts_with('>')) {
-        let (body, _) = shown[1..].rsplit_once('*').expect("a frame has its checksum");
+        let (body, _) = shown[1..]
+            .rsplit_once('*')
+            .expect("a frame has its checksum");
         let words: Vec<&str> = body.split(' ').collect();
         let sequence: u32 = words[1].parse().expect("a sequence number");
         let (bounds, targets, rate, ends);
@@ -83,73 +145,125 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
             ("HELLO", []) => Request::Hello,
             ("LIM", [axes @ .., speed]) => {
                 let axis = |words: &[&str]| {
-                    let [low, high, least, most] = words else { panic!("four limits for each axis: {shown}") };
+                    let [low, high, least, most] = words else {
+                        panic!("four limits for each axis: {shown}")
+                    };
                     AxisBounds {
-                        displacement: Interval { low: metres(low), high: metres(high) },
-                        force: Interval { low: newtons(least), high: newtons(most) },
+                        displacement: Interval {
+                            low: metres(low),
+                            high: metres(high),
+                        },
+                        force: Interval {
+                            low: newtons(least),
+                            high: newtons(most),
+                        },
                     }
                 };
-                bounds = Bounds { axes: axes.chunks(4).map(axis).collect(), top_speed: metres(speed) };
+                bounds = Bounds {
+                    axes: axes.chunks(4).map(axis).collect(),
+                    top_speed: metres(speed),
+                };
                 Request::Limits(&bounds)
             }
             ("MOVE", [id, places @ .., speed]) => {
                 let places: Vec<f64> = places.iter().map(|place| metres(place)).collect();
-                targets = native::lengths(&places).expect("they can be said");
-                rate = native::length(metres(speed)).expect("it can be said");
-                Request::Move { id: id.parse().expect("a number"), targets: &targets, speed: &rate }
+                targets = native::codec::lengths(&places).expect("they can be said");
+                rate = native::codec::length(metres(speed)).expect("it can be said");
+                Request::Move {
+                    id: id.parse().expect("a number"),
+                    targets: &targets,
+                    speed: &rate,
+                }
             }
             ("GLIDE", [id, words @ .., time]) => {
-                let end = |pair: &[&str]| End { place: metres(pair[0]), velocity: metres(pair[1]) };
+                let end = |pair: &[&str]| End {
+                    place: metres(pair[0]),
+                    velocity: metres(pair[1]),
+                };
                 ends = words.chunks(2).map(end).collect::<Vec<End>>();
-                Request::Glide { id: id.parse().expect("a number"), ends: &ends, seconds: metres(time) }
+                Request::Glide {
+                    id: id.parse().expect("a number"),
+                    ends: &ends,
+                    seconds: metres(time),
+                }
             }
-            ("MEAS", [readings]) => Request::Measure { readings: readings.parse().expect("a number") },
+            ("MEAS", [readings]) => Request::Measure {
+                readings: readings.parse().expect("a number"),
+            },
             ("STAT", []) => Request::Status,
             ("STOP", []) => Request::Stop,
             ("CLR", []) => Request::Clear,
             ("REF", [token]) => Request::Reference { token },
             _ => panic!("the driver asks nothing like `{shown}`"),
         };
-        let frame = native::frame(sequence, &request).expect("it can be said");
+        let frame = native::codec::frame(sequence, &request).expect("it can be said");
         assert_eq!(String::from_utf8_lossy(&frame), format!("{shown}\n"));
         assert!(frame.len() <= LONGEST_FRAME || words.len() > 8);
         verbs.push(words[0].to_owned());
     }
-    for verb in ["HELLO", "LIM", "MOVE", "GLIDE", "MEAS", "STAT", "STOP", "CLR", "REF"] {
-        assert!(verbs.iter().any(|shown| shown == verb), "{verb} is not shown");
+    for verb in [
+        "HELLO", "LIM", "MOVE", "GLIDE", "MEAS", "STAT", "STOP", "CLR", "REF",
+    ] {
+        assert!(
+            verbs.iter().any(|shown| shown == verb),
+            "{verb} is not shown"
+        );
     }
 }
 
 #[test]
 fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
     let frames = frames();
-    let replies: Vec<_> =
-        frames.iter().filter(|line| line.starts_with('<')).map(|line| (line, native::reply(line.as_bytes()))).collect();
-    assert_eq!(replies.len() * 2, frames.len(), "each request has its reply");
+    let replies: Vec<_> = frames
+        .iter()
+        .filter(|line| line.starts_with('<'))
+        .map(|line| (line, native::codec::reply(line.as_bytes())))
+        .collect();
+    assert_eq!(
+        replies.len() * 2,
+        frames.len(),
+        "each request has its reply"
+    );
     for (line, reply) in replies {
         let reply = reply.unwrap_or_else(|broken| panic!("{line}: {broken:?}"));
         assert_eq!(reply.boot(), "7F3A");
         let said = reply.words();
         match (reply.kind, said.len()) {
             (Kind::Data, words) => {
-                let data = native::data(&said).unwrap_or_else(|| panic!("{line} is no reading"));
+                let data =
+                    native::codec::data(&said).unwrap_or_else(|| panic!("{line} is no reading"));
                 assert_eq!(data.axes.len(), (words - 2) / 4);
             }
             (Kind::Ack, 10 | 15) => {
-                let hello = native::hello(&said).expect("who the rig is");
-                let highs: Vec<(f64, f64)> =
-                    hello.bounds.axes.iter().map(|axis| (axis.displacement.high, axis.force.high)).collect();
+                let hello = native::codec::hello(&said).expect("who the rig is");
+                let highs: Vec<(f64, f64)> = hello
+                    .bounds
+                    .axes
+                    .iter()
+                    .map(|axis| (axis.displacement.high, axis.force.high))
+                    .collect();
                 assert_eq!(hello.bounds.top_speed, 0.12);
                 let last = hello.last.map(|last| (last.id, last.targets));
                 if said.len() == 10 {
                     assert_eq!((highs, last), (vec![(0.025, 12e3)], Some((16, vec![1e-3]))));
                 } else {
-                    assert_eq!((highs, last), (vec![(0.03, 8e3), (0.06, 5e3)], Some((21, vec![1.25e-3, -2.5e-3]))));
+                    assert_eq!(
+                        (highs, last),
+                        (
+                            vec![(0.03, 8e3), (0.06, 5e3)],
+                            Some((21, vec![1.25e-3, -2.5e-3]))
+                        )
+                    );
                 }
             }
-            (Kind::Ack, 2) if native::left(&said).is_some() => assert!(line.contains("MOVING"), "{line}"),
-            (Kind::Ack, _) => assert!(native::state(said[0]).is_some(), "{line}"),
-            (Kind::Err, _) => assert!(!native::refusal(&said).contains("does not know"), "{line}"),
+            (Kind::Ack, 2) if native::codec::left(&said).is_some() => {
+                assert!(line.contains("MOVING"), "{line}");
+            }
+            (Kind::Ack, _) => assert!(native::codec::state(said[0]).is_some(), "{line}"),
+            (Kind::Err, _) => assert!(
+                !native::codec::refusal(&said).contains("does not know"),
+                "{line}"
+            ),
         }
     }
 }
@@ -165,18 +279,30 @@ fn every_refusal_on_the_page_is_one_the_driver_knows() {
         .collect();
     assert_eq!(codes.len(), 12);
     for code in codes {
-        let told = native::refusal(&[code.as_str()]);
-        assert!(!told.contains("for a reason psd does not know"), "{code}: {told}");
+        let told = native::codec::refusal(&[code.as_str()]);
+        assert!(
+            !told.contains("for a reason psd does not know"),
+            "{code}: {told}"
+        );
     }
-    assert!(page.contains("`123456789` gives 29B1") && native::checksum(b"123456789") == 0x29b1);
+    assert!(
+        page.contains("`123456789` gives 29B1") && native::codec::checksum(b"123456789") == 0x29b1
+    );
 }
 
 #[test]
 fn every_record_type_is_on_the_page_and_no_other() {
     let page = page("record.md");
-    let listed: Vec<&str> =
-        page.lines().filter_map(|line| line.strip_prefix("### `")).filter_map(|rest| rest.split('`').next()).collect();
-    assert_eq!(listed, EntryKind::ALL.map(EntryKind::word), "a heading for each record type, in order");
+    let listed: Vec<&str> = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("### `"))
+        .filter_map(|rest| rest.split('`').next())
+        .collect();
+    assert_eq!(
+        listed,
+        EntryKind::ALL.map(EntryKind::word),
+        "a heading for each record type, in order"
+    );
 }
 
 /// Links between the pages, and to places in them, lead somewhere.
@@ -190,13 +316,21 @@ fn links_of_the_manual_lead_somewhere() {
             let file = if file.is_empty() { name } else { file };
             assert!(root.join(file).exists(), "{name} links to {target}");
             let slug = |heading: &str| {
-                let kept =
-                    heading.to_lowercase().chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-')).collect::<String>();
+                let kept = heading
+                    .to_lowercase()
+                    .chars()
+                    .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-'))
+                    .collect::<String>();
                 kept.trim().replace(' ', "-")
             };
             let there = place.is_empty()
-                || page(file).lines().any(|line| line.starts_with('#') && slug(line.trim_start_matches('#')) == place);
-            assert!(there, "{name} links to {target}, and there is no such heading");
+                || page(file).lines().any(|line| {
+                    line.starts_with('#') && slug(line.trim_start_matches('#')) == place
+                });
+            assert!(
+                there,
+                "{name} links to {target}, and there is no such heading"
+            );
         }
     }
 }

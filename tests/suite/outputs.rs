@@ -6,13 +6,14 @@ mod paper;
 mod real;
 
 use std::io::Cursor;
+use std::sync::LazyLock;
 
 use fixture::{Finished, finished};
 use polars::prelude::{ParquetReader, SerReader as _};
-use psd::output::summary::Summary;
-use psd::output::{OutputFile, console, everything};
 use psd::plan::Format;
 use psd::record::{History, ImpactStep, Outcome, RampHistory};
+use psd::report::summary::Summary;
+use psd::report::{OutputFile, console, everything};
 use psd::verdict::Verdict;
 
 const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,computed_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
@@ -24,22 +25,34 @@ fn files(finished: &Finished) -> Vec<OutputFile> {
     everything(&finished.run()).expect("every output can be made")
 }
 
+/// The files of the run as it is, made once.
+fn made() -> &'static [OutputFile] {
+    static MADE: LazyLock<Vec<OutputFile>> = LazyLock::new(|| files(&finished()));
+    &MADE
+}
+
 fn text<'a>(files: &'a [OutputFile], path: &str) -> &'a str {
     std::str::from_utf8(bytes(files, path)).expect("text is UTF-8")
 }
 
 fn bytes<'a>(files: &'a [OutputFile], path: &str) -> &'a [u8] {
-    &files.iter().find(|file| file.path == path).unwrap_or_else(|| panic!("{path} is missing")).bytes
+    &files
+        .iter()
+        .find(|file| file.path == path)
+        .unwrap_or_else(|| panic!("{path} is missing"))
+        .bytes
 }
 
 fn impact_steps(finished: &Finished) -> &[ImpactStep] {
-    let History::Impact(history) = &finished.record.procedures[2].history else { panic!("an impact") };
+    let History::Impact(history) = &finished.record.procedures[2].history else {
+        panic!("an impact")
+    };
     &history.steps
 }
 
 #[test]
 fn the_same_run_gives_the_same_bytes_and_the_files_of_the_language() {
-    let (first, second) = (files(&finished()), files(&finished()));
+    let (first, second) = (made(), files(&finished()));
     assert_eq!(first, second);
     let mut paths: Vec<&str> = first.iter().map(|file| file.path.as_str()).collect();
     assert_eq!(paths.last(), Some(&"manifest.sha256"));
@@ -77,20 +90,25 @@ fn the_same_run_gives_the_same_bytes_and_the_files_of_the_language() {
             "tables/k0.parquet",
         ]
     );
-    assert_eq!(text(&first, "manifest.sha256").lines().count(), paths.len() - 1);
+    assert_eq!(
+        text(first, "manifest.sha256").lines().count(),
+        paths.len() - 1
+    );
 }
 
 #[test]
 fn csv_has_the_columns_of_the_language_and_reads_back_bit_for_bit() {
-    let finished = finished();
-    let files = files(&finished);
-    let mut lines = text(&files, "tables/hit.csv").lines();
+    let (finished, files) = (finished(), made());
+    let mut lines = text(files, "tables/hit.csv").lines();
     assert_eq!(lines.next(), Some(IMPACT_COLUMNS));
     let steps = impact_steps(&finished);
     assert_eq!(lines.clone().count(), steps.len());
     for (line, step) in lines.zip(steps) {
         let cells: Vec<&str> = line.split(',').collect();
-        assert_eq!((cells[0], cells[3]), (step.step.to_string().as_str(), step.state.name()));
+        assert_eq!(
+            (cells[0], cells[3]),
+            (step.step.to_string().as_str(), step.state.name())
+        );
         let wanted = row(step);
         let read: Vec<u64> = cells[1..]
             .iter()
@@ -100,7 +118,7 @@ fn csv_has_the_columns_of_the_language_and_reads_back_bit_for_bit() {
             .collect();
         assert_eq!(read, wanted.map(f64::to_bits));
     }
-    let header = |path| text(&files, path).lines().next().unwrap().to_owned();
+    let header = |path| text(files, path).lines().next().unwrap().to_owned();
     assert_eq!(
         header("tables/k0.csv"),
         "step,wall_time_s,command_m,displacement_m,restoring_force_n,force_scatter_n,relaxation_n,tangent_stiffness_n_per_m,returning"
@@ -143,14 +161,22 @@ fn row(step: &ImpactStep) -> [f64; 23] {
 
 #[test]
 fn parquet_reads_back_as_the_record() {
-    let finished = finished();
-    let files = files(&finished);
-    let frame = ParquetReader::new(Cursor::new(bytes(&files, "tables/hit.parquet"))).finish().unwrap();
-    let names: Vec<&str> = frame.get_column_names().into_iter().map(polars::prelude::PlSmallStr::as_str).collect();
+    let (finished, files) = (finished(), made());
+    let frame = ParquetReader::new(Cursor::new(bytes(files, "tables/hit.parquet")))
+        .finish()
+        .unwrap();
+    let names: Vec<&str> = frame
+        .get_column_names()
+        .into_iter()
+        .map(polars::prelude::PlSmallStr::as_str)
+        .collect();
     assert_eq!(names.join(","), IMPACT_COLUMNS);
     let column = frame.column("displacement_m").unwrap().f64().unwrap();
     let read: Vec<u64> = column.into_no_null_iter().map(f64::to_bits).collect();
-    let wanted: Vec<u64> = impact_steps(&finished).iter().map(|step| step.displacement.to_bits()).collect();
+    let wanted: Vec<u64> = impact_steps(&finished)
+        .iter()
+        .map(|step| step.displacement.to_bits())
+        .collect();
     assert_eq!(read, wanted);
 }
 
@@ -158,31 +184,50 @@ fn parquet_reads_back_as_the_record() {
 fn the_committed_schema_is_the_generated_one_and_holds_for_a_summary() {
     let generated = Summary::json_schema().unwrap();
     // Where the types have changed on purpose, SNAPSHOTS=overwrite writes the file anew.
-    snapbox::assert_data_eq!(generated.clone(), snapbox::file!["../../grammar/summary.schema.json": Text].raw());
+    snapbox::assert_data_eq!(
+        generated.clone(),
+        snapbox::file!["../../grammar/summary.schema.json": Text].raw()
+    );
     let schema: serde_json::Value = serde_json::from_str(&generated).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();
-    let finished = finished();
-    let mut summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
-    let faults: Vec<String> = validator.iter_errors(&summary).map(|error| error.to_string()).collect();
+    let mut summary: serde_json::Value =
+        serde_json::from_str(text(made(), "summary.json")).unwrap();
+    let faults: Vec<String> = validator
+        .iter_errors(&summary)
+        .map(|error| error.to_string())
+        .collect();
     assert_eq!(faults, [] as [String; 0]);
     summary["procedures"]["hit"]["results"]["contacts"]["value"] = "three".into();
-    assert!(!validator.is_valid(&summary), "a wrong summary must not pass");
+    assert!(
+        !validator.is_valid(&summary),
+        "a wrong summary must not pass"
+    );
 }
 
 #[test]
 fn the_summary_says_what_the_language_promises() {
-    let finished = finished();
-    let summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(text(made(), "summary.json")).unwrap();
     assert_eq!(summary["schema"], "psd.summary/1");
     assert_eq!(summary["verdict"], "pass");
     assert_eq!(summary["rig"]["simulated"], true);
     let hit = &summary["procedures"]["hit"];
     assert_eq!(hit["kind"], "impact");
-    let largest = hit["results"]["max_displacement"]["value"].as_f64().unwrap();
-    assert!((largest - 0.157_353).abs() < 1e-6, "Example 1 at 1 ms: {largest}");
+    let largest = hit["results"]["max_displacement"]["value"]
+        .as_f64()
+        .unwrap();
+    assert!(
+        (largest - 0.157_353).abs() < 1e-6,
+        "Example 1 at 1 ms: {largest}"
+    );
     assert_eq!(hit["results"]["max_displacement"]["unit"], "m");
-    assert_eq!(hit["results"]["restitution"]["value"], serde_json::Value::Null);
-    assert_eq!(summary["procedures"]["k0"]["results"]["stiffness"]["u"], 0.41);
+    assert_eq!(
+        hit["results"]["restitution"]["value"],
+        serde_json::Value::Null
+    );
+    assert_eq!(
+        summary["procedures"]["k0"]["results"]["stiffness"]["u"],
+        0.41
+    );
     let requirement = &summary["requirements"][0];
     assert_eq!(requirement["name"], "stays in travel");
     assert_eq!(requirement["limit"], 0.17);
@@ -196,8 +241,20 @@ fn the_certificate_loads_and_runs_nothing_and_says_what_it_is() {
     let finished = hostile();
     let files = files(&finished);
     let html = text(&files, "certificate.html");
-    for forbidden in ["<script", "<img src=x", "<b>at</b>", "src=\"http", "href=", "@import", "url(", "ISO 17025 certified"] {
-        assert!(!html.contains(forbidden), "{forbidden} stands in the certificate");
+    for forbidden in [
+        "<script",
+        "<img src=x",
+        "<b>at</b>",
+        "src=\"http",
+        "href=",
+        "@import",
+        "url(",
+        "ISO 17025 certified",
+    ] {
+        assert!(
+            !html.contains(forbidden),
+            "{forbidden} stands in the certificate"
+        );
     }
     assert!(html.contains("default-src 'none'"));
     assert!(html.contains("&lt;script&gt;"));
@@ -235,7 +292,11 @@ fn hostile() -> Finished {
 fn hostile_texts_stay_in_the_run_folder_and_off_the_terminal() {
     let finished = hostile();
     let files = files(&finished);
-    assert!(files.iter().all(|file| !file.path.contains("..") && !file.path.starts_with('/')));
+    assert!(
+        files
+            .iter()
+            .all(|file| !file.path.contains("..") && !file.path.starts_with('/'))
+    );
     assert_eq!(text(&files, "plan/escape.psd"), finished.plan.files[0].text);
     assert!(!console::verdict_text(&finished.run(), false).contains('\u{1b}'));
 }
@@ -258,18 +319,32 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
 
 #[test]
 fn figures_are_pictures_at_192_dpi_with_something_on_them() {
-    let files = files(&finished());
-    let figures: Vec<&OutputFile> = files.iter().filter(|file| file.bytes.starts_with(b"\x89PNG")).collect();
+    let figures: Vec<&OutputFile> = made()
+        .iter()
+        .filter(|file| file.bytes.starts_with(b"\x89PNG"))
+        .collect();
     assert_eq!(figures.len(), 8);
     for figure in figures {
-        let mut reader = png::Decoder::new(Cursor::new(&figure.bytes)).read_info().unwrap();
+        let mut reader = png::Decoder::new(Cursor::new(&figure.bytes))
+            .read_info()
+            .unwrap();
         let size = reader.info().pixel_dims.unwrap();
-        assert_eq!((size.xppu, size.yppu, size.unit), (7559, 7559, png::Unit::Meter));
+        assert_eq!(
+            (size.xppu, size.yppu, size.unit),
+            (7559, 7559, png::Unit::Meter)
+        );
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();
-        let inked = pixels.chunks_exact(3).filter(|pixel| pixel.iter().any(|channel| *channel < 200)).count();
+        let inked = pixels
+            .chunks_exact(3)
+            .filter(|pixel| pixel.iter().any(|channel| *channel < 200))
+            .count();
         let (least, most) = (pixels.len() / 3 / 200, pixels.len() / 3 / 5);
-        assert!((least..most).contains(&inked), "{}: {inked} pixels are inked", figure.path);
+        assert!(
+            (least..most).contains(&inked),
+            "{}: {inked} pixels are inked",
+            figure.path
+        );
     }
 }
 
@@ -277,7 +352,9 @@ fn figures_are_pictures_at_192_dpi_with_something_on_them() {
 fn a_run_stopped_early_still_leaves_a_whole_folder() {
     let mut finished = finished();
     finished.record.procedures.truncate(3);
-    let History::Impact(history) = &mut finished.record.procedures[2].history else { panic!("an impact") };
+    let History::Impact(history) = &mut finished.record.procedures[2].history else {
+        panic!("an impact")
+    };
     history.steps.truncate(1);
     finished.record.procedures[2].complete = false;
     finished.record.procedures[2].results.clear();
@@ -292,7 +369,9 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
         relaxation: None,
         reached: None,
     });
-    finished.record.outcome = Outcome::Aborted { reason: "force 12.1 kN is outside its limit".into() };
+    finished.record.outcome = Outcome::Aborted {
+        reason: "force 12.1 kN is outside its limit".into(),
+    };
     finished.assessment.verdict = Verdict::Aborted;
     finished.assessment.requirements[0].verdict = Verdict::Inconclusive;
     let condition = &mut finished.assessment.requirements[0].conditions[0];
@@ -300,9 +379,17 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     condition.reason = Some("the result `max_displacement` does not exist in this run".into());
     let files = files(&finished);
     let html = text(&files, "certificate.html");
-    assert!(html.contains("ABORTED") && html.contains("The run was stopped: force 12.1 kN is outside its limit."));
+    assert!(
+        html.contains("ABORTED")
+            && html.contains("The run was stopped: force 12.1 kN is outside its limit.")
+    );
     assert!(html.contains("Procedure hit did not run to its end."));
-    assert!(!files.iter().any(|file| file.path == "figures/k0_force_displacement.png"), "nothing was recorded to draw");
+    assert!(
+        !files
+            .iter()
+            .any(|file| file.path == "figures/k0_force_displacement.png"),
+        "nothing was recorded to draw"
+    );
     assert_eq!(text(&files, "tables/hit.csv").lines().count(), 2);
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
     assert_eq!(summary["outcome"]["kind"], "aborted");
@@ -312,7 +399,11 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     finished.record.procedures.clear();
     let nothing = self::files(&finished);
     assert!(text(&nothing, "certificate.html").contains("No procedure was run."));
-    assert!(!nothing.iter().any(|file| file.path.starts_with("figures/") || file.path.starts_with("tables/")));
+    assert!(
+        !nothing
+            .iter()
+            .any(|file| file.path.starts_with("figures/") || file.path.starts_with("tables/"))
+    );
 }
 
 #[test]
@@ -345,13 +436,27 @@ fn a_run_of_which_nothing_is_required_is_completed_and_never_passed() {
     finished.assessment = psd::verdict::assess(&finished.plan, &finished.record);
     let files = files(&finished);
     let html = text(&files, "certificate.html");
-    assert!(html.contains("<div class=\"verdict completed\"><strong>COMPLETED</strong>") && !html.contains("<strong>PASS"));
+    assert!(
+        html.contains("<div class=\"verdict completed\"><strong>COMPLETED</strong>")
+            && !html.contains("<strong>PASS")
+    );
     assert!(html.contains("The plan states no requirement: nothing was decided."));
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
     assert_eq!(summary["verdict"], "completed");
     let told = console::verdict_text(&finished.run(), true);
-    assert!(told.starts_with("COMPLETED  Simply supported beam") && !told.contains("PASS"), "{told}");
-    assert!(bytes(&files, "certificate.pdf").starts_with(b"%PDF"), "paper knows the word too");
-    finished.record.outcome = Outcome::Aborted { reason: "a limit".into() };
-    assert_eq!(psd::verdict::assess(&finished.plan, &finished.record).verdict, Verdict::Aborted);
+    assert!(
+        told.starts_with("COMPLETED  Simply supported beam") && !told.contains("PASS"),
+        "{told}"
+    );
+    assert!(
+        bytes(&files, "certificate.pdf").starts_with(b"%PDF"),
+        "paper knows the word too"
+    );
+    finished.record.outcome = Outcome::Aborted {
+        reason: "a limit".into(),
+    };
+    assert_eq!(
+        psd::verdict::assess(&finished.plan, &finished.record).verdict,
+        Verdict::Aborted
+    );
 }

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::{LazyLock, OnceLock};
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::run::need;
+use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::run::storage_bound;
 use serde_json::Value;
 
 fn root() -> &'static Path {
@@ -27,7 +27,13 @@ fn plans() -> Vec<PathBuf> {
 
 fn psd_run(plan: &Path, out: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_psd"))
-        .args(["run", plan.to_str().expect("UTF-8"), "--yes", "--out", out.to_str().expect("UTF-8")])
+        .args([
+            "run",
+            plan.to_str().expect("UTF-8"),
+            "--yes",
+            "--out",
+            out.to_str().expect("UTF-8"),
+        ])
         .output()
         .expect("psd starts")
 }
@@ -41,11 +47,21 @@ struct Run {
 /// Runs a plan of `plans/` once for all tests that ask for it.
 fn ran(plan: &str) -> &'static Run {
     static RUNS: LazyLock<BTreeMap<String, OnceLock<Run>>> = LazyLock::new(|| {
-        let name = |plan: PathBuf| plan.file_stem().expect("named").to_string_lossy().into_owned();
-        plans().into_iter().map(|plan| (name(plan), OnceLock::new())).collect()
+        let name = |plan: PathBuf| {
+            plan.file_stem()
+                .expect("named")
+                .to_string_lossy()
+                .into_owned()
+        };
+        plans()
+            .into_iter()
+            .map(|plan| (name(plan), OnceLock::new()))
+            .collect()
     });
     RUNS[plan].get_or_init(|| {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("plans").join(plan);
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+            .join("plans")
+            .join(plan);
         if folder.exists() {
             fs::remove_dir_all(&folder).expect("what an earlier test left can go");
         }
@@ -75,7 +91,11 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
             if path.is_dir() {
                 folders.push(path);
             } else {
-                let name = path.strip_prefix(folder).expect("inside").to_string_lossy().into_owned();
+                let name = path
+                    .strip_prefix(folder)
+                    .expect("inside")
+                    .to_string_lossy()
+                    .into_owned();
                 found.insert(name, fs::read(&path).expect("readable"));
             }
         }
@@ -89,11 +109,20 @@ fn every_plan_runs_to_a_pass() {
     assert!(plans.len() >= 11, "five tutorials and six of the paper");
     for plan in plans {
         let Run { folder, output } = ran(&plan.file_stem().expect("named").to_string_lossy());
-        assert!(output.status.success(), "{}: {}", plan.display(), String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{}: {}",
+            plan.display(),
+            String::from_utf8_lossy(&output.stderr)
+        );
         assert_eq!(summary(folder)["verdict"], "pass", "{}", plan.display());
         let written: usize = files(folder).values().map(Vec::len).sum();
         let reckoned = reckoned(&plan);
-        assert!(written as u64 <= reckoned, "{}: {written} bytes, {reckoned} were reckoned", plan.display());
+        assert!(
+            written as u64 <= reckoned,
+            "{}: {written} bytes, {reckoned} were reckoned",
+            plan.display()
+        );
     }
 }
 
@@ -111,7 +140,7 @@ fn reckoned(path: &Path) -> u64 {
     let name = path.file_name().expect("named").to_string_lossy();
     let text = fs::read_to_string(path).expect("readable");
     let checked = check(&name, &text, &Beside, &Options::default());
-    need::of(&checked.plan.expect("it checks")).bytes
+    storage_bound::of(&checked.plan.expect("it checks")).bytes
 }
 
 /// The paper's cases to the digits of the derivation: value and half a unit of its last digit.
@@ -137,7 +166,10 @@ fn the_papers_figures_come_out_of_the_program() {
     ];
     for (plan, name, expected, tolerance) in cases {
         let value = result(&summary(&ran(plan).folder), "hit", name);
-        assert!((value - expected).abs() <= *tolerance, "{plan}: {name} is {value}, expected {expected} ± {tolerance}");
+        assert!(
+            (value - expected).abs() <= *tolerance,
+            "{plan}: {name} is {value}, expected {expected} ± {tolerance}"
+        );
     }
 }
 
@@ -149,19 +181,71 @@ type Derived = (f64, f64);
 #[test]
 fn every_reference_row_comes_out_of_the_program() {
     let rows: &[(&str, [&str; 4], Derived, Derived)] = &[
-        ("rigid", ["1 kg", "327.65 N/m", "10 ms", "10 kg"], (0.157_864, 5e-7), (0.29, 1e-9)),
-        ("rigid", ["1 kg", "327.65 N/m", "1 ms", "10 kg"], (0.157_353, 5e-7), (0.284, 1e-9)),
-        ("rigid", ["1 kg", "327.65 N/m", "2 us", "10 kg"], (0.157_698, 1.5e-6), (0.280_49, 1.5e-5)),
-        ("rigid", ["0.25 kg", "327.65 N/m", "10 ms", "10 kg"], (0.168_965, 5e-7), (0.28, 1e-9)),
-        ("rigid", ["0.25 kg", "327.65 N/m", "2 us", "10 kg"], (0.168_185, 1.5e-6), (0.269_22, 3e-5)),
-        ("limit(5000 N)", ["1 kg", "300 N/m", "1 ms", "10 kg"], (0.164_429, 5e-7), (0.297, 1e-9)),
-        ("limit(1500 N)", ["1 kg", "300 N/m", "1 ms", "10 kg"], (0.165_524, 5e-7), (0.3, 1e-9)),
-        ("limit(1500 N)", ["1 kg", "300 N/m", "2 us", "10 kg"], (0.174_078, 1.5e-6), (0.301_09, 1.5e-5)),
-        ("rigid", ["0.5 kg", "300 kN/m", "0.5 ms", "20 kg"], (7.922e-3, 5e-7), (13.5e-3, 1e-9)),
-        ("rigid", ["0.75 kg", "300 kN/m", "0.5 ms", "20 kg"], (7.855e-3, 5e-7), (13.5e-3, 1e-9)),
+        (
+            "rigid",
+            ["1 kg", "327.65 N/m", "10 ms", "10 kg"],
+            (0.157_864, 5e-7),
+            (0.29, 1e-9),
+        ),
+        (
+            "rigid",
+            ["1 kg", "327.65 N/m", "1 ms", "10 kg"],
+            (0.157_353, 5e-7),
+            (0.284, 1e-9),
+        ),
+        (
+            "rigid",
+            ["1 kg", "327.65 N/m", "2 us", "10 kg"],
+            (0.157_698, 1.5e-6),
+            (0.280_49, 1.5e-5),
+        ),
+        (
+            "rigid",
+            ["0.25 kg", "327.65 N/m", "10 ms", "10 kg"],
+            (0.168_965, 5e-7),
+            (0.28, 1e-9),
+        ),
+        (
+            "rigid",
+            ["0.25 kg", "327.65 N/m", "2 us", "10 kg"],
+            (0.168_185, 1.5e-6),
+            (0.269_22, 3e-5),
+        ),
+        (
+            "limit(5000 N)",
+            ["1 kg", "300 N/m", "1 ms", "10 kg"],
+            (0.164_429, 5e-7),
+            (0.297, 1e-9),
+        ),
+        (
+            "limit(1500 N)",
+            ["1 kg", "300 N/m", "1 ms", "10 kg"],
+            (0.165_524, 5e-7),
+            (0.3, 1e-9),
+        ),
+        (
+            "limit(1500 N)",
+            ["1 kg", "300 N/m", "2 us", "10 kg"],
+            (0.174_078, 1.5e-6),
+            (0.301_09, 1.5e-5),
+        ),
+        (
+            "rigid",
+            ["0.5 kg", "300 kN/m", "0.5 ms", "20 kg"],
+            (7.922e-3, 5e-7),
+            (13.5e-3, 1e-9),
+        ),
+        (
+            "rigid",
+            ["0.75 kg", "300 kN/m", "0.5 ms", "20 kg"],
+            (7.855e-3, 5e-7),
+            (13.5e-3, 1e-9),
+        ),
     ];
     let scratch = tempfile::tempdir().expect("a folder");
-    for (number, (contact, [mass, stiffness, time_step, striker], displacement, stop)) in rows.iter().enumerate() {
+    for (number, (contact, [mass, stiffness, time_step, striker], displacement, stop)) in
+        rows.iter().enumerate()
+    {
         let plan = scratch.path().join(format!("row_{number}.psd"));
         let text = format!(
             "specimen s {{\n  mass = {mass}\n  behaviour = elastic(stiffness: {stiffness})\n}}\n\
@@ -172,11 +256,20 @@ fn every_reference_row_comes_out_of_the_program() {
         fs::write(&plan, text).expect("a plan");
         let out = scratch.path().join(format!("out_{number}"));
         let output = psd_run(&plan, &out);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
         let run = summary(&out);
-        for (name, (expected, tolerance)) in [("max_displacement", displacement), ("stop_time", stop)] {
+        for (name, (expected, tolerance)) in
+            [("max_displacement", displacement), ("stop_time", stop)]
+        {
             let value = result(&run, "hit", name);
-            assert!((value - expected).abs() <= *tolerance, "row {number}: {name} is {value}, expected {expected} ± {tolerance}");
+            assert!(
+                (value - expected).abs() <= *tolerance,
+                "row {number}: {name} is {value}, expected {expected} ± {tolerance}"
+            );
         }
     }
 }
@@ -185,10 +278,21 @@ fn every_reference_row_comes_out_of_the_program() {
 fn the_beam_is_within_the_papers_measurement() {
     let run = summary(&ran("beam").folder);
     let displacement = result(&run, "hit", "max_displacement");
-    assert!((displacement / 7.95e-3 - 1.0).abs() < 0.02, "measured 7.95 mm, here {displacement} m");
+    assert!(
+        (displacement / 7.95e-3 - 1.0).abs() < 0.02,
+        "measured 7.95 mm, here {displacement} m"
+    );
     let absorbed = result(&run, "hit", "absorbed_energy");
-    assert!((absorbed / 9.48 - 1.0).abs() < 0.10, "the paper reckons 9.48 J, here {absorbed} J");
-    assert!(run["procedures"]["k0"]["results"]["stiffness"]["u"].as_f64().is_some_and(|u| u > 0.0), "a measured stiffness has u");
+    assert!(
+        (absorbed / 9.48 - 1.0).abs() < 0.10,
+        "the paper reckons 9.48 J, here {absorbed} J"
+    );
+    assert!(
+        run["procedures"]["k0"]["results"]["stiffness"]["u"]
+            .as_f64()
+            .is_some_and(|u| u > 0.0),
+        "a measured stiffness has u"
+    );
 }
 
 #[test]
@@ -199,9 +303,15 @@ fn the_same_plan_gives_the_same_bytes() {
         psd_run(&root().join(format!("plans/{plan}.psd")), &second);
         let (first, second) = (files(&ran(plan).folder), files(&second));
         assert!(first.contains_key("certificate.html") && first.contains_key("summary.json"));
-        assert_eq!(first.keys().collect::<Vec<_>>(), second.keys().collect::<Vec<_>>());
+        assert_eq!(
+            first.keys().collect::<Vec<_>>(),
+            second.keys().collect::<Vec<_>>()
+        );
         for (name, bytes) in &first {
-            assert!(bytes == &second[name], "{plan}: {name} differs between two runs");
+            assert!(
+                bytes == &second[name],
+                "{plan}: {name} differs between two runs"
+            );
         }
     }
 }
@@ -218,5 +328,8 @@ fn the_blessed_reports_are_true() {
         .expect("psd starts");
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{told}");
-    assert!(told.contains(&format!("{} plans as blessed", plans().len())) && !told.contains("unused"), "{told}");
+    assert!(
+        told.contains(&format!("{} plans as blessed", plans().len())) && !told.contains("unused"),
+        "{told}"
+    );
 }

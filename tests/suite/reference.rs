@@ -4,11 +4,11 @@
 use std::fs;
 use std::path::PathBuf;
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::diagnostic::render::{Appearance, render_all};
+use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::syntax::{format, parse};
 use psd::schema::reference;
-use psd::source::Sources;
-use psd::syntax::{format, parse};
+use psd::text::diagnostic::render::{Appearance, render_all};
+use psd::text::source::Sources;
 
 const START: &str = "<!-- generated -->\n";
 const END: &str = "<!-- end of generated -->\n";
@@ -33,30 +33,59 @@ impl Loader for NoFiles {
 #[test]
 fn the_generated_part_is_what_the_schema_says() {
     let page = page();
-    let (before, rest) = page.split_once(START).expect("the generated part has a start");
+    let (before, rest) = page
+        .split_once(START)
+        .expect("the generated part has a start");
     let (generated, after) = rest.split_once(END).expect("the generated part has an end");
     let wanted = format!("\n{}\n", reference());
     if std::env::var_os("PSD_BLESS").is_some() {
-        fs::write(path(), format!("{before}{START}{wanted}{END}{after}")).expect("the reference can be written");
+        fs::write(path(), format!("{before}{START}{wanted}{END}{after}"))
+            .expect("the reference can be written");
         return;
     }
-    let differs = generated.lines().zip(wanted.lines()).find(|(left, right)| left != right);
-    assert!(generated == wanted, "grammar/LANGUAGE.md is behind the schema ({differs:?}): run PSD_BLESS=1 cargo test reference");
+    let differs = generated
+        .lines()
+        .zip(wanted.lines())
+        .find(|(left, right)| left != right);
+    assert!(
+        generated == wanted,
+        "grammar/LANGUAGE.md is behind the schema ({differs:?}): run PSD_BLESS=1 cargo test reference"
+    );
 }
 
 #[test]
 fn the_plans_of_the_reference_are_right() {
     let page = page();
-    let plans: Vec<&str> = page.split("```psd\n").skip(1).map(|after| after.split("```").next().unwrap_or_default()).collect();
+    let plans: Vec<&str> = page
+        .split("```psd\n")
+        .skip(1)
+        .map(|after| after.split("```").next().unwrap_or_default())
+        .collect();
     assert!(plans.len() >= 2, "the reference shows whole plans");
     for plan in plans {
         let mut sources = Sources::default();
         let file = sources.add("LANGUAGE.md", plan);
-        assert_eq!(format(&parse(&sources, file).0, plan), plan, "psd fmt would change a plan of the reference");
+        assert_eq!(
+            format(&parse(&sources, file).0, plan),
+            plan,
+            "psd fmt would change a plan of the reference"
+        );
         // A plan on a real rig is one that is run with `--rig`.
-        let rig = (plan.contains("serial(") && !plan.contains("behaviour")).then(|| "frame".to_owned());
-        let checked = check("LANGUAGE.md", plan, &NoFiles, &Options { rig, ..Options::default() });
+        let rig =
+            (plan.contains("serial(") && !plan.contains("behaviour")).then(|| "frame".to_owned());
+        let checked = check(
+            "LANGUAGE.md",
+            plan,
+            &NoFiles,
+            &Options {
+                rig,
+                ..Options::default()
+            },
+        );
         let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
-        assert!(checked.plan.is_some() && checked.diagnostics.is_empty(), "{plan}\n{said}");
+        assert!(
+            checked.plan.is_some() && checked.diagnostics.is_empty(),
+            "{plan}\n{said}"
+        );
     }
 }

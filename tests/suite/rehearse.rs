@@ -59,6 +59,11 @@ impact hit {
 }
 
 require "stays in travel" hit.max_displacement <= 8.5 mm
+
+report {
+  figures = []
+  formats = [html, csv]
+}
 "#;
 
 struct Place(tempfile::TempDir);
@@ -68,7 +73,9 @@ impl Place {
     fn new(force: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let port = folder.path().join("port");
-        let text = PLAN.replace("FORCE", force).replace("PORT", port.to_str().unwrap());
+        let text = PLAN
+            .replace("FORCE", force)
+            .replace("PORT", port.to_str().unwrap());
         fs::write(folder.path().join("plan.psd"), text).unwrap();
         Self(folder)
     }
@@ -80,13 +87,19 @@ impl Place {
     /// Exit code, standard output and standard error of psd in the folder.
     fn psd(&self, arguments: &[&str]) -> (Option<i32>, String, String) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-        let ended = command.current_dir(self.path()).args(arguments).stdin(Stdio::null()).output().unwrap();
+        let ended = command
+            .current_dir(self.path())
+            .args(arguments)
+            .stdin(Stdio::null())
+            .output()
+            .unwrap();
         let text = |bytes| String::from_utf8(bytes).unwrap();
         (ended.status.code(), text(ended.stdout), text(ended.stderr))
     }
 
     fn summary(&self) -> Value {
-        serde_json::from_str(&fs::read_to_string(self.path().join("out/summary.json")).unwrap()).unwrap()
+        serde_json::from_str(&fs::read_to_string(self.path().join("out/summary.json")).unwrap())
+            .unwrap()
     }
 }
 
@@ -97,14 +110,25 @@ impl Simulator {
     /// In place of the plan's bench, whose specimen is of `stiffness`.
     fn start(place: &Place, stiffness: &str) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-        command.current_dir(place.path()).args(["rig", "simulate", "plan.psd", "--rig", "bench", "--set"]);
+        command
+            .current_dir(place.path())
+            .args(["rig", "simulate", "plan.psd", "--rig", "bench", "--set"]);
         let set = format!("bench_stiffness={stiffness}");
-        let started = command.arg(set).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let started = command
+            .arg(set)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
         let simulator = Self(started);
         let port = place.path().join("port");
         let since = Instant::now();
         while !port.exists() {
-            assert!(since.elapsed() < Duration::from_mins(1), "the stand-in opens its port");
+            assert!(
+                since.elapsed() < Duration::from_mins(1),
+                "the stand-in opens its port"
+            );
             std::thread::sleep(Duration::from_millis(20));
         }
         simulator
@@ -123,29 +147,58 @@ fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
     let place = Place::new("15");
     let (code, told, log) = place.psd(&["run", "plan.psd", "--rehearse", "--yes", "--out", "out"]);
     assert_eq!(code, Some(0), "{told}{log}");
-    for expected in ["rehearsal of the run on rig `rehearsal`", "stiffness 29", "peak displacement", "margin", "Limits"] {
+    for expected in [
+        "rehearsal of the run on rig `rehearsal`",
+        "stiffness 29",
+        "peak displacement",
+        "margin",
+        "Limits",
+    ] {
         assert!(told.contains(expected), "{expected} in\n{told}");
     }
     assert!(log.contains("REHEARSAL"), "{log}");
     let summary = place.summary();
-    assert!(summary["procedures"]["k0"]["complete"] == true && summary["procedures"]["hit"].is_null(), "{summary}");
+    assert!(
+        summary["procedures"]["k0"]["complete"] == true && summary["procedures"]["hit"].is_null(),
+        "{summary}"
+    );
     assert_eq!(
         summary["deviations"][0],
         "Rehearsal: k0 ran on the rig; hit did not run and was predicted on a virtual specimen."
     );
-    assert!(fs::read_to_string(place.path().join("out/certificate.html")).unwrap().contains("REHEARSAL"));
+    assert!(
+        fs::read_to_string(place.path().join("out/certificate.html"))
+            .unwrap()
+            .contains("REHEARSAL")
+    );
     let (code, verified, log) = place.psd(&["verify", "out"]);
     assert_eq!(code, Some(0), "{verified}{log}");
     // The prediction is kept, on a page too, and comes out of the record again.
     let kept = fs::read(place.path().join("out/rehearsal.json")).unwrap();
     let foretold: Value = serde_json::from_slice(&kept).unwrap();
-    assert_eq!((&foretold["schema"], &foretold["stopped"]), (&"psd.rehearsal/1".into(), &Value::Null));
+    assert_eq!(
+        (&foretold["schema"], &foretold["stopped"]),
+        (&"psd.rehearsal/1".into(), &Value::Null)
+    );
     let limits = foretold["limits"].as_array().unwrap();
-    let names: Vec<&str> = limits.iter().map(|limit| limit["quantity"].as_str().unwrap()).collect();
-    assert_eq!(names, ["displacement", "force", "speed", "tracking_energy_error"]);
+    let names: Vec<&str> = limits
+        .iter()
+        .map(|limit| limit["quantity"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        names,
+        ["displacement", "force", "speed", "tracking_energy_error"]
+    );
     let force = &limits[1];
-    let (high, reached, margin) = (&force["high"], force["reached"][1].as_f64().unwrap(), force["margin"].as_f64().unwrap());
-    assert!(*high == 15e3 && (2e3..3e3).contains(&reached) && (15e3 - reached - margin).abs() < 1e-9, "{force}");
+    let (high, reached, margin) = (
+        &force["high"],
+        force["reached"][1].as_f64().unwrap(),
+        force["margin"].as_f64().unwrap(),
+    );
+    assert!(
+        *high == 15e3 && (2e3..3e3).contains(&reached) && (15e3 - reached - margin).abs() < 1e-9,
+        "{force}"
+    );
     assert_eq!(foretold["requirements"][0]["verdict"], "pass");
     let page = fs::read_to_string(place.path().join("out/certificate.html")).unwrap();
     assert!(page.contains("Prediction of the whole run") && page.contains("tracking energy error"));
@@ -155,10 +208,16 @@ fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
     // The run that it rehearses is another one, and says nothing of it.
     let (code, ..) = place.psd(&["run", "plan.psd", "--yes", "--out", "real"]);
     assert_eq!(code, Some(0));
-    let real: Value = serde_json::from_str(&fs::read_to_string(place.path().join("real/summary.json")).unwrap()).unwrap();
+    let real: Value =
+        serde_json::from_str(&fs::read_to_string(place.path().join("real/summary.json")).unwrap())
+            .unwrap();
     assert_ne!(real["run_id"], summary["run_id"]);
     assert!(!place.path().join("real/rehearsal.json").exists());
-    assert!(!fs::read_to_string(place.path().join("real/certificate.html")).unwrap().contains("Prediction of the whole run"));
+    assert!(
+        !fs::read_to_string(place.path().join("real/certificate.html"))
+            .unwrap()
+            .contains("Prediction of the whole run")
+    );
 }
 
 /// The rehearsal itself reads no zeros; the run that it foretells does, and takes the time for it.
@@ -166,21 +225,45 @@ fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
 fn a_rig_that_watches_its_zeros_is_foretold_to() {
     let place = Place::new("15");
     let plan = fs::read_to_string(place.path().join("plan.psd")).unwrap();
-    let watched = plan.replace("seed: 7)\n}", "seed: 7)\n  drift = within(20 N, over: 5 s, after: start)\n}");
+    let watched = plan.replace(
+        "seed: 7)\n}",
+        "seed: 7)\n  drift = within(20 N, over: 5 s, after: start)\n}",
+    );
     assert_ne!(watched, plan);
     fs::write(place.path().join("plan.psd"), watched).unwrap();
     let (code, told, log) = place.psd(&["run", "plan.psd", "--rehearse", "--yes", "--out", "out"]);
     assert_eq!(code, Some(0), "{told}{log}");
-    assert!(told.contains("Zeros") && told.contains("back to where it began"), "{told}");
-    let foretold: Value = serde_json::from_slice(&fs::read(place.path().join("out/rehearsal.json")).unwrap()).unwrap();
+    assert!(
+        told.contains("Zeros") && told.contains("back to where it began"),
+        "{told}"
+    );
+    let foretold: Value =
+        serde_json::from_slice(&fs::read(place.path().join("out/rehearsal.json")).unwrap())
+            .unwrap();
     let zeros = &foretold["zeros"];
     let expected = [("allowed_force_n", 20.0), ("over_s", 5.0)];
-    assert!(expected.iter().all(|(name, value)| zeros[name] == *value) && zeros["after"] == "start", "{zeros}");
-    let (between, steady) = (zeros["between_s"].as_f64().unwrap(), zeros["steady_force_n_per_s"].as_f64().unwrap());
-    assert!(between > 5.0 && (steady * between - 20.0).abs() < 1e-9, "{zeros}");
-    assert_eq!(place.summary()["drift"], Value::Null, "the rehearsal read none");
+    assert!(
+        expected.iter().all(|(name, value)| zeros[name] == *value) && zeros["after"] == "start",
+        "{zeros}"
+    );
+    let (between, steady) = (
+        zeros["between_s"].as_f64().unwrap(),
+        zeros["steady_force_n_per_s"].as_f64().unwrap(),
+    );
+    assert!(
+        between > 5.0 && (steady * between - 20.0).abs() < 1e-9,
+        "{zeros}"
+    );
+    assert_eq!(
+        place.summary()["drift"],
+        Value::Null,
+        "the rehearsal read none"
+    );
     let page = fs::read_to_string(place.path().join("out/certificate.html")).unwrap();
-    assert!(page.contains("The zeros of the rig would be read over"), "on the page too");
+    assert!(
+        page.contains("The zeros of the rig would be read over"),
+        "on the page too"
+    );
 }
 
 #[test]
@@ -189,7 +272,10 @@ fn a_limit_that_the_run_would_reach_is_exit_4_with_its_procedure_and_step() {
     let place = Place::new("2");
     let (code, told, log) = place.psd(&["run", "plan.psd", "--rehearse", "--yes", "--out", "out"]);
     assert_eq!(code, Some(4), "{told}{log}");
-    assert!(told.contains("The run would be stopped in hit, step ") && told.contains("force 2."), "{told}");
+    assert!(
+        told.contains("The run would be stopped in hit, step ") && told.contains("force 2."),
+        "{told}"
+    );
     assert!(place.psd(&["run", "plan.psd", "--rehearse", "--bless"]).0 == Some(2));
 }
 
@@ -197,27 +283,65 @@ fn a_limit_that_the_run_would_reach_is_exit_4_with_its_procedure_and_step() {
 fn on_a_real_rig_the_prediction_is_of_the_stiffness_that_the_rig_shows() {
     let place = Place::new("15");
     let _simulator = Simulator::start(&place, "400 kN/m");
-    let run = ["run", "plan.psd", "--rig", "bench", "--rehearse", "--yes", "--operator", "A. Tester", "--out", "out"];
+    let run = [
+        "run",
+        "plan.psd",
+        "--rig",
+        "bench",
+        "--rehearse",
+        "--yes",
+        "--operator",
+        "A. Tester",
+        "--out",
+        "out",
+    ];
     let (code, told, log) = place.psd(&run);
     assert_eq!(code, Some(0), "{told}{log}");
     let summary = place.summary();
-    let measured = summary["procedures"]["k0"]["results"]["stiffness"]["value"].as_f64().unwrap();
+    let measured = summary["procedures"]["k0"]["results"]["stiffness"]["value"]
+        .as_f64()
+        .unwrap();
     assert!((measured - 4e5).abs() < 0.02 * 4e5, "{measured}");
-    assert!(told.contains("rehearsal of the run on rig `bench`") && told.contains("peak displacement"), "{told}");
+    assert!(
+        told.contains("rehearsal of the run on rig `bench`") && told.contains("peak displacement"),
+        "{told}"
+    );
     assert_eq!(
         summary["deviations"][0],
         "Rehearsal: the gate and k0 ran on the rig; hit did not run and was predicted on a virtual specimen."
     );
-    let gate =
-        summary["events"].as_array().unwrap().iter().any(|event| event["text"].as_str().unwrap().starts_with("gate passed"));
+    let gate = summary["events"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .any(|event| event["text"].as_str().unwrap().starts_with("gate passed"));
     assert!(gate, "{summary}");
     // As the plan's own virtual rig has it with a specimen of that stiffness, and not with that of the plan.
-    let peak = told.lines().find(|line| line.contains("peak displacement")).unwrap();
+    let peak = told
+        .lines()
+        .find(|line| line.contains("peak displacement"))
+        .unwrap();
     let millimetres: f64 = peak.split_whitespace().nth(2).unwrap().parse().unwrap();
     let set = format!("bench_stiffness={measured} N/m");
-    assert_eq!(place.psd(&["run", "plan.psd", "--yes", "--set", &set, "--out", "virtual"]).0, Some(0));
-    let summary: Value = serde_json::from_str(&fs::read_to_string(place.path().join("virtual/summary.json")).unwrap()).unwrap();
-    let expected = 1e3 * summary["procedures"]["hit"]["results"]["max_displacement"]["value"].as_f64().unwrap();
-    assert!((millimetres - expected).abs() < 0.01 * expected, "{peak}, {expected} expected");
+    assert_eq!(
+        place
+            .psd(&[
+                "run", "plan.psd", "--yes", "--set", &set, "--out", "virtual"
+            ])
+            .0,
+        Some(0)
+    );
+    let summary: Value = serde_json::from_str(
+        &fs::read_to_string(place.path().join("virtual/summary.json")).unwrap(),
+    )
+    .unwrap();
+    let expected = 1e3
+        * summary["procedures"]["hit"]["results"]["max_displacement"]["value"]
+            .as_f64()
+            .unwrap();
+    assert!(
+        (millimetres - expected).abs() < 0.01 * expected,
+        "{peak}, {expected} expected"
+    );
     assert_eq!(place.psd(&["verify", "out"]).0, Some(0));
 }

@@ -1,14 +1,14 @@
 //! A relaxing specimen on a real rig's driver: native dialect, the simulated bench of the plan, no real time. The rig waits half a second
 //! in its band after every move; the places that it was polled for on the way say when it moved.
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::formula::ResultValue;
+use psd::emulator::{InProcess, Log, Script, of_plan};
+use psd::language::check::{LoadFault, Loader, Options, check};
 use psd::plan::Plan;
+use psd::plan::formula::ResultValue;
 use psd::record::{History, Outcome};
 use psd::rig::real::RealRig;
-use psd::rig::{Wish, device};
+use psd::rig::{Wish, controllers};
 use psd::run::{Unwatched, run};
-use psd::simulator::{InProcess, Log, Script, of_plan};
 
 const PLAN: &str = r#"
 specimen joint {
@@ -52,25 +52,47 @@ impl Loader for NoFiles {
 /// 0.2 s of move, 0.5 s of dwell: taken for one even move they made 103 of 120 kN/m.
 #[test]
 fn a_real_rig_says_when_it_moved() {
-    let options = Options { rig: Some("bench".to_owned()), ..Options::default() };
+    let options = Options {
+        rig: Some("bench".to_owned()),
+        ..Options::default()
+    };
     let checked = check("joint.psd", PLAN, &NoFiles, &options);
-    let plan: Plan = checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+    let plan: Plan = checked
+        .plan
+        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
     let stand = of_plan(&plan, &Script::default(), Log::none(), 1, Some(0x7f3a)).expect("a stand");
     let shared = InProcess::new(stand).at_baud(115_200.0);
     let link = plan.rig.link.as_real().expect("a real rig");
     let (wish, clock) = (Wish::default(), || Box::new(shared.clock()));
-    let actuator = device::open(&link.actuator, Box::new(shared.port(0)), clock(), wish.clone(), plan.rig.settle.timeout);
-    let mut rig = RealRig::open(&plan.rig, &plan.limits, actuator, None, clock(), wish).expect("it answers");
+    let actuator = controllers::open(
+        &link.actuator,
+        Box::new(shared.port(0)),
+        clock(),
+        wish.clone(),
+        plan.rig.settle.timeout,
+    );
+    let mut rig =
+        RealRig::open(&plan.rig, &plan.limits, actuator, None, clock(), wish).expect("it answers");
     let record = run(&plan, &mut rig, &mut Unwatched);
     assert_eq!(record.outcome, Outcome::Completed);
     let ramp = record.procedure("k").expect("it ran");
-    let Some(ResultValue::Number { value: Some(branch), .. }) = ramp.result("branch_stiffness").map(|result| &result.value)
+    let Some(ResultValue::Number {
+        value: Some(branch),
+        ..
+    }) = ramp.result("branch_stiffness").map(|result| &result.value)
     else {
         panic!("no branch")
     };
     assert!((branch / 120e3 - 1.0).abs() < 0.02, "{branch} N/m");
-    let History::Ramp(history) = &ramp.history else { panic!("no ramp") };
+    let History::Ramp(history) = &ramp.history else {
+        panic!("no ramp")
+    };
     for hold in &history.holds {
-        assert!((hold.moved_for - 0.2).abs() < 0.1 && hold.settled_for > 0.4, "{} s, {} s", hold.moved_for, hold.settled_for);
+        assert!(
+            (hold.moved_for - 0.2).abs() < 0.1 && hold.settled_for > 0.4,
+            "{} s, {} s",
+            hold.moved_for,
+            hold.settled_for
+        );
     }
 }

@@ -32,7 +32,16 @@ impl Server {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("spring.psd"), plan).unwrap();
         let mut program = Command::new(env!("CARGO_BIN_EXE_psd"))
-            .args(["rig", "serve", "spring.psd", "--protocol", protocol, "--listen", "127.0.0.1:0", "--once"])
+            .args([
+                "rig",
+                "serve",
+                "spring.psd",
+                "--protocol",
+                protocol,
+                "--listen",
+                "127.0.0.1:0",
+                "--once",
+            ])
             .current_dir(folder.path())
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -42,8 +51,17 @@ impl Server {
         let mut stdout = BufReader::new(program.stdout.take().unwrap());
         let mut ready = String::new();
         stdout.read_line(&mut ready).unwrap();
-        let address = ready.trim_end().strip_prefix(&format!("ready: {protocol} on ")).expect("it is ready").to_owned();
-        Self { folder, program, stdout, address }
+        let address = ready
+            .trim_end()
+            .strip_prefix(&format!("ready: {protocol} on "))
+            .expect("it is ready")
+            .to_owned();
+        Self {
+            folder,
+            program,
+            stdout,
+            address,
+        }
     }
 
     fn connect(&self) -> TcpStream {
@@ -53,8 +71,15 @@ impl Server {
     /// What `psd verify` says of its run folder, and the code.
     fn verified(&self) -> (String, i32) {
         let run = self.folder.path().join("runs/spring-1");
-        let ended = Command::new(env!("CARGO_BIN_EXE_psd")).arg("verify").arg(run).output().unwrap();
-        (String::from_utf8(ended.stdout).unwrap(), ended.status.code().unwrap())
+        let ended = Command::new(env!("CARGO_BIN_EXE_psd"))
+            .arg("verify")
+            .arg(run)
+            .output()
+            .unwrap();
+        (
+            String::from_utf8(ended.stdout).unwrap(),
+            ended.status.code().unwrap(),
+        )
     }
 
     /// What it printed, and its exit code.
@@ -86,7 +111,10 @@ fn a_generic_client_gets_its_force_and_the_session_is_summed_up() {
     assert_eq!(answer[..], words(&[-600.0, 0.0]));
     client.write_all(&words(&[99.0, 0.0])).unwrap();
     let (printed, code) = server.end();
-    assert_eq!(printed, "session: closed by the client\ntargets: 1\nlargest |x|: 2.000 mm\nlargest |F|: 600.0 N\n");
+    assert_eq!(
+        printed,
+        "session: closed by the client\ntargets: 1\nlargest |x|: 2.000 mm\nlargest |F|: 600.0 N\n"
+    );
     assert_eq!(code, 0);
 }
 
@@ -96,7 +124,10 @@ fn a_limit_ends_the_session_with_its_own_code() {
     let mut client = generic_client(&server);
     client.write_all(&words(&[3.0, 0.0201])).unwrap();
     let (printed, code) = server.end();
-    assert!(printed.starts_with("session: target displacement 20.1 mm is outside its limit"), "{printed}");
+    assert!(
+        printed.starts_with("session: target displacement 20.1 mm is outside its limit"),
+        "{printed}"
+    );
     assert_eq!(code, 4);
 }
 
@@ -104,13 +135,23 @@ fn a_limit_ends_the_session_with_its_own_code() {
 fn a_refused_proposal_leaves_the_session_to_the_coordinator_but_not_the_code() {
     let mut server = Server::start("nees");
     let mut client = server.connect();
-    client.write_all(b"open-session\tc\npropose\tt1\tMDL-00-01\tx\tdisplacement\t0.0201\nclose-session\tc\n").unwrap();
+    client
+        .write_all(
+            b"open-session\tc\npropose\tt1\tMDL-00-01\tx\tdisplacement\t0.0201\nclose-session\tc\n",
+        )
+        .unwrap();
     let mut answers = String::new();
     client.read_to_string(&mut answers).unwrap();
-    let firsts: Vec<&str> = answers.lines().filter_map(|line| line.split('\t').next()).collect();
+    let firsts: Vec<&str> = answers
+        .lines()
+        .filter_map(|line| line.split('\t').next())
+        .collect();
     assert_eq!(firsts, ["OK", "NOT OK", "OK"]);
     let (printed, code) = server.end();
-    assert!(printed.contains("targets: 0, 1 refused by a limit"), "{printed}");
+    assert!(
+        printed.contains("targets: 0, 1 refused by a limit"),
+        "{printed}"
+    );
     assert_eq!(code, 4);
 }
 
@@ -119,7 +160,10 @@ fn a_client_that_goes_away_is_a_fault() {
     let mut server = Server::start("nees");
     drop(server.connect());
     let (printed, code) = server.end();
-    assert!(printed.starts_with("session: the client went away without closing\n"), "{printed}");
+    assert!(
+        printed.starts_with("session: the client went away without closing\n"),
+        "{printed}"
+    );
     assert_eq!(code, 3);
 }
 
@@ -138,12 +182,23 @@ fn a_session_is_on_record_and_its_targets_come_out_again() {
     let (told, code) = server.verified();
     assert_eq!(code, 0, "{told}");
     // The cancelled one is on record and was never sent.
-    assert!(told.contains("all 2 came out again bit for bit, and 1 steps"), "{told}");
+    assert!(
+        told.contains("all 2 came out again bit for bit, and 1 steps"),
+        "{told}"
+    );
     let run = server.folder.path().join("runs/spring-1");
     let table = std::fs::read_to_string(run.join("tables/served.csv")).unwrap();
-    assert!(table.starts_with("step,wall_time_s,command_m,displacement_m,restoring_force_n\n1,1.0,0.001,0.001,300.0"), "{table}");
+    assert!(
+        table.starts_with(
+            "step,wall_time_s,command_m,displacement_m,restoring_force_n\n1,1.0,0.001,0.001,300.0"
+        ),
+        "{table}"
+    );
     let record = std::fs::read_to_string(run.join("journal.psdj")).unwrap();
-    assert!(record.contains("target displacement 50 mm is outside its limit"), "{record}");
+    assert!(
+        record.contains("target displacement 50 mm is outside its limit"),
+        "{record}"
+    );
 }
 
 /// Two floors, every one with its actuator: the client's vectors move both at once.
@@ -164,25 +219,39 @@ fn a_session_on_a_frame_is_on_record_floor_by_floor() {
     let header = [2, 0, 0, 0, 0, 0, 0, 0, 2, 0, 4_i32].map(i32::to_le_bytes);
     client.write_all(header.as_flattened()).unwrap();
     let mut ask = |asked: [f64; 4]| {
-        client.write_all(&words(&[asked, [10.0, 0.0, 0.0, 0.0]].concat())).unwrap();
+        client
+            .write_all(&words(&[asked, [10.0, 0.0, 0.0, 0.0]].concat()))
+            .unwrap();
         let mut answer = [0; 32];
         client.read_exact(&mut answer).unwrap();
         answer
     };
-    assert_eq!(ask([3.0, 0.001, 0.003, 0.0])[..], words(&[-1000.0, 4000.0, 0.0, 0.0]));
+    assert_eq!(
+        ask([3.0, 0.001, 0.003, 0.0])[..],
+        words(&[-1000.0, 4000.0, 0.0, 0.0])
+    );
     let refused = ask([3.0, 0.001, f64::NAN, 0.0]);
     assert!(f64::from_le_bytes(refused[..8].try_into().unwrap()).is_nan());
     client.write_all(&words(&[99.0, 0.0, 0.0, 0.0])).unwrap();
     let (printed, code) = server.end();
-    assert!(printed.contains("targets: 1, 1 refused by a limit\nlargest |x|: 3.000 mm\n"), "{printed}");
+    assert!(
+        printed.contains("targets: 1, 1 refused by a limit\nlargest |x|: 3.000 mm\n"),
+        "{printed}"
+    );
     assert_eq!(code, 4);
     let (told, code) = server.verified();
     assert_eq!(code, 0, "{told}");
     let run = server.folder.path().join("runs/spring-1");
     let table = std::fs::read_to_string(run.join("tables/served.csv")).unwrap();
     let rows: Vec<&str> = table.lines().collect();
-    assert_eq!(rows[0], "step,storey,wall_time_s,command_m,displacement_m,restoring_force_n");
-    assert!(rows[1].starts_with("1,1,3.0,0.001,0.001,-1000.0"), "{table}");
+    assert_eq!(
+        rows[0],
+        "step,storey,wall_time_s,command_m,displacement_m,restoring_force_n"
+    );
+    assert!(
+        rows[1].starts_with("1,1,3.0,0.001,0.001,-1000.0"),
+        "{table}"
+    );
     assert!(rows[2].starts_with("1,2,3.0,0.003,0.003,4000.0"), "{table}");
     assert_eq!(rows.len(), 3);
 }
@@ -197,7 +266,10 @@ fn a_coordinator_drives_the_floors_of_a_frame() {
     let mut answers = String::new();
     client.read_to_string(&mut answers).unwrap();
     // V₂ = 2 MN/m · 2 mm, V₁ = 3 MN/m · 1 mm.
-    for floor in ["1.0000000000E-03\tx\tforce\t-1.0000000000E+03", "3.0000000000E-03\tx\tforce\t4.0000000000E+03"] {
+    for floor in [
+        "1.0000000000E-03\tx\tforce\t-1.0000000000E+03",
+        "3.0000000000E-03\tx\tforce\t4.0000000000E+03",
+    ] {
         assert!(answers.contains(floor), "{answers}");
     }
     let (printed, code) = server.end();
@@ -219,6 +291,7 @@ fn settings_of_an_init_file_are_taken_and_noted() {
     assert_eq!(answer[..], words(&[-600.0, 0.0]));
     client.write_all(&words(&[99.0, 0.0])).unwrap();
     assert_eq!(server.end().1, 0);
-    let record = std::fs::read_to_string(server.folder.path().join("runs/spring-1/journal.psdj")).unwrap();
+    let record =
+        std::fs::read_to_string(server.folder.path().join("runs/spring-1/journal.psdj")).unwrap();
     assert!(record.contains("not for this rig: rate 1"), "{record}");
 }

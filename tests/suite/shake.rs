@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::formula::ResultValue;
+use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::plan::formula::ResultValue;
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
@@ -29,7 +29,10 @@ impl Loader for Files {
                     let time = f64::from(step) * 1e-3;
                     format!("{time},{}\n", GROUND * (FREQUENCY * time).sin())
                 };
-                Ok(format!("time_s,acceleration_m_per_s2\n{}", (0..=8000).map(row).collect::<String>()))
+                Ok(format!(
+                    "time_s,acceleration_m_per_s2\n{}",
+                    (0..=8000).map(row).collect::<String>()
+                ))
             }
             "m.csv" => Ok("1000, 0\n0, 1000\n".to_owned()),
             "k.csv" => Ok(format!("{}, {}\n{}, {k}\n", 2.0 * k, -k, -k)),
@@ -43,8 +46,14 @@ fn record(specimen: &str, shake: &str) -> Record {
         "{specimen}\nground sine {{ record = \"sine.csv\" }}\nshake steady {{\n  ground = sine\n  damping_ratio = 10 %\n{shake}\n}}\n"
     );
     let checked = check("plan.psd", &text, &Files, &Options::default());
-    let plan = checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
-    assert_eq!(plan.files.len(), if specimen.contains("matrix") { 4 } else { 2 }, "the plan and its data");
+    let plan = checked
+        .plan
+        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+    assert_eq!(
+        plan.files.len(),
+        if specimen.contains("matrix") { 4 } else { 2 },
+        "the plan and its data"
+    );
     let record = run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched);
     assert_eq!(record.outcome, Outcome::Completed);
     record
@@ -53,10 +62,15 @@ fn record(specimen: &str, shake: &str) -> Record {
 const STOREYS: &str = "let k = 1 t * (4 * 3.141592653589793 / 1 s)^2 * (3 + sqrt(5)) / 2
 specimen frame { storeys = [storey(mass: 1 t, stiffness: k), storey(mass: 1 t, column_stiffness: k / 2)] }";
 
-const MATRICES: &str = "specimen frame {\n  mass_matrix = \"m.csv\"\n  stiffness_matrix = \"k.csv\"\n}";
+const MATRICES: &str =
+    "specimen frame {\n  mass_matrix = \"m.csv\"\n  stiffness_matrix = \"k.csv\"\n}";
 
 fn list(record: &Record, name: &str) -> Vec<f64> {
-    match &record.procedures[0].result(name).expect("a result of the schema").value {
+    match &record.procedures[0]
+        .result(name)
+        .expect("a result of the schema")
+        .value
+    {
         ResultValue::List(values) => values.clone(),
         other @ ResultValue::Number { .. } => panic!("{name} is {other:?}"),
     }
@@ -68,18 +82,28 @@ fn closed_form() -> [f64; 2] {
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mode = |shape: [f64; 2], own: f64| {
         let participation = (shape[0] + shape[1]) / (shape[0] * shape[0] + shape[1] * shape[1]);
-        let (real, imaginary) = (own * own - FREQUENCY * FREQUENCY, 2.0 * RATIO * own * FREQUENCY);
+        let (real, imaginary) = (
+            own * own - FREQUENCY * FREQUENCY,
+            2.0 * RATIO * own * FREQUENCY,
+        );
         let size = participation * GROUND / (real * real + imaginary * imaginary);
         shape.map(|entry| (entry * size * real, -entry * size * imaginary))
     };
-    let (first, second) = (mode([1.0, golden], FREQUENCY), mode([golden, -1.0], golden * golden * FREQUENCY));
+    let (first, second) = (
+        mode([1.0, golden], FREQUENCY),
+        mode([golden, -1.0], golden * golden * FREQUENCY),
+    );
     [0, 1].map(|floor| (first[floor].0 + second[floor].0).hypot(first[floor].1 + second[floor].1))
 }
 
 /// Largest error of the two floors, as a fraction of the closed form.
 fn error(record: &Record) -> f64 {
     let found = list(record, "max_displacement");
-    found.iter().zip(closed_form()).map(|(found, exact)| (found / exact - 1.0).abs()).fold(0.0, f64::max)
+    found
+        .iter()
+        .zip(closed_form())
+        .map(|(found, exact)| (found / exact - 1.0).abs())
+        .fold(0.0, f64::max)
 }
 
 /// At resonance the motion grows to its steady size, e⁻¹⁰ from it after sixteen periods, so that the peak of the run is that of
@@ -87,10 +111,18 @@ fn error(record: &Record) -> f64 {
 #[test]
 fn a_steady_motion_is_the_closed_form_and_converges_with_the_square_of_the_step() {
     for integrator in ["tangent", "alpha_os(alpha: 0)", "explicit"] {
-        let of = |step: &str| error(&record(STOREYS, &format!("  integrator = {integrator}\n  time_step = {step}")));
+        let of = |step: &str| {
+            error(&record(
+                STOREYS,
+                &format!("  integrator = {integrator}\n  time_step = {step}"),
+            ))
+        };
         let (coarse, fine) = (of("10 ms"), of("5 ms"));
         assert!(coarse < 3e-3, "{integrator}: {coarse}");
-        assert!((3.0..5.0).contains(&(coarse / fine)), "{integrator}: {coarse} and {fine}");
+        assert!(
+            (3.0..5.0).contains(&(coarse / fine)),
+            "{integrator}: {coarse} and {fine}"
+        );
     }
 }
 
@@ -100,17 +132,31 @@ fn matrices_from_files_give_the_motion_of_the_storeys_they_were_made_of() {
     let (storeys, matrices) = (record(STOREYS, shake), record(MATRICES, shake));
     for name in ["max_displacement", "max_drift", "final_drift", "periods"] {
         for (one, other) in list(&storeys, name).iter().zip(list(&matrices, name)) {
-            assert!((one - other).abs() <= 1e-9 * one.abs(), "{name}: {one} and {other}");
+            assert!(
+                (one - other).abs() <= 1e-9 * one.abs(),
+                "{name}: {one} and {other}"
+            );
         }
     }
     let periods = list(&storeys, "periods");
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
-    assert!((periods[0] - 0.5).abs() < 1e-12 && (periods[1] - 0.5 / (golden * golden)).abs() < 1e-12, "{periods:?}");
+    assert!(
+        (periods[0] - 0.5).abs() < 1e-12 && (periods[1] - 0.5 / (golden * golden)).abs() < 1e-12,
+        "{periods:?}"
+    );
 }
 
 fn psd(arguments: &[&str], out: &Path) {
-    let ended = Command::new(env!("CARGO_BIN_EXE_psd")).args(arguments).arg(out).output().expect("psd starts");
-    assert!(ended.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&ended.stderr));
+    let ended = Command::new(env!("CARGO_BIN_EXE_psd"))
+        .args(arguments)
+        .arg(out)
+        .output()
+        .expect("psd starts");
+    assert!(
+        ended.status.success(),
+        "{arguments:?}: {}",
+        String::from_utf8_lossy(&ended.stderr)
+    );
 }
 
 /// A run, its verification and its report made anew give the same bytes, with the plan and its data gone: the record has them.
@@ -121,18 +167,29 @@ fn the_record_of_a_shake_is_enough() {
     let plans = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans");
     fs::create_dir(path("ground")).expect("a folder");
     fs::create_dir(path("lib")).expect("a folder");
-    for file in ["two_storeys_yielding.psd", "ground/three_sines.csv", "lib/two_actuator_frame.psd"] {
+    for file in [
+        "two_storeys_yielding.psd",
+        "ground/three_sines.csv",
+        "lib/two_actuator_frame.psd",
+    ] {
         fs::copy(plans.join(file), path(file)).expect("a copy");
     }
     let plan = path("two_storeys_yielding.psd");
-    psd(&["run", plan.to_str().expect("UTF-8"), "--yes", "--out"], &path("run"));
+    psd(
+        &["run", plan.to_str().expect("UTF-8"), "--yes", "--out"],
+        &path("run"),
+    );
     fs::remove_file(&plan).expect("removed");
     fs::remove_dir_all(path("ground")).expect("removed");
     fs::remove_dir_all(path("lib")).expect("removed");
     psd(&["verify"], &path("run"));
-    psd(&["report", path("run").to_str().expect("UTF-8"), "--out"], &path("again"));
-    let read =
-        |folder: &str, name: &str| fs::read(path(folder).join(name)).unwrap_or_else(|_| panic!("{folder}/{name} is there"));
+    psd(
+        &["report", path("run").to_str().expect("UTF-8"), "--out"],
+        &path("again"),
+    );
+    let read = |folder: &str, name: &str| {
+        fs::read(path(folder).join(name)).unwrap_or_else(|_| panic!("{folder}/{name} is there"))
+    };
     for name in [
         "summary.json",
         "tables/quake.csv",
@@ -145,6 +202,12 @@ fn the_record_of_a_shake_is_enough() {
         assert!(read("run", name) == read("again", name), "{name} differs");
     }
     let table = String::from_utf8(read("run", "tables/quake.csv")).expect("UTF-8");
-    assert_eq!(table.lines().count(), 1 + 2 * 1201, "a row a step and storey");
-    assert!(table.starts_with("step,storey,time_s,wall_time_s,ground_acceleration_m_per_s2,command_m,displacement_m"));
+    assert_eq!(
+        table.lines().count(),
+        1 + 2 * 1201,
+        "a row a step and storey"
+    );
+    assert!(table.starts_with(
+        "step,storey,time_s,wall_time_s,ground_acceleration_m_per_s2,command_m,displacement_m"
+    ));
 }

@@ -4,9 +4,9 @@
 use std::fs;
 use std::path::Path;
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::formula::ResultValue;
+use psd::language::check::{LoadFault, Loader, Options, check};
 use psd::plan::Plan;
+use psd::plan::formula::ResultValue;
 use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
@@ -26,7 +26,13 @@ struct Files;
 impl Loader for Files {
     fn load(&self, path: &str) -> Result<String, LoadFault> {
         let rows = |acceleration: &dyn Fn(f64) -> f64| -> String {
-            let row = |step: u32| format!("{},{}\n", f64::from(step) * 1e-3, acceleration(f64::from(step) * 1e-3));
+            let row = |step: u32| {
+                format!(
+                    "{},{}\n",
+                    f64::from(step) * 1e-3,
+                    acceleration(f64::from(step) * 1e-3)
+                )
+            };
             (0..=8000).map(row).collect()
         };
         let rows = match path {
@@ -46,7 +52,9 @@ fn plan(ground: &str, damped: &str, shake: &str, errs: &str) -> Plan {
          rig bench {{ link = virtual({errs}) }}\nshake test {{\n  ground = motion\n{shake}\n}}\n"
     );
     let checked = check("plan.psd", &text, &Files, &Options::default());
-    checked.plan.unwrap_or_else(|| panic!("{text}\n{:?}", checked.diagnostics))
+    checked
+        .plan
+        .unwrap_or_else(|| panic!("{text}\n{:?}", checked.diagnostics))
 }
 
 fn done(plan: &Plan) -> Record {
@@ -72,7 +80,12 @@ fn viscous() -> String {
 
 /// Largest displacement of each floor, m.
 fn peaks(steps: &[ShakeStep]) -> [f64; 2] {
-    [0, 1].map(|floor| steps.iter().map(|step| step.computed[floor].abs()).fold(0.0, f64::max))
+    [0, 1].map(|floor| {
+        steps
+            .iter()
+            .map(|step| step.computed[floor].abs())
+            .fold(0.0, f64::max)
+    })
 }
 
 /// Steady amplitude of both floors, m, by modes: φ = (1, g) and (g, −1), ω₂ = g²ω, and dampers in proportion to the
@@ -82,11 +95,17 @@ fn closed_form() -> [f64; 2] {
     let mode = |shape: [f64; 2], own: f64| {
         let participation = (shape[0] + shape[1]) / (shape[0] * shape[0] + shape[1] * shape[1]);
         let ratio = RATIO * own / FREQUENCY;
-        let (real, imaginary) = (own * own - FREQUENCY * FREQUENCY, 2.0 * ratio * own * FREQUENCY);
+        let (real, imaginary) = (
+            own * own - FREQUENCY * FREQUENCY,
+            2.0 * ratio * own * FREQUENCY,
+        );
         let size = participation * GROUND / (real * real + imaginary * imaginary);
         shape.map(|entry| (entry * size * real, -entry * size * imaginary))
     };
-    let (first, second) = (mode([1.0, golden], FREQUENCY), mode([golden, -1.0], golden * golden * FREQUENCY));
+    let (first, second) = (
+        mode([1.0, golden], FREQUENCY),
+        mode([golden, -1.0], golden * golden * FREQUENCY),
+    );
     [0, 1].map(|floor| (first[floor].0 + second[floor].0).hypot(first[floor].1 + second[floor].1))
 }
 
@@ -95,13 +114,27 @@ fn closed_form() -> [f64; 2] {
 #[test]
 fn dampers_of_the_storeys_give_the_steady_motion_of_the_closed_form() {
     let error = |step: &str| {
-        let found = peaks(steps(&done(&plan("sine", &viscous(), &continuous(step), ""))));
-        found.iter().zip(closed_form()).map(|(found, exact)| (found / exact - 1.0).abs()).fold(0.0, f64::max)
+        let found = peaks(steps(&done(&plan(
+            "sine",
+            &viscous(),
+            &continuous(step),
+            "",
+        ))));
+        found
+            .iter()
+            .zip(closed_form())
+            .map(|(found, exact)| (found / exact - 1.0).abs())
+            .fold(0.0, f64::max)
     };
     let (coarse, fine) = (error("10 ms"), error("5 ms"));
     assert!(fine < 3e-3, "{fine}");
     assert!((3.0..5.0).contains(&(coarse / fine)), "{coarse} and {fine}");
-    let paused = peaks(steps(&done(&plan("sine", &viscous(), "  integrator = explicit\n  time_step = 10 ms", ""))));
+    let paused = peaks(steps(&done(&plan(
+        "sine",
+        &viscous(),
+        "  integrator = explicit\n  time_step = 10 ms",
+        "",
+    ))));
     assert!(paused[1] > 5.0 * closed_form()[1], "{paused:?}");
 }
 
@@ -116,9 +149,12 @@ fn the_damping_of_the_material_is_in_the_force() {
             let way = |floor: usize| three[2].command[floor] - three[0].command[floor];
             let velocity = [0, 1].map(|floor: usize| way(floor) / (three[2].time - three[0].time));
             let now = &three[1];
-            let shear = |storey: usize, of: &dyn Fn(usize) -> f64| of(storey) - if storey > 0 { of(storey - 1) } else { 0.0 };
+            let shear = |storey: usize, of: &dyn Fn(usize) -> f64| {
+                of(storey) - if storey > 0 { of(storey - 1) } else { 0.0 }
+            };
             let storey = [0, 1].map(|storey: usize| {
-                STIFFNESS * shear(storey, &|floor| now.command[floor]) + DAMPER * shear(storey, &|floor| velocity[floor])
+                STIFFNESS * shear(storey, &|floor| now.command[floor])
+                    + DAMPER * shear(storey, &|floor| velocity[floor])
             });
             let expected = [storey[0] - storey[1], storey[1]];
             for (floor, expected) in expected.iter().enumerate() {
@@ -137,16 +173,46 @@ fn the_damping_of_the_material_is_in_the_force() {
 #[test]
 fn friction_of_the_storeys_takes_its_force_times_the_way_of_the_drifts() {
     let friction = 20.0;
-    for mode in [continuous("2 ms"), "  integrator = explicit\n  time_step = 2 ms".to_owned()] {
-        let record = done(&plan("push", &format!(", coulomb: {friction} N"), &format!("{mode}\n  duration = 2 s"), ""));
+    for mode in [
+        continuous("2 ms"),
+        "  integrator = explicit\n  time_step = 2 ms".to_owned(),
+    ] {
+        let record = done(&plan(
+            "push",
+            &format!(", coulomb: {friction} N"),
+            &format!("{mode}\n  duration = 2 s"),
+            "",
+        ));
         let steps = steps(&record);
-        let pairs = || steps.windows(2).map(|pair| (pair[0].drift(), pair[1].drift()));
-        let way: f64 = pairs().map(|(from, to)| from.iter().zip(to).map(|(from, to)| (to - from).abs()).sum::<f64>()).sum();
+        let pairs = || {
+            steps
+                .windows(2)
+                .map(|pair| (pair[0].drift(), pair[1].drift()))
+        };
+        let way: f64 = pairs()
+            .map(|(from, to)| {
+                from.iter()
+                    .zip(to)
+                    .map(|(from, to)| (to - from).abs())
+                    .sum::<f64>()
+            })
+            .sum();
         let last = steps.last().unwrap();
-        let elastic: f64 = last.drift().iter().map(|drift| 0.5 * STIFFNESS * drift * drift).sum();
+        let elastic: f64 = last
+            .drift()
+            .iter()
+            .map(|drift| 0.5 * STIFFNESS * drift * drift)
+            .sum();
         let (taken, found) = (friction * way, last.energies.restoring - elastic);
-        assert!(taken > 0.3 * last.energies.input, "enough to be seen: {taken} J of {} J", last.energies.input);
-        assert!((found - taken).abs() < 0.02 * taken, "{mode}: {found} J of {taken} J");
+        assert!(
+            taken > 0.3 * last.energies.input,
+            "enough to be seen: {taken} J of {} J",
+            last.energies.input
+        );
+        assert!(
+            (found - taken).abs() < 0.02 * taken,
+            "{mode}: {found} J of {taken} J"
+        );
     }
 }
 
@@ -155,7 +221,12 @@ fn friction_of_the_storeys_takes_its_force_times_the_way_of_the_drifts() {
 fn without_damping_both_modes_are_the_same_run() {
     let (one, other) = (
         done(&plan("sine", "", &continuous("10 ms"), "")),
-        done(&plan("sine", "", "  integrator = explicit\n  time_step = 10 ms", "")),
+        done(&plan(
+            "sine",
+            "",
+            "  integrator = explicit\n  time_step = 10 ms",
+            "",
+        )),
     );
     let (one, other) = (steps(&one), steps(&other));
     assert_eq!(one.len(), other.len());
@@ -165,7 +236,10 @@ fn without_damping_both_modes_are_the_same_run() {
             assert!((one.restoring_force[floor] - other.restoring_force[floor]).abs() < 1e-7);
         }
     }
-    assert!(one.windows(2).all(|pair| (pair[1].wall_time - pair[0].wall_time - SCALE * 0.01).abs() < 1e-9));
+    assert!(
+        one.windows(2)
+            .all(|pair| (pair[1].wall_time - pair[0].wall_time - SCALE * 0.01).abs() < 1e-9)
+    );
 }
 
 /// Pistons that lag by 0.2 s, 4 ms of virtual time, feed energy in; corrected to its target by K(d_m − d), each floor's
@@ -179,9 +253,16 @@ fn readings_of_lagging_axes_are_corrected_to_their_targets() {
         peaks(steps(&done(&plan)))
     };
     let lag = "lag: 200 ms";
-    let (ideal, corrected, raw) = (peak("", ""), peak(lag, ""), peak(lag, "  i_modification = false"));
+    let (ideal, corrected, raw) = (
+        peak("", ""),
+        peak(lag, ""),
+        peak(lag, "  i_modification = false"),
+    );
     for floor in 0..2 {
-        assert!((corrected[floor] / ideal[floor] - 1.0).abs() < 1e-9, "{corrected:?} and {ideal:?}");
+        assert!(
+            (corrected[floor] / ideal[floor] - 1.0).abs() < 1e-9,
+            "{corrected:?} and {ideal:?}"
+        );
         // The amplitude grows by exp(½ω²·lag/scale·t) in the first mode, 12 times in eight seconds.
         assert!(raw[floor] / ideal[floor] > 8.0, "{raw:?} and {ideal:?}");
     }
@@ -197,27 +278,59 @@ fn tracking_holds_a_shake_in_both_modes() {
         let mut plan = plan("sine", "", &shake, errs);
         let record = run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched);
         let held = |record: &Record, what: &str| matches!(&record.outcome, Outcome::Aborted { reason } if reason.contains(what));
-        assert!(held(&record, "tracking energy"), "{errs}: {:?}", record.outcome);
-        let result = |name: &str| record.procedures[0].result(name).map(|result| &result.value);
+        assert!(
+            held(&record, "tracking energy"),
+            "{errs}: {:?}",
+            record.outcome
+        );
+        let result = |name: &str| {
+            record.procedures[0]
+                .result(name)
+                .map(|result| &result.value)
+        };
         let number = |name: &str| match result(name) {
-            Some(ResultValue::Number { value: Some(value), .. }) => *value,
+            Some(ResultValue::Number {
+                value: Some(value), ..
+            }) => *value,
             other => panic!("{name}: {other:?}"),
         };
         let list = |name: &str| match result(name) {
             Some(ResultValue::List(values)) => values.clone(),
             other => panic!("{name}: {other:?}"),
         };
-        assert!((-0.06..-0.05).contains(&number("tracking_energy_error")), "{errs}: {}", number("tracking_energy_error"));
+        assert!(
+            (-0.06..-0.05).contains(&number("tracking_energy_error")),
+            "{errs}: {}",
+            number("tracking_energy_error")
+        );
         let sum: f64 = list("floor_tracking_energy_error").iter().sum();
-        assert!((sum / number("tracking_energy_error") - 1.0).abs() < 0.05, "{errs}: {sum}");
+        assert!(
+            (sum / number("tracking_energy_error") - 1.0).abs() < 0.05,
+            "{errs}: {sum}"
+        );
         let sum: f64 = list("floor_tracking_indicator").iter().sum();
-        assert!(sum < 0.0 && (sum / number("tracking_indicator") - 1.0).abs() < 1e-12, "{errs}: {sum}");
+        assert!(
+            sum < 0.0 && (sum / number("tracking_indicator") - 1.0).abs() < 1e-12,
+            "{errs}: {sum}"
+        );
         for name in ["nrms_error", "peak_error"] {
-            assert_eq!(list(&format!("floor_{name}")).into_iter().fold(0.0, f64::max), number(name), "{errs}: {name}");
+            assert_eq!(
+                list(&format!("floor_{name}"))
+                    .into_iter()
+                    .fold(0.0, f64::max),
+                number(name),
+                "{errs}: {name}"
+            );
         }
         plan.limits.tracking_energy_error.high = 1e6;
         plan.limits.nrms_error.high = 1e-3;
-        assert!(held(&run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched), "NRMS"), "{errs}");
+        assert!(
+            held(
+                &run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched),
+                "NRMS"
+            ),
+            "{errs}"
+        );
     }
 }
 
@@ -225,17 +338,36 @@ fn tracking_holds_a_shake_in_both_modes() {
 #[test]
 fn the_record_of_a_continuous_shake_is_enough() {
     let psd = |arguments: &[&str]| {
-        let ended = std::process::Command::new(env!("CARGO_BIN_EXE_psd")).args(arguments).output().expect("psd starts");
-        assert!(ended.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&ended.stderr));
+        let ended = std::process::Command::new(env!("CARGO_BIN_EXE_psd"))
+            .args(arguments)
+            .output()
+            .expect("psd starts");
+        assert!(
+            ended.status.success(),
+            "{arguments:?}: {}",
+            String::from_utf8_lossy(&ended.stderr)
+        );
     };
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
     let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/two_storeys_continuous.psd");
-    psd(&["run", plan.to_str().expect("UTF-8"), "--yes", "--out", &path("run")]);
+    psd(&[
+        "run",
+        plan.to_str().expect("UTF-8"),
+        "--yes",
+        "--out",
+        &path("run"),
+    ]);
     psd(&["verify", &path("run")]);
     psd(&["report", &path("run"), "--out", &path("again")]);
-    for name in ["summary.json", "tables/moving.csv", "certificate.html", "certificate.pdf"] {
-        let read = |of: &str| fs::read(folder.path().join(of).join(name)).expect("a file of the run");
+    for name in [
+        "summary.json",
+        "tables/moving.csv",
+        "certificate.html",
+        "certificate.pdf",
+    ] {
+        let read =
+            |of: &str| fs::read(folder.path().join(of).join(name)).expect("a file of the run");
         assert!(read("run") == read("again"), "{name} differs");
     }
 }

@@ -4,15 +4,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::diagnostic::render::{Appearance, render_all};
-use psd::output::{Provenance, Run, vectors};
+use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::syntax::{format, parse};
 use psd::plan::FigureKind;
+use psd::report::{Provenance, Run, vectors};
 use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};
 use psd::schema::{BLOCKS, FieldType, Kind};
-use psd::source::Sources;
-use psd::syntax::{format, parse};
+use psd::text::diagnostic::render::{Appearance, render_all};
+use psd::text::source::Sources;
 use psd::verdict::{Verdict, assess};
 
 fn docs() -> PathBuf {
@@ -33,7 +33,10 @@ fn plans() -> Vec<(String, String)> {
     let page = fs::read_to_string(docs().join("specimens.md")).expect("the page is there");
     let fences = page.split("```psd ").skip(1).map(|after| {
         let (name, rest) = after.split_once('\n').expect("a fence is a line");
-        (name.to_owned(), rest.split("```").next().unwrap_or_default().to_owned())
+        (
+            name.to_owned(),
+            rest.split("```").next().unwrap_or_default().to_owned(),
+        )
     });
     fences.collect()
 }
@@ -42,18 +45,42 @@ fn plans() -> Vec<(String, String)> {
 fn drawn(name: &str, text: &str) -> Vec<u8> {
     let checked = check(&format!("{name}.psd"), text, &Docs, &Options::default());
     let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
-    let mut plan = checked.plan.filter(|_| checked.diagnostics.is_empty()).unwrap_or_else(|| panic!("{said}"));
-    plan.report.figures.retain(|figure| figure.kind == FigureKind::ForceDisplacement);
+    let mut plan = checked
+        .plan
+        .filter(|_| checked.diagnostics.is_empty())
+        .unwrap_or_else(|| panic!("{said}"));
+    plan.report
+        .figures
+        .retain(|figure| figure.kind == FigureKind::ForceDisplacement);
     let mut rig = VirtualRig::of_plan(&plan);
     let record = run(&plan, &mut rig, &mut Unwatched);
     let assessment = assess(&plan, &record);
-    assert_eq!(assessment.verdict, Verdict::Pass, "{name}: {:?}", assessment.requirements);
-    let provenance =
-        Provenance { run_id: name.to_owned(), psd_version: String::new(), plan_sha256: String::new(), ..Provenance::default() };
-    let files = vectors(&Run { plan: &plan, record: &record, assessment: &assessment, provenance: &provenance })
-        .expect("the outputs can be made");
-    let is_loop = |path: &str| path.starts_with("figures/") && path.ends_with("_force_displacement.svg");
-    files.into_iter().find(|file| is_loop(&file.path)).expect("a cycle has its loop").bytes
+    assert_eq!(
+        assessment.verdict,
+        Verdict::Pass,
+        "{name}: {:?}",
+        assessment.requirements
+    );
+    let provenance = Provenance {
+        run_id: name.to_owned(),
+        psd_version: String::new(),
+        plan_sha256: String::new(),
+        ..Provenance::default()
+    };
+    let files = vectors(&Run {
+        plan: &plan,
+        record: &record,
+        assessment: &assessment,
+        provenance: &provenance,
+    })
+    .expect("the outputs can be made");
+    let is_loop =
+        |path: &str| path.starts_with("figures/") && path.ends_with("_force_displacement.svg");
+    files
+        .into_iter()
+        .find(|file| is_loop(&file.path))
+        .expect("a cycle has its loop")
+        .bytes
 }
 
 #[test]
@@ -62,7 +89,11 @@ fn every_plan_of_the_page_passes_and_its_loop_is_the_figure() {
     for (name, text) in plans() {
         let mut sources = Sources::default();
         let file = sources.add("specimens.md", &text);
-        assert_eq!(format(&parse(&sources, file).0, &text), text, "psd fmt would change `{name}`");
+        assert_eq!(
+            format(&parse(&sources, file).0, &text),
+            text,
+            "psd fmt would change `{name}`"
+        );
         let svg = drawn(&name, &text);
         let path = docs().join("specimens").join(format!("{name}.svg"));
         if bless {
@@ -70,18 +101,39 @@ fn every_plan_of_the_page_passes_and_its_loop_is_the_figure() {
         }
         assert!(svg.len() <= 60_000, "{name}: {} bytes", svg.len());
         let kept = fs::read(&path).unwrap_or_default();
-        assert!(kept == svg, "docs/specimens/{name}.svg is not what the plan draws: PSD_BLESS=1 cargo test specimens_page");
+        assert!(
+            kept == svg,
+            "docs/specimens/{name}.svg is not what the plan draws: PSD_BLESS=1 cargo test specimens_page"
+        );
     }
 }
 
 #[test]
 fn every_behaviour_has_its_place_on_the_page() {
     let page = fs::read_to_string(docs().join("specimens.md")).expect("the page is there");
-    let specimen = BLOCKS.iter().find(|block| block.kind == Kind::Specimen).expect("there is a block for it");
-    let FieldType::Choice(behaviours) = specimen.field("behaviour").expect("it has a behaviour").ty else { panic!("a choice") };
+    let specimen = BLOCKS
+        .iter()
+        .find(|block| block.kind == Kind::Specimen)
+        .expect("there is a block for it");
+    let FieldType::Choice(behaviours) = specimen.field("behaviour").expect("it has a behaviour").ty
+    else {
+        panic!("a choice")
+    };
     for behaviour in behaviours {
-        assert!(page.contains(&format!("## `{}`", behaviour.name)), "{} has no section", behaviour.name);
-        assert!(plans().iter().any(|(name, _)| name == behaviour.name), "{} has no plan", behaviour.name);
-        assert!(page.contains(&format!("(specimens/{}.svg)", behaviour.name)), "{} has no figure", behaviour.name);
+        assert!(
+            page.contains(&format!("## `{}`", behaviour.name)),
+            "{} has no section",
+            behaviour.name
+        );
+        assert!(
+            plans().iter().any(|(name, _)| name == behaviour.name),
+            "{} has no plan",
+            behaviour.name
+        );
+        assert!(
+            page.contains(&format!("(specimens/{}.svg)", behaviour.name)),
+            "{} has no figure",
+            behaviour.name
+        );
     }
 }

@@ -6,9 +6,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::formula::ResultValue;
-use psd::record::{History, Outcome, Record, StoreyImpactHistory};
+use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::plan::formula::ResultValue;
+use psd::record::{History, ImpactStep, Outcome, Record, StruckFrame};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 
@@ -22,28 +22,45 @@ impl Loader for NoFiles {
 
 fn record(text: &str) -> Record {
     let checked = check("plan.psd", text, &NoFiles, &Options::default());
-    let plan = checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+    let plan = checked
+        .plan
+        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
     let record = run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched);
     assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
     record
 }
 
-fn history(record: &Record) -> &StoreyImpactHistory {
+fn steps(record: &Record) -> &[ImpactStep] {
     match &record.procedures[0].history {
-        History::StoreyImpact(history) => history,
+        History::Impact(history) => &history.steps,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn history(record: &Record) -> &StruckFrame {
+    match &record.procedures[0].history {
+        History::Impact(history) => history.frame.as_ref().expect("a frame"),
         other => panic!("{other:?}"),
     }
 }
 
 fn list(record: &Record, name: &str) -> Vec<f64> {
-    match &record.procedures[0].result(name).expect("a result of the schema").value {
+    match &record.procedures[0]
+        .result(name)
+        .expect("a result of the schema")
+        .value
+    {
         ResultValue::List(values) => values.clone(),
         other @ ResultValue::Number { .. } => panic!("{name} is {other:?}"),
     }
 }
 
 fn number(record: &Record, name: &str) -> Option<f64> {
-    match &record.procedures[0].result(name).expect("a result of the schema").value {
+    match &record.procedures[0]
+        .result(name)
+        .expect("a result of the schema")
+        .value
+    {
         ResultValue::Number { value, .. } => *value,
         other @ ResultValue::List(_) => panic!("{name} is {other:?}"),
     }
@@ -107,7 +124,8 @@ fn central_differences(times: &[f64], again: f64) -> Vec<[f64; 3]> {
             let (drift, last) = (x[storey] - below(&x), before[storey] - below(&before));
             let reach = YIELD[storey] / STIFFNESSES[storey];
             z[storey] = (z[storey] + drift - last).clamp(-reach, reach);
-            shear[storey] = STIFFNESSES[storey] * (HARDENING * drift + (1.0 - HARDENING) * z[storey]);
+            shear[storey] =
+                STIFFNESSES[storey] * (HARDENING * drift + (1.0 - HARDENING) * z[storey]);
         }
         let depth = (striker - x[1]).max(0.0);
         let contact = HERTZ * depth * depth.sqrt();
@@ -115,7 +133,8 @@ fn central_differences(times: &[f64], again: f64) -> Vec<[f64; 3]> {
         for floor in 0..3 {
             let above = if floor < 2 { shear[floor + 1] } else { 0.0 };
             let push = if floor == 1 { contact } else { 0.0 };
-            next[floor] = 2.0 * x[floor] - before[floor] + STEP * STEP * (push - shear[floor] + above) / MASSES[floor];
+            next[floor] = 2.0 * x[floor] - before[floor]
+                + STEP * STEP * (push - shear[floor] + above) / MASSES[floor];
         }
         let after = 2.0 * striker - striker_before - STEP * STEP * contact / STRIKER;
         (before, x) = (x, next);
@@ -130,9 +149,18 @@ fn difference(record: &Record) -> f64 {
     let floors = &history(record).floors;
     let times: Vec<f64> = floors.iter().map(|step| step.time).collect();
     let reference = central_differences(&times, f64::INFINITY);
-    let largest = reference.iter().flatten().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    let pairs = floors.iter().zip(&reference).flat_map(|(found, exact)| found.computed.iter().zip(exact));
-    pairs.map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max) / largest
+    let largest = reference
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let pairs = floors
+        .iter()
+        .zip(&reference)
+        .flat_map(|(found, exact)| found.computed.iter().zip(exact));
+    pairs
+        .map(|(found, exact)| (found - exact).abs())
+        .fold(0.0, f64::max)
+        / largest
 }
 
 /// Every storey yields, and the test is that frame: ever nearer as the step shrinks.
@@ -140,11 +168,20 @@ fn difference(record: &Record) -> f64 {
 fn a_frame_that_yields_is_the_one_of_central_differences() {
     let record = yielding("  time_step = 0.25 ms");
     for (storey, drift) in list(&record, "max_drift").into_iter().enumerate() {
-        assert!(drift > 1.2 * YIELD[storey] / STIFFNESSES[storey], "storey {storey} yields: {drift} m");
+        assert!(
+            drift > 1.2 * YIELD[storey] / STIFFNESSES[storey],
+            "storey {storey} yields: {drift} m"
+        );
     }
-    let (coarse, fine) = (difference(&yielding("  time_step = 1 ms")), difference(&record));
+    let (coarse, fine) = (
+        difference(&yielding("  time_step = 1 ms")),
+        difference(&record),
+    );
     assert!(fine < 2e-3, "{fine}");
-    assert!(coarse > 3.0 * fine, "{coarse} at 1 ms, {fine} at a quarter of it");
+    assert!(
+        coarse > 3.0 * fine,
+        "{coarse} at 1 ms, {fine} at a quarter of it"
+    );
 }
 
 /// A run that ends on the way out has no peak, and one that ends in a blow has cut it; both are said.
@@ -154,14 +191,27 @@ fn a_run_that_is_cut_says_what_is_missing() {
         let plan = format!(
             "specimen post {{ storeys = [storey(mass: 1 kg, stiffness: 300 N/m)] }}\nstriker s {{\n  mass = 10 kg\n  velocity = 1 m/s\n}}\nimpact hit {{\n  striker = s\n  storey = 1\n  contact = {contact}\n  time_step = 1 ms\n  duration = {duration}\n}}\n"
         );
-        record(&plan).events.into_iter().map(|event| event.text).collect::<Vec<_>>().join("; ")
+        record(&plan)
+            .events
+            .into_iter()
+            .map(|event| event.text)
+            .collect::<Vec<_>>()
+            .join("; ")
     };
     // Joined, the two turn after a quarter of 2π√((M + Ms)/K) = 1.2032 s.
     let early = cut("0.2 s", "restitution(0)");
-    assert!(early.contains("is not a peak") && early.contains("did not stop") && !early.contains("blow is cut"), "{early}");
+    assert!(
+        early.contains("is not a peak")
+            && early.contains("did not stop")
+            && !early.contains("blow is cut"),
+        "{early}"
+    );
     // They stand still together, in contact.
     let still = cut("0.5 s", "restitution(0)");
-    assert!(still.contains("blow is cut") && !still.contains("is not a peak"), "{still}");
+    assert!(
+        still.contains("blow is cut") && !still.contains("is not a peak"),
+        "{still}"
+    );
 }
 
 /// A second blow meets the frame as the first one left it: bent, and with the memory of its storeys.
@@ -169,17 +219,24 @@ fn a_run_that_is_cut_says_what_is_missing() {
 fn a_second_blow_meets_the_damage_of_the_first() {
     let record = yielding_by("  time_step = 0.25 ms", &["first", "second"]);
     let of = |procedure: usize| match &record.procedures[procedure].history {
-        History::StoreyImpact(history) => &history.floors,
+        History::Impact(history) => &history.frame.as_ref().expect("a frame").floors,
         other => panic!("{other:?}"),
     };
     let (first, second) = (of(0), of(1));
     assert_eq!(second[0].computed, first.last().expect("steps").command);
     let times: Vec<f64> = second.iter().map(|step| 0.4 + step.time).collect();
     let reference = central_differences(&times, 0.4);
-    let largest = reference.iter().flatten().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let largest = reference
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |largest, x| largest.max(x.abs()));
     for (found, exact) in second.iter().zip(&reference) {
         for (found, exact) in found.computed.iter().zip(exact) {
-            assert!((found - exact).abs() < 5e-3 * largest, "{found} and {exact} at {} s", 0.4 + second[0].time);
+            assert!(
+                (found - exact).abs() < 5e-3 * largest,
+                "{found} and {exact} at {} s",
+                0.4 + second[0].time
+            );
         }
     }
 }
@@ -193,10 +250,22 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
         ))
     };
     for integrator in ["tangent", "explicit", "alpha_os(alpha: -0.05)"] {
-        let (stepped, gliding) = (plan("step_and_pause", integrator), plan("continuous(time_scale: 50)", integrator));
-        let largest = list(&stepped, "floor_displacement").into_iter().fold(0.0, f64::max);
-        assert_eq!(history(&stepped).floors.len(), history(&gliding).floors.len());
-        for (one, other) in history(&stepped).floors.iter().zip(&history(&gliding).floors) {
+        let (stepped, gliding) = (
+            plan("step_and_pause", integrator),
+            plan("continuous(time_scale: 50)", integrator),
+        );
+        let largest = list(&stepped, "floor_displacement")
+            .into_iter()
+            .fold(0.0, f64::max);
+        assert_eq!(
+            history(&stepped).floors.len(),
+            history(&gliding).floors.len()
+        );
+        for (one, other) in history(&stepped)
+            .floors
+            .iter()
+            .zip(&history(&gliding).floors)
+        {
             for (one, other) in one.computed.iter().zip(&other.computed) {
                 assert!(
                     (one - other).abs() < 1e-9 * largest,
@@ -212,13 +281,25 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
 #[test]
 fn results_say_of_each_storey_what_the_balance_says_of_all() {
     let record = yielding("  time_step = 0.5 ms\n  damping_ratio = 2 %");
-    let last = history(&record).blow.steps.last().expect("steps").energies;
+    let last = steps(&record).last().expect("steps").energies;
     // It ran past its peaks and past its blow: neither is cut.
     assert!(record.events.is_empty(), "{:?}", record.events);
     let storeys: f64 = list(&record, "storey_energy").iter().sum();
-    assert!((storeys - last.restoring).abs() < 1e-9 * last.restoring, "{storeys} and {}", last.restoring);
-    let sum = last.striker + last.structure + last.restoring + last.damping + last.contact_loss + last.error;
-    assert!((sum - 0.5 * STRIKER * SPEED * SPEED).abs() < 1e-9, "{sum} J");
+    assert!(
+        (storeys - last.restoring).abs() < 1e-9 * last.restoring,
+        "{storeys} and {}",
+        last.restoring
+    );
+    let sum = last.striker
+        + last.structure
+        + last.restoring
+        + last.damping
+        + last.contact_loss
+        + last.error;
+    assert!(
+        (sum - 0.5 * STRIKER * SPEED * SPEED).abs() < 1e-9,
+        "{sum} J"
+    );
     assert!(number(&record, "energy_error").expect("a number").abs() < 2e-3);
     let back = number(&record, "rebound_velocity").expect("it bounced");
     assert!((0.5 * STRIKER * back * back - last.striker).abs() < 1e-9 * last.striker);
@@ -226,16 +307,26 @@ fn results_say_of_each_storey_what_the_balance_says_of_all() {
     let reduced = STRIKER * MASSES[1] / (STRIKER + MASSES[1]);
     let blow = 2.943 * (1.25 * reduced * SPEED * SPEED / HERTZ).powf(0.4) / SPEED;
     let lasted = number(&record, "contact_duration").expect("it touched");
-    assert!((lasted / blow - 1.0).abs() < 0.1, "{lasted} s, free masses {blow} s");
-    let shear = history(&record).floors.iter().map(|step| step.restoring_force.iter().sum::<f64>().abs());
+    assert!(
+        (lasted / blow - 1.0).abs() < 0.1,
+        "{lasted} s, free masses {blow} s"
+    );
+    let shear = history(&record)
+        .floors
+        .iter()
+        .map(|step| step.restoring_force.iter().sum::<f64>().abs());
     assert_eq!(number(&record, "max_base_shear"), shear.reduce(f64::max));
 }
 
 /// The same plan said twice, as a storey and as one degree of freedom: every column to rounding.
 #[test]
 fn one_storey_is_one_degree_of_freedom() {
-    const STRIKER_AND_LAWS: [&str; 4] =
-        ["rigid", "limit(900 N)", "restitution(0.6)", "hertz(stiffness: 4e6 N/m^1.5, loss: 0.1 s/m)"];
+    const STRIKER_AND_LAWS: [&str; 4] = [
+        "rigid",
+        "limit(900 N)",
+        "restitution(0.6)",
+        "hertz(stiffness: 4e6 N/m^1.5, loss: 0.1 s/m)",
+    ];
     for law in STRIKER_AND_LAWS {
         let behaviour = "bilinear(stiffness: 300 N/m, yield_force: 25 N, hardening: 0.1)";
         let fields = |own: &str| {
@@ -243,7 +334,10 @@ fn one_storey_is_one_degree_of_freedom() {
                 "striker s {{\n  mass = 10 kg\n  velocity = 1 m/s\n  gap = 1 mm\n  gravity = 1 gn\n}}\nimpact hit {{\n  striker = s\n{own}  contact = {law}\n  time_step = 1 ms\n  duration = 0.6 s\n}}\n"
             )
         };
-        let one = format!("specimen post {{\n  mass = 1 kg\n  behaviour = {behaviour}\n}}\n{}", fields("  damping = 3 N*s/m\n"));
+        let one = format!(
+            "specimen post {{\n  mass = 1 kg\n  behaviour = {behaviour}\n}}\n{}",
+            fields("  damping = 3 N*s/m\n")
+        );
         // C = 2ζ√(KM).
         let ratio = 3.0 / (2.0 * 300.0_f64.sqrt());
         let storey = format!(
@@ -251,30 +345,58 @@ fn one_storey_is_one_degree_of_freedom() {
             fields(&format!("  storey = 1\n  damping_ratio = {ratio}\n"))
         );
         let (one, storey) = (record(&one), record(&storey));
-        let History::Impact(of_one) = &one.procedures[0].history else { panic!("an impact") };
-        let of_storey = &history(&storey).blow;
+        let History::Impact(of_one) = &one.procedures[0].history else {
+            panic!("an impact")
+        };
+        let History::Impact(of_storey) = &storey.procedures[0].history else {
+            panic!("an impact")
+        };
         assert_eq!(of_one.steps.len(), of_storey.steps.len(), "{law}");
-        assert!((of_one.critical_time_step - of_storey.critical_time_step).abs() < 1e-15 || law.starts_with("hertz"));
+        assert!(
+            (of_one.critical_time_step - of_storey.critical_time_step).abs() < 1e-15
+                || law.starts_with("hertz")
+        );
         for (one, other) in of_one.steps.iter().zip(&of_storey.steps) {
             assert_eq!(one.state, other.state, "{law} at {} s", one.time);
             for (name, one, other, within) in [
                 ("displacement", one.computed, other.computed, 1e-11),
                 ("velocity", one.velocity, other.velocity, 1e-9),
                 ("force", one.restoring_force, other.restoring_force, 1e-8),
-                ("striker", one.striker_displacement, other.striker_displacement, 1e-11),
-                ("contact", one.contact_force * 1e-3, other.contact_force * 1e-3, 1e-8),
+                (
+                    "striker",
+                    one.striker_displacement,
+                    other.striker_displacement,
+                    1e-11,
+                ),
+                (
+                    "contact",
+                    one.contact_force * 1e-3,
+                    other.contact_force * 1e-3,
+                    1e-8,
+                ),
                 ("energy", one.energies.error, other.energies.error, 1e-9),
                 ("weight", one.energies.weight, other.energies.weight, 1e-9),
             ] {
-                assert!((one - other).abs() < within, "{law} at {name}: {one} and {other}");
+                assert!(
+                    (one - other).abs() < within,
+                    "{law} at {name}: {one} and {other}"
+                );
             }
         }
     }
 }
 
 fn psd(arguments: &[&str], out: &Path) {
-    let ended = Command::new(env!("CARGO_BIN_EXE_psd")).args(arguments).arg(out).output().expect("psd starts");
-    assert!(ended.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&ended.stderr));
+    let ended = Command::new(env!("CARGO_BIN_EXE_psd"))
+        .args(arguments)
+        .arg(out)
+        .output()
+        .expect("psd starts");
+    assert!(
+        ended.status.success(),
+        "{arguments:?}: {}",
+        String::from_utf8_lossy(&ended.stderr)
+    );
 }
 
 /// A run, its verification and its report made anew give the same bytes, with the plan gone: the record has it.
@@ -282,13 +404,26 @@ fn record_is_enough(name: &str, files: &[&str]) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
     let plan = path(name);
-    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("plans").join(name), &plan).expect("a copy");
-    psd(&["run", plan.to_str().expect("UTF-8"), "--yes", "--out"], &path("run"));
+    fs::copy(
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("plans")
+            .join(name),
+        &plan,
+    )
+    .expect("a copy");
+    psd(
+        &["run", plan.to_str().expect("UTF-8"), "--yes", "--out"],
+        &path("run"),
+    );
     fs::remove_file(&plan).expect("removed");
     psd(&["verify"], &path("run"));
-    psd(&["report", path("run").to_str().expect("UTF-8"), "--out"], &path("again"));
-    let read =
-        |folder: &str, name: &str| fs::read(path(folder).join(name)).unwrap_or_else(|_| panic!("{folder}/{name} is there"));
+    psd(
+        &["report", path("run").to_str().expect("UTF-8"), "--out"],
+        &path("again"),
+    );
+    let read = |folder: &str, name: &str| {
+        fs::read(path(folder).join(name)).unwrap_or_else(|_| panic!("{folder}/{name} is there"))
+    };
     for name in files.iter().chain(&["summary.json", "certificate.html"]) {
         assert_eq!(read("run", name), read("again", name), "{name}");
     }
@@ -296,12 +431,31 @@ fn record_is_enough(name: &str, files: &[&str]) {
 
 #[test]
 fn the_record_of_a_blow_on_a_storey_is_enough() {
-    record_is_enough("storey_impact.psd", &["tables/hit.csv", "figures/hit_hysteresis.png", "figures/hit_displacement.svg"]);
+    record_is_enough(
+        "storey_impact.psd",
+        &[
+            "tables/hit.csv",
+            "figures/hit_hysteresis.png",
+            "figures/hit_displacement.svg",
+        ],
+    );
 }
 
 #[test]
 fn the_record_of_rising_blows_on_a_storey_and_of_an_unloaded_frame_is_enough() {
-    let tables = ["tables/rest.csv", "tables/rising.csv", "tables/rising_storeys.csv", "tables/rising_3.csv"];
-    let figures = ["figures/rest_hysteresis.png", "figures/rising_drift.svg", "figures/rising_hysteresis.svg"];
-    record_is_enough("rising_blows_on_a_storey.psd", &[&tables[..], &figures[..]].concat());
+    let tables = [
+        "tables/rest.csv",
+        "tables/rising.csv",
+        "tables/rising_storeys.csv",
+        "tables/rising_3.csv",
+    ];
+    let figures = [
+        "figures/rest_hysteresis.png",
+        "figures/rising_drift.svg",
+        "figures/rising_hysteresis.svg",
+    ];
+    record_is_enough(
+        "rising_blows_on_a_storey.psd",
+        &[&tables[..], &figures[..]].concat(),
+    );
 }

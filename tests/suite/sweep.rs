@@ -1,14 +1,14 @@
 //! A damping sweep on a real rig's driver, over a line that takes its time: native dialect, the simulated bench of the
 //! plan, no real time. c comes out within its uncertainty although far fewer readings come than were asked for.
 
-use psd::check::{LoadFault, Loader, Options, check};
-use psd::formula::ResultValue;
+use psd::emulator::{InProcess, Log, Script, of_plan};
+use psd::language::check::{LoadFault, Loader, Options, check};
 use psd::plan::Plan;
+use psd::plan::formula::ResultValue;
 use psd::record::{EventKind, History, Outcome, Record};
 use psd::rig::real::RealRig;
-use psd::rig::{Wish, device};
+use psd::rig::{Wish, controllers};
 use psd::run::{Unwatched, run};
-use psd::simulator::{InProcess, Log, Script, of_plan};
 
 /// c and the Coulomb force of the bench, N·s/m and N.
 const DAMPING: f64 = 600.0;
@@ -59,53 +59,104 @@ impl Loader for NoFiles {
 }
 
 fn plan() -> Plan {
-    let options = Options { rig: Some("bench".to_owned()), ..Options::default() };
+    let options = Options {
+        rig: Some("bench".to_owned()),
+        ..Options::default()
+    };
     let checked = check("sweep.psd", PLAN, &NoFiles, &options);
-    checked.plan.unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
+    checked
+        .plan
+        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
 }
 
 /// The plan, run on its stand-in over lines of `baud`.
 fn over_a_line(baud: f64, seed: u64) -> Record {
     let plan = plan();
-    let stand = of_plan(&plan, &Script::default(), Log::none(), seed, Some(0x7f3a)).expect("a stand");
+    let stand =
+        of_plan(&plan, &Script::default(), Log::none(), seed, Some(0x7f3a)).expect("a stand");
     let shared = InProcess::new(stand).at_baud(baud);
     let link = plan.rig.link.as_real().expect("a real rig");
     let (wish, clock) = (Wish::default(), || Box::new(shared.clock()));
-    let actuator = device::open(&link.actuator, Box::new(shared.port(0)), clock(), wish.clone(), plan.rig.settle.timeout);
-    let mut rig = RealRig::open(&plan.rig, &plan.limits, actuator, None, clock(), wish).expect("it answers");
+    let actuator = controllers::open(
+        &link.actuator,
+        Box::new(shared.port(0)),
+        clock(),
+        wish.clone(),
+        plan.rig.settle.timeout,
+    );
+    let mut rig =
+        RealRig::open(&plan.rig, &plan.limits, actuator, None, clock(), wish).expect("it answers");
     run(&plan, &mut rig, &mut Unwatched)
 }
 
 fn result(record: &Record, name: &str) -> (f64, f64) {
-    match record.procedure("c").and_then(|sweep| sweep.result(name)).map(|result| &result.value) {
-        Some(ResultValue::Number { value: Some(value), uncertainty: Some(uncertainty) }) => (*value, *uncertainty),
+    match record
+        .procedure("c")
+        .and_then(|sweep| sweep.result(name))
+        .map(|result| &result.value)
+    {
+        Some(ResultValue::Number {
+            value: Some(value),
+            uncertainty: Some(uncertainty),
+        }) => (*value, *uncertainty),
         other => panic!("{name} is {other:?} in {:?}", record.events),
     }
 }
 
 /// Readings of each way of the sweep, and the least time between two of them, s.
 fn readings(record: &Record) -> (Vec<usize>, f64) {
-    let History::Sweep(sweep) = &record.procedure("c").expect("a sweep").history else { panic!("a sweep") };
-    let ways = sweep.steps.chunk_by(|one, other| one.velocity == other.velocity);
-    let times = sweep.steps.windows(2).map(|pair| pair[1].wall_time - pair[0].wall_time);
-    (ways.map(<[_]>::len).collect(), times.fold(f64::INFINITY, f64::min))
+    let History::Sweep(sweep) = &record.procedure("c").expect("a sweep").history else {
+        panic!("a sweep")
+    };
+    let ways = sweep
+        .steps
+        .chunk_by(|one, other| one.velocity == other.velocity);
+    let times = sweep
+        .steps
+        .windows(2)
+        .map(|pair| pair[1].wall_time - pair[0].wall_time);
+    (
+        ways.map(<[_]>::len).collect(),
+        times.fold(f64::INFINITY, f64::min),
+    )
 }
 
 #[test]
 fn damping_is_recovered_at_one_to_seven_milliseconds_a_reading() {
-    for (baud, seed) in [(230_400.0, 1), (230_400.0, 2), (160_000.0, 3), (115_200.0, 4)] {
+    for (baud, seed) in [
+        (230_400.0, 1),
+        (230_400.0, 2),
+        (160_000.0, 3),
+        (115_200.0, 4),
+    ] {
         let record = over_a_line(baud, seed);
         assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
         let (ways, least) = readings(&record);
         assert!(least > 0.0005 && least < 0.008, "{least} s a reading");
-        assert!(ways.len() == 10 && ways.iter().all(|count| *count <= 64), "{ways:?}");
-        assert!(ways[9] < 50, "50 ms hold fewer readings than were asked for: {ways:?}");
+        assert!(
+            ways.len() == 10 && ways.iter().all(|count| *count <= 64),
+            "{ways:?}"
+        );
+        assert!(
+            ways[9] < 50,
+            "50 ms hold fewer readings than were asked for: {ways:?}"
+        );
         for (name, truth) in [("damping", DAMPING), ("coulomb_force", COULOMB)] {
             let (found, error) = result(&record, name);
-            assert!((found - truth).abs() <= 3.0 * error, "{name}: {found} ± {error}, {truth} at {baud} baud");
+            assert!(
+                (found - truth).abs() <= 3.0 * error,
+                "{name}: {found} ± {error}, {truth} at {baud} baud"
+            );
             assert!(error < 0.05 * truth.max(40.0), "{name}: ± {error}");
         }
-        assert!(record.events.iter().all(|event| event.kind != EventKind::Remark), "{:?}", record.events);
+        assert!(
+            record
+                .events
+                .iter()
+                .all(|event| event.kind != EventKind::Remark),
+            "{:?}",
+            record.events
+        );
     }
 }
 
@@ -114,7 +165,9 @@ fn a_line_too_slow_for_the_fast_strokes_is_told() {
     // At 38400 baud a reading takes some 20 ms: the stroke of 50 ms has one or two on its steady part.
     let record = over_a_line(38_400.0, 1);
     assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
-    let told = record.events.iter().any(|event| event.kind == EventKind::Remark && event.text.contains("the line is too slow"));
+    let told = record.events.iter().any(|event| {
+        event.kind == EventKind::Remark && event.text.contains("the line is too slow")
+    });
     assert!(told, "{:?}", record.events);
     let (found, error) = result(&record, "damping");
     assert!((found - DAMPING).abs() <= 3.0 * error, "{found} ± {error}");

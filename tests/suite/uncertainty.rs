@@ -41,11 +41,18 @@ impact hit {
 
 require "stays in travel" hit.max_displacement <= 8.5 mm
 
-report { formats = [html, csv] }
+report {
+  figures = []
+  formats = [html, csv]
+}
 "#;
 
 fn psd(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_psd")).args(arguments).current_dir(folder).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_psd"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
 }
 
 fn summary(folder: &Path) -> Value {
@@ -53,7 +60,9 @@ fn summary(folder: &Path) -> Value {
 }
 
 fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+    value
+        .as_f64()
+        .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 /// u is the root of the sum of squares of what stands in the budget, each its input's uncertainty times its sensitivity.
@@ -63,40 +72,85 @@ fn a_budget_adds_up_and_comes_out_of_the_record_again() {
     let at = |name: &str| folder.path().join(name);
     fs::write(at("plan.psd"), PLAN).unwrap();
     let ran = psd(folder.path(), &["run", "plan.psd", "--out", "run"]);
-    assert_eq!(ran.status.code(), Some(0), "{}", String::from_utf8_lossy(&ran.stdout));
+    assert_eq!(
+        ran.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&ran.stdout)
+    );
     let summary = summary(&at("run"));
     let hit = &summary["procedures"]["hit"];
     let budgets = hit["uncertainty_budgets"].as_array().unwrap();
     assert!(budgets.len() >= 8);
     for budget in budgets {
         let name = budget["result"].as_str().unwrap();
-        let (u, contributions) = (number(&budget["u"]), budget["contributions"].as_array().unwrap());
+        let (u, contributions) = (
+            number(&budget["u"]),
+            budget["contributions"].as_array().unwrap(),
+        );
         assert_eq!(hit["results"][name]["u"], budget["u"], "{name}");
-        let squares: f64 = contributions.iter().map(|line| number(&line["contribution"]).powi(2)).sum();
+        let squares: f64 = contributions
+            .iter()
+            .map(|line| number(&line["contribution"]).powi(2))
+            .sum();
         assert!((squares.sqrt() / u - 1.0).abs() < 1e-9, "{name}");
-        for line in contributions.iter().filter(|line| !line["sensitivity"].is_null()) {
+        for line in contributions
+            .iter()
+            .filter(|line| !line["sensitivity"].is_null())
+        {
             let product = number(&line["sensitivity"]).abs() * number(&line["input_u"]);
-            assert!((product / number(&line["contribution"]).abs() - 1.0).abs() < 1e-9, "{name}: {line}");
+            assert!(
+                (product / number(&line["contribution"]).abs() - 1.0).abs() < 1e-9,
+                "{name}: {line}"
+            );
         }
     }
     let inputs: Vec<&str> = budgets
         .iter()
         .find(|budget| budget["result"] == "max_displacement")
-        .map(|budget| budget["contributions"].as_array().unwrap().iter().map(|line| line["input"].as_str().unwrap()).collect())
+        .map(|budget| {
+            budget["contributions"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|line| line["input"].as_str().unwrap())
+                .collect()
+        })
         .unwrap();
-    for input in
-        ["hammer.velocity", "force calibration", "zero of the load cell", "beam.mass", "noise and resolution of the readings"]
-    {
+    for input in [
+        "hammer.velocity",
+        "force calibration",
+        "zero of the load cell",
+        "beam.mass",
+        "noise and resolution of the readings",
+    ] {
         assert!(inputs.contains(&input), "{input} is not among {inputs:?}");
     }
     let page = fs::read_to_string(at("run/certificate.html")).unwrap();
-    assert!(page.contains("ncertainty budget of max displacement") && page.contains("Linearised, k"));
-    assert!(!page.contains("ncertainty budget of impulse"), "no requirement reads it");
+    assert!(
+        page.contains("ncertainty budget of max displacement") && page.contains("Linearised, k")
+    );
+    assert!(
+        !page.contains("ncertainty budget of impulse"),
+        "no requirement reads it"
+    );
 
-    assert_eq!(psd(folder.path(), &["verify", "run"]).status.code(), Some(0));
-    assert_eq!(psd(folder.path(), &["report", "run", "--out", "again"]).status.code(), Some(0));
+    assert_eq!(
+        psd(folder.path(), &["verify", "run"]).status.code(),
+        Some(0)
+    );
+    assert_eq!(
+        psd(folder.path(), &["report", "run", "--out", "again"])
+            .status
+            .code(),
+        Some(0)
+    );
     for name in ["summary.json", "certificate.html"] {
-        assert_eq!(fs::read(at("run").join(name)).unwrap(), fs::read(at("again").join(name)).unwrap(), "{name}");
+        assert_eq!(
+            fs::read(at("run").join(name)).unwrap(),
+            fs::read(at("again").join(name)).unwrap(),
+            "{name}"
+        );
     }
 }
 
@@ -104,18 +158,35 @@ fn a_budget_adds_up_and_comes_out_of_the_record_again() {
 #[test]
 fn a_limit_within_the_uncertainty_is_inconclusive() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("plan.psd"), PLAN.replace("<= 8.5 mm", "<= 0.1 mm")).unwrap();
+    fs::write(
+        folder.path().join("plan.psd"),
+        PLAN.replace("<= 8.5 mm", "<= 0.1 mm"),
+    )
+    .unwrap();
     psd(folder.path(), &["run", "plan.psd", "--out", "first"]);
     let first = summary(&folder.path().join("first"));
     assert_eq!(first["verdict"], "fail");
     let found = &first["procedures"]["hit"]["results"]["max_displacement"];
     let (value, u) = (number(&found["value"]), number(&found["u"]));
-    for (margin, verdict, code) in [(1.0, "inconclusive", 1), (-1.0, "inconclusive", 1), (3.0, "pass", 0), (-3.0, "fail", 1)] {
+    for (margin, verdict, code) in [
+        (1.0, "inconclusive", 1),
+        (-1.0, "inconclusive", 1),
+        (3.0, "pass", 0),
+        (-3.0, "fail", 1),
+    ] {
         let limit = format!("<= {} m", value + margin * u);
-        fs::write(folder.path().join("plan.psd"), PLAN.replace("<= 8.5 mm", &limit)).unwrap();
+        fs::write(
+            folder.path().join("plan.psd"),
+            PLAN.replace("<= 8.5 mm", &limit),
+        )
+        .unwrap();
         let out = format!("at {margin}");
         let ran = psd(folder.path(), &["run", "plan.psd", "--out", &out]);
         assert_eq!(ran.status.code(), Some(code), "{limit}");
-        assert_eq!(summary(&folder.path().join(&out))["verdict"], verdict, "{limit}");
+        assert_eq!(
+            summary(&folder.path().join(&out))["verdict"],
+            verdict,
+            "{limit}"
+        );
     }
 }

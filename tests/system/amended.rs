@@ -27,7 +27,11 @@ fn one_byte_of_the_plan_is_refused_and_amended_only_by_name() {
     let greetings = stage.greetings();
     let refused = wait(&mut stage.resume_with(&["--plan", &same]));
     assert_eq!(refused.code, Some(2), "{}", refused.told);
-    let digests = refused.told.split(|letter: char| !letter.is_ascii_hexdigit()).filter(|word| word.len() == 64).count();
+    let digests = refused
+        .told
+        .split(|letter: char| !letter.is_ascii_hexdigit())
+        .filter(|word| word.len() == 64)
+        .count();
     assert_eq!(digests, 2, "{}", refused.told);
     assert_eq!(stage.greetings(), greetings, "not even the first word");
 
@@ -36,7 +40,10 @@ fn one_byte_of_the_plan_is_refused_and_amended_only_by_name() {
     assert_eq!(stage.verify().code, Some(0), "{}", stage.verify().told);
     for file in ["certificate.html", "summary.json"] {
         let text = fs::read_to_string(stage.path("run").join(file)).unwrap();
-        assert!(text.contains("B. Tester") && text.contains("it was interrupted"), "{file} names who and why");
+        assert!(
+            text.contains("B. Tester") && text.contains("it was interrupted"),
+            "{file} names who and why"
+        );
         assert!(text.contains("became"), "{file} names what changed");
     }
 }

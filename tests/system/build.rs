@@ -11,11 +11,19 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 #[test]
 fn anybody_reckons_the_name_of_the_program_from_its_sources() {
     let page = fs::read_to_string(Path::new(ROOT).join("docs/record.md")).unwrap();
-    let script = page.split("```").find(|block| block.contains("find Cargo.toml")).expect("the page says how");
+    let script = page
+        .split("```")
+        .find(|block| block.contains("find Cargo.toml"))
+        .expect("the page says how");
     let mut shell = Command::new("sh");
-    shell.args(["-c", script.trim_start_matches("sh")]).current_dir(ROOT);
+    shell
+        .args(["-c", script.trim_start_matches("sh")])
+        .current_dir(ROOT);
     let reckoned = String::from_utf8(shell.output().unwrap().stdout).unwrap();
-    let digest = reckoned.split_whitespace().next().expect("it says a digest");
+    let digest = reckoned
+        .split_whitespace()
+        .next()
+        .expect("it says a digest");
     let version = Command::new(PSD).arg("--version").output().unwrap();
     let version = String::from_utf8(version.stdout).unwrap();
     assert!(version.contains(digest), "{digest} is not in: {version}");

@@ -62,16 +62,29 @@ fn paper(place: &Path, name: &str, text: &str, environment: &[(&str, &str)]) -> 
     fs::write(&file, text).unwrap();
     let out = place.join(name);
     let run = Command::new(PSD)
-        .args(["run", file.to_str().unwrap(), "--yes", "--out", out.to_str().unwrap()])
+        .args([
+            "run",
+            file.to_str().unwrap(),
+            "--yes",
+            "--out",
+            out.to_str().unwrap(),
+        ])
         .envs(environment.iter().copied())
         .output()
         .unwrap();
-    fs::read(out.join("certificate.pdf")).unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&run.stderr)))
+    fs::read(out.join("certificate.pdf"))
+        .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&run.stderr)))
 }
 
 fn output(program: &str, arguments: &[&str], file: &Path) -> String {
-    let done = Command::new(program).args(arguments).arg(file).args((program == "pdftotext").then_some("-")).output().unwrap();
-    let told = String::from_utf8_lossy(&done.stdout).into_owned() + &String::from_utf8_lossy(&done.stderr);
+    let done = Command::new(program)
+        .args(arguments)
+        .arg(file)
+        .args((program == "pdftotext").then_some("-"))
+        .output()
+        .unwrap();
+    let told =
+        String::from_utf8_lossy(&done.stdout).into_owned() + &String::from_utf8_lossy(&done.stderr);
     assert!(done.status.success(), "{program}: {told}");
     told
 }
@@ -81,27 +94,51 @@ fn the_paper_is_sound_and_reads_back_with_its_id_and_number_on_every_page() {
     if !needs::paper() {
         return;
     }
-    for (date, limit, verdict) in [("date = \"2026-05-31\"", "20 mm", "PASS"), ("", "2 mm", "ABORTED")] {
+    for (date, limit, verdict) in [
+        ("date = \"2026-05-31\"", "20 mm", "PASS"),
+        ("", "2 mm", "ABORTED"),
+    ] {
         let place = tempfile::tempdir().unwrap();
         paper(place.path(), "out", &plan(date, limit), &[]);
         let file = place.path().join("out/certificate.pdf");
-        assert!(output("qpdf", &["--check"], &file).contains("No syntax or stream encoding errors"));
+        assert!(
+            output("qpdf", &["--check"], &file).contains("No syntax or stream encoding errors")
+        );
         assert!(output("qpdf", &["--list-attachments"], &file).contains("paper.psd"));
-        let summary: serde_json::Value =
-            serde_json::from_str(&fs::read_to_string(place.path().join("out/summary.json")).unwrap()).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(
+            &fs::read_to_string(place.path().join("out/summary.json")).unwrap(),
+        )
+        .unwrap();
         let id = summary["run_id"].as_str().unwrap();
         let text = output("pdftotext", &["-layout"], &file).replace(['\u{a0}', '\u{200b}'], " ");
         let pages: Vec<&str> = text.split_terminator('\u{c}').collect();
         assert!(pages.len() >= 3, "{} pages", pages.len());
         for (index, page) in pages.iter().enumerate() {
             assert!(page.contains(id), "page {} has no id", index + 1);
-            assert!(page.contains(&format!("Page {} of {}", index + 1, pages.len())), "page {} has no number", index + 1);
+            assert!(
+                page.contains(&format!("Page {} of {}", index + 1, pages.len())),
+                "page {} has no number",
+                index + 1
+            );
         }
-        assert!(pages[0].contains(verdict) && pages[0].contains("Deviations and remarks") && pages[0].contains("PAPER-1"));
+        assert!(
+            pages[0].contains(verdict)
+                && pages[0].contains("Deviations and remarks")
+                && pages[0].contains("PAPER-1")
+        );
         assert!(pages[pages.len() - 1].contains(&format!("End of report {id}")));
         let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        for told in ["[U+8A66][U+9A13]", "#panic() $x$ *b* @a", "decision rule: guarded", "guard band w = U = ", "stiff enough"] {
-            assert!(flat.to_lowercase().contains(&told.to_lowercase()), "{told} is not on the paper:\n{flat}");
+        for told in [
+            "[U+8A66][U+9A13]",
+            "#panic() $x$ *b* @a",
+            "decision rule: guarded",
+            "guard band w = U = ",
+            "stiff enough",
+        ] {
+            assert!(
+                flat.to_lowercase().contains(&told.to_lowercase()),
+                "{told} is not on the paper:\n{flat}"
+            );
         }
         for procedure in summary["procedures"].as_object().unwrap().values() {
             for name in procedure["results"].as_object().unwrap().keys() {
@@ -120,7 +157,12 @@ fn the_paper_does_not_know_where_and_when_it_is_made() {
         place.path(),
         "there",
         &plan,
-        &[("TZ", "Pacific/Kiritimati"), ("LANG", "de_DE.UTF-8"), ("HOME", "/nowhere"), ("SOURCE_DATE_EPOCH", "1")],
+        &[
+            ("TZ", "Pacific/Kiritimati"),
+            ("LANG", "de_DE.UTF-8"),
+            ("HOME", "/nowhere"),
+            ("SOURCE_DATE_EPOCH", "1"),
+        ],
     );
     assert!(here == there, "the same run has two papers");
     assert!(here.starts_with(b"%PDF-1.7"));

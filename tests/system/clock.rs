@@ -13,8 +13,13 @@ fn jumped(by: &str) -> Stage {
     let told = stage.path("clock");
     fs::write(&told, "+0").unwrap();
     let mut command = Command::new(PSD);
-    command.env("LD_PRELOAD", needs::FAKETIME).env("FAKETIME_TIMESTAMP_FILE", &told);
-    command.env("FAKETIME_NO_CACHE", "1").env("FAKETIME_DONT_FAKE_MONOTONIC", "1").env("DONT_FAKE_MONOTONIC", "1");
+    command
+        .env("LD_PRELOAD", needs::FAKETIME)
+        .env("FAKETIME_TIMESTAMP_FILE", &told);
+    command
+        .env("FAKETIME_NO_CACHE", "1")
+        .env("FAKETIME_DONT_FAKE_MONOTONIC", "1")
+        .env("DONT_FAKE_MONOTONIC", "1");
     stage.run_arguments(&mut command, &["--yes"]);
     let run = start(&mut command);
     stage.after_moves(15);
@@ -32,14 +37,32 @@ fn it_is_set_by_a_year() {
     for (by, sign) in [("+1y", '+'), ("-1y", '−')] {
         let stage = jumped(by);
         let journal = fs::read_to_string(stage.journal()).unwrap();
-        let years: std::collections::BTreeSet<&str> = journal.split("\"wall\":\"").skip(1).map(|rest| &rest[..4]).collect();
+        let years: std::collections::BTreeSet<&str> = journal
+            .split("\"wall\":\"")
+            .skip(1)
+            .map(|rest| &rest[..4])
+            .collect();
         assert_eq!(years.len(), 2, "both clocks are kept: {years:?}");
         let times: Vec<f64> = journal
             .lines()
             .filter(|line| line.contains(" SAMPLE "))
-            .map(|line| line.split("\"t\":").nth(1).unwrap().split([',', '}']).next().unwrap().parse().unwrap())
+            .map(|line| {
+                line.split("\"t\":")
+                    .nth(1)
+                    .unwrap()
+                    .split([',', '}'])
+                    .next()
+                    .unwrap()
+                    .parse()
+                    .unwrap()
+            })
             .collect();
-        assert!(times.windows(2).all(|pair| 0.0 <= pair[1] - pair[0] && pair[1] - pair[0] < 30.0), "{times:?}");
+        assert!(
+            times
+                .windows(2)
+                .all(|pair| 0.0 <= pair[1] - pair[0] && pair[1] - pair[0] < 30.0),
+            "{times:?}"
+        );
         let page = fs::read_to_string(stage.path("run").join("certificate.html")).unwrap();
         let told = format!("The wall clock jumped by {sign}365");
         assert!(page.contains(&told), "page one tells it");

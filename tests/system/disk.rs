@@ -14,7 +14,10 @@ fn held(stage: &Stage) {
     let requests = stage.requests();
     let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
     let stop = last(">STOP").max(last("!"));
-    assert!(stop.is_some() && stop > last(">MOVE"), "not held: {requests:#?}");
+    assert!(
+        stop.is_some() && stop > last(">MOVE"),
+        "not held: {requests:#?}"
+    );
 }
 
 #[test]
@@ -25,16 +28,36 @@ fn a_sync_that_fails_once_ends_the_run_and_is_not_tried_again() {
     let stage = Stage::new();
     let trace = stage.path("trace");
     let mut command = Command::new("strace");
-    command.args(["-f", "-o"]).arg(&trace).arg("-P").arg(stage.journal());
-    command.args(["-e", "trace=fdatasync", "-e", "inject=fdatasync:error=EIO:when=40", PSD]);
+    command
+        .args(["-f", "-o"])
+        .arg(&trace)
+        .arg("-P")
+        .arg(stage.journal());
+    command.args([
+        "-e",
+        "trace=fdatasync",
+        "-e",
+        "inject=fdatasync:error=EIO:when=40",
+        PSD,
+    ]);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
     assert_eq!(ran.code, Some(3), "{}", ran.told);
-    assert!(ran.told.contains("the record could not be kept"), "{}", ran.told);
+    assert!(
+        ran.told.contains("the record could not be kept"),
+        "{}",
+        ran.told
+    );
     held(&stage);
     let syncs = fs::read_to_string(&trace).unwrap();
-    let syncs: Vec<&str> = syncs.lines().filter(|line| line.contains("fdatasync(")).collect();
-    assert!(syncs.len() == 40 && syncs[39].contains("EIO"), "after a failed sync no other says anything: {syncs:#?}");
+    let syncs: Vec<&str> = syncs
+        .lines()
+        .filter(|line| line.contains("fdatasync("))
+        .collect();
+    assert!(
+        syncs.len() == 40 && syncs[39].contains("EIO"),
+        "after a failed sync no other says anything: {syncs:#?}"
+    );
     stage.goes_on(&[]);
 }
 
@@ -55,7 +78,10 @@ fn a_limit_on_the_size_of_files_is_a_full_disk_and_no_signal_ends_the_program() 
     let ran = wait(&mut command);
     assert_eq!(ran.code, Some(3), "{}", ran.told);
     assert!(ran.told.contains("error:"), "{}", ran.told);
-    assert!(stage.moves().is_empty(), "nothing moves where the reserve cannot be laid");
+    assert!(
+        stage.moves().is_empty(),
+        "nothing moves where the reserve cannot be laid"
+    );
 }
 
 #[test]
@@ -66,12 +92,24 @@ fn a_write_that_finds_no_room_holds_the_rig_and_the_run_goes_on_later() {
     for error in ["ENOSPC", "EFBIG", "EDQUOT", "EIO"] {
         let stage = Stage::new();
         let mut command = Command::new("strace");
-        command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"]).arg(stage.journal());
-        command.args(["-e", "trace=write", "-e", &format!("inject=write:error={error}:when=70"), PSD]);
+        command
+            .args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"])
+            .arg(stage.journal());
+        command.args([
+            "-e",
+            "trace=write",
+            "-e",
+            &format!("inject=write:error={error}:when=70"),
+            PSD,
+        ]);
         stage.run_arguments(&mut command, &["--yes"]);
         let ran = wait(&mut command);
         assert_eq!(ran.code, Some(3), "{error}: {}", ran.told);
-        assert!(ran.told.contains("the record could not be kept"), "{error}: {}", ran.told);
+        assert!(
+            ran.told.contains("the record could not be kept"),
+            "{error}: {}",
+            ran.told
+        );
         held(&stage);
         stage.goes_on(&[]);
     }
@@ -84,8 +122,16 @@ fn a_storm_of_interrupted_and_short_writes_loses_and_doubles_nothing() {
     }
     let stage = Stage::new();
     let mut command = Command::new("strace");
-    command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"]).arg(stage.journal());
-    command.args(["-e", "trace=write", "-e", "inject=write:error=EINTR:when=2+2", PSD]);
+    command
+        .args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"])
+        .arg(stage.journal());
+    command.args([
+        "-e",
+        "trace=write",
+        "-e",
+        "inject=write:error=EINTR:when=2+2",
+        PSD,
+    ]);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
     assert_eq!(ran.code, Some(0), "{}", ran.told);
@@ -99,14 +145,30 @@ fn a_disk_that_lies_about_what_it_took_is_found_out_before_a_report_is_made() {
     }
     let stage = Stage::new();
     let mut command = Command::new("strace");
-    command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"]).arg(stage.journal());
-    command.args(["-e", "trace=write", "-e", "inject=write:retval=2:when=70", PSD]);
+    command
+        .args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-P"])
+        .arg(stage.journal());
+    command.args([
+        "-e",
+        "trace=write",
+        "-e",
+        "inject=write:retval=2:when=70",
+        PSD,
+    ]);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
-    assert!(ran.code == Some(3) && ran.told.contains("the record is damaged"), "{}", ran.told);
+    assert!(
+        ran.code == Some(3) && ran.told.contains("the record is damaged"),
+        "{}",
+        ran.told
+    );
     assert!(!stage.path("run").join("certificate.html").exists());
     let verified = stage.verify();
-    assert!(verified.code == Some(3) && verified.told.contains("WRONG"), "{}", verified.told);
+    assert!(
+        verified.code == Some(3) && verified.told.contains("WRONG"),
+        "{}",
+        verified.told
+    );
 }
 
 #[test]
@@ -129,7 +191,10 @@ fn a_record_that_somebody_takes_away_under_way_ends_the_run_and_proves_nothing()
         if removed {
             held(&stage);
             assert!(ran.told.contains("somebody has removed it"), "{}", ran.told);
-            assert!(stage.moves().len() <= moves + 1, "nothing moves that nobody records");
+            assert!(
+                stage.moves().len() <= moves + 1,
+                "nothing moves that nobody records"
+            );
         }
     }
 }
@@ -156,14 +221,26 @@ rm "$1/run/journal.filler"
 cp -a "$1/run/." "$1/kept/"
 exit $status
 "#;
-    let ran = wait(Command::new("unshare").args(["-rm", "bash", "-c", script, "bash"]).arg(stage.path("")).arg(PSD));
+    let ran = wait(
+        Command::new("unshare")
+            .args(["-rm", "bash", "-c", script, "bash"])
+            .arg(stage.path(""))
+            .arg(PSD),
+    );
     assert_eq!(ran.code, Some(3), "{}", ran.told);
-    assert!(ran.told.contains("the record could not be kept"), "{}", ran.told);
+    assert!(
+        ran.told.contains("the record could not be kept"),
+        "{}",
+        ran.told
+    );
     held(&stage);
     fs::remove_dir_all(stage.path("run")).unwrap();
     fs::rename(stage.path("kept"), stage.path("run")).unwrap();
     let journal = fs::read_to_string(stage.journal()).unwrap();
-    assert!(journal.contains(" FAULT "), "the reserve leaves room for the last words: {journal}");
+    assert!(
+        journal.contains(" FAULT "),
+        "the reserve leaves room for the last words: {journal}"
+    );
     stage.goes_on(&[]);
 }
 
@@ -181,9 +258,18 @@ status=0; "$2" run "$1/plan.psd" --rig bench --operator "A. Tester" --yes --out 
 ls -A "$1/small"
 exit $status
 "#;
-    let ran = wait(Command::new("unshare").args(["-rm", "bash", "-c", script, "bash"]).arg(stage.path("")).arg(PSD));
+    let ran = wait(
+        Command::new("unshare")
+            .args(["-rm", "bash", "-c", script, "bash"])
+            .arg(stage.path(""))
+            .arg(PSD),
+    );
     assert_eq!(ran.code, Some(3), "{}", ran.told);
-    assert!(ran.told.contains("error[E629]") && ran.told.contains("1.0 MB left; nothing has moved"), "{}", ran.told);
+    assert!(
+        ran.told.contains("error[E629]") && ran.told.contains("1.0 MB left; nothing has moved"),
+        "{}",
+        ran.told
+    );
     assert!(
         ran.told.contains("`--out`") && ran.told.trim_end().ends_with("says what is reckoned"),
         "no folder is left: {}",

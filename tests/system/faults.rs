@@ -17,20 +17,39 @@ struct Row {
 
 /// The words of a cell that stand between backticks.
 fn quoted(cell: &str) -> Vec<String> {
-    cell.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+    cell.split('`')
+        .skip(1)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect()
 }
 
 fn rows() -> Vec<Row> {
     let manual = include_str!("../../docs/rigs.md");
-    let (_, section) = manual.split_once("## What can be made to go wrong").unwrap();
+    let (_, section) = manual
+        .split_once("## What can be made to go wrong")
+        .unwrap();
     let (section, _) = section.split_once("\n## ").unwrap();
-    let cells = section.lines().filter_map(|line| line.strip_prefix("| `")?.strip_suffix(" |")?.split_once("` | "));
+    let cells = section.lines().filter_map(|line| {
+        line.strip_prefix("| `")?
+            .strip_suffix(" |")?
+            .split_once("` | ")
+    });
     let row = |(fault, rest): (&str, &str)| {
         let (code, words) = rest.split_once(" | ").unwrap();
         // Names of options and fields are no words of a run.
-        let name = |word: &str| word.starts_with("--") || ["psd resume", "force_range", "samples"].contains(&word);
-        let said = quoted(words).into_iter().filter(|word| !name(word)).collect();
-        Row { fault: fault.to_owned(), code: code.parse().unwrap(), said }
+        let name = |word: &str| {
+            word.starts_with("--") || ["psd resume", "force_range", "samples"].contains(&word)
+        };
+        let said = quoted(words)
+            .into_iter()
+            .filter(|word| !name(word))
+            .collect();
+        Row {
+            fault: fault.to_owned(),
+            code: code.parse().unwrap(),
+            said,
+        }
     };
     cells.map(row).collect()
 }
@@ -38,8 +57,13 @@ fn rows() -> Vec<Row> {
 /// Three readings a step, with a little noise. A request is given up soon only in a row that is about silence: in every other no machine is
 /// so busy that a stand-in is taken for silent.
 fn plan(plan: &str, fault: &str) -> String {
-    let plan = plan.replace("samples    = 1", "samples    = 3\n  noise      = 0.1 N\n  resolution = 1 um");
-    let silent = ["drop replies for ever", "stop reading", "freeze firmware"].iter().any(|silent| fault.contains(silent));
+    let plan = plan.replace(
+        "samples    = 1",
+        "samples    = 3\n  noise      = 0.1 N\n  resolution = 1 um",
+    );
+    let silent = ["drop replies for ever", "stop reading", "freeze firmware"]
+        .iter()
+        .any(|silent| fault.contains(silent));
     if silent { impatient(&plan) } else { plan }
 }
 
@@ -51,9 +75,15 @@ fn fault_of(row: &Row) -> Option<String> {
     let requests = stage.requests();
     // Fails by itself where a target lay outside the limits.
     stage.power_down();
-    let unsaid: Vec<&String> = row.said.iter().filter(|words| !ran.told.contains(*words)).collect();
+    let unsaid: Vec<&String> = row
+        .said
+        .iter()
+        .filter(|words| !ran.told.contains(*words))
+        .collect();
     let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
-    let heard = !["stop reading", "hang up", "reboot", "freeze firmware"].iter().any(|deaf| row.fault.contains(deaf));
+    let heard = !["stop reading", "hang up", "reboot", "freeze firmware"]
+        .iter()
+        .any(|deaf| row.fault.contains(deaf));
     let held = !heard || last(">STOP").max(last("!")) > last(">MOVE");
     let fault = if ran.code != Some(row.code) {
         format!("exit code {:?}, not {}", ran.code, row.code)
@@ -78,7 +108,9 @@ fn every_fault_of_the_manual_ends_as_the_manual_says() {
         for _ in 0..AT_ONCE {
             scope.spawn(|| {
                 loop {
-                    let Some(row) = next.lock().unwrap().next() else { return };
+                    let Some(row) = next.lock().unwrap().next() else {
+                        return;
+                    };
                     let fault = fault_of(row);
                     faults.lock().unwrap().extend(fault);
                 }
@@ -86,7 +118,13 @@ fn every_fault_of_the_manual_ends_as_the_manual_says() {
         }
     });
     let faults = faults.into_inner().unwrap();
-    assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), rows.len(), faults.join("\n\n"));
+    assert!(
+        faults.is_empty(),
+        "{} of {}:\n{}",
+        faults.len(),
+        rows.len(),
+        faults.join("\n\n")
+    );
 }
 
 /// No kind of fault is left out of the manual's table: each word that begins one stands there.
@@ -122,7 +160,9 @@ fn every_kind_of_fault_has_its_row() {
         "fracture",
     ] {
         assert!(
-            rows.iter().any(|row| row.fault.contains(&format!(": {verb} ")) || row.fault.ends_with(&format!(": {verb}"))),
+            rows.iter()
+                .any(|row| row.fault.contains(&format!(": {verb} "))
+                    || row.fault.ends_with(&format!(": {verb}"))),
             "{verb}"
         );
     }
@@ -132,12 +172,26 @@ fn every_kind_of_fault_has_its_row() {
 fn a_script_that_says_nothing_known_stands_in_for_nothing() {
     let stage = Stage::new();
     for (script, said) in [
-        ("after 3 moves drop reply", "line 1: no `:` between when and what"),
-        ("# nothing\nat 1 s: explode", "line 2: `explode` is no fault that is known"),
+        (
+            "after 3 moves drop reply",
+            "line 1: no `:` between when and what",
+        ),
+        (
+            "# nothing\nat 1 s: explode",
+            "line 2: `explode` is no fault that is known",
+        ),
         ("after 3 goes: drop reply", "`goes` is not counted"),
     ] {
         std::fs::write(stage.path("wrong"), script).unwrap();
-        let ended = wait(stage.tool("simulate", &["--script"]).arg(stage.path("wrong")));
-        assert!(ended.code == Some(2) && ended.told.contains(said), "{}", ended.told);
+        let ended = wait(
+            stage
+                .tool("simulate", &["--script"])
+                .arg(stage.path("wrong")),
+        );
+        assert!(
+            ended.code == Some(2) && ended.told.contains(said),
+            "{}",
+            ended.told
+        );
     }
 }

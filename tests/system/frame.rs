@@ -74,7 +74,11 @@ const GROUND: &str = "time_s,acceleration_m_per_s2\n0,0\n0.1,2\n0.2,-3\n0.3,2\n0
 /// The stage of a plan, with its ground beside it.
 fn stage_of(plan: &str, ground: &str) -> Stage {
     let with_its_port = |text: &str| {
-        let port = text.split("port: \"").nth(1).and_then(|rest| rest.split('"').next()).expect("the port of the stage");
+        let port = text
+            .split("port: \"")
+            .nth(1)
+            .and_then(|rest| rest.split('"').next())
+            .expect("the port of the stage");
         fs::write(Path::new(port).with_file_name("ground.csv"), ground).expect("ground");
         plan.replace("PORT", port)
     };
@@ -83,22 +87,33 @@ fn stage_of(plan: &str, ground: &str) -> Stage {
 
 /// The plan with other words in place of some that stand in it.
 fn plan_with(changes: &[(&str, &str)]) -> String {
-    changes.iter().fold(PLAN.to_owned(), |plan, (words, others)| {
-        assert!(plan.contains(words), "no `{words}` in the plan");
-        plan.replace(words, others)
-    })
+    changes
+        .iter()
+        .fold(PLAN.to_owned(), |plan, (words, others)| {
+            assert!(plan.contains(words), "no `{words}` in the plan");
+            plan.replace(words, others)
+        })
 }
 
 /// Every number among the results of the shake, with the name of its result.
 fn results(folder: &Path) -> Vec<(String, f64)> {
-    let summary: serde_json::Value = serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap();
-    let results = summary["procedures"]["quake"]["results"].as_object().expect("results");
+    let summary: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap();
+    let results = summary["procedures"]["quake"]["results"]
+        .as_object()
+        .expect("results");
     let numbers = |value: &serde_json::Value| match value {
-        serde_json::Value::Array(values) => values.iter().filter_map(serde_json::Value::as_f64).collect(),
+        serde_json::Value::Array(values) => values
+            .iter()
+            .filter_map(serde_json::Value::as_f64)
+            .collect(),
         one => one.as_f64().into_iter().collect::<Vec<_>>(),
     };
-    let named =
-        results.iter().flat_map(|(name, result)| numbers(&result["value"]).into_iter().map(|value| (name.clone(), value)));
+    let named = results.iter().flat_map(|(name, result)| {
+        numbers(&result["value"])
+            .into_iter()
+            .map(|value| (name.clone(), value))
+    });
     named.collect()
 }
 
@@ -106,7 +121,10 @@ fn results(folder: &Path) -> Vec<(String, f64)> {
 fn gliding() -> Stage {
     let mode = "  time_step     = 10 ms\n  mode          = continuous(time_scale: 160)";
     let plan = plan_with(&[("  time_step     = 10 ms", mode), SHORT]);
-    stage_of(&plan, "time_s,acceleration_m_per_s2\n0,0\n0.05,2\n0.1,-3\n0.2,2\n")
+    stage_of(
+        &plan,
+        "time_s,acceleration_m_per_s2\n0,0\n0.05,2\n0.1,-3\n0.2,2\n",
+    )
 }
 
 /// Ten steps of forty.
@@ -123,7 +141,11 @@ fn metered() -> Stage {
 /// Results of the plan on an ideal rig, held beside the run of the stage.
 fn ideal_of(stage: &Stage) -> Vec<(String, f64)> {
     let mut virtual_run = std::process::Command::new(PSD);
-    virtual_run.arg("run").arg(stage.path("plan.psd")).args(["--rig", "ideal", "--out"]).arg(stage.path("ideal"));
+    virtual_run
+        .arg("run")
+        .arg(stage.path("plan.psd"))
+        .args(["--rig", "ideal", "--out"])
+        .arg(stage.path("ideal"));
     succeeded(&wait(&mut virtual_run));
     results(&stage.path("ideal"))
 }
@@ -132,7 +154,10 @@ fn ideal_of(stage: &Stage) -> Vec<(String, f64)> {
 fn same_but_for(real: &[(String, f64)], ideal: &[(String, f64)], far: impl Fn(&str, f64) -> f64) {
     assert!(real.len() == ideal.len() && real.len() > 8);
     for ((name, real), (_, ideal)) in real.iter().zip(ideal) {
-        assert!((real - ideal).abs() <= far(name, ideal.abs()), "{name}: {real} is not {ideal}");
+        assert!(
+            (real - ideal).abs() <= far(name, ideal.abs()),
+            "{name}: {real} is not {ideal}"
+        );
     }
 }
 
@@ -149,7 +174,11 @@ fn killed(stage: &Stage, moves: usize) {
 fn killed_it_goes_on(cut_off: &Stage, moves: usize, whole: &Stage) {
     killed(cut_off, moves);
     cut_off.goes_on(&[]);
-    assert_eq!(cut_off.moves(), whole.moves(), "each of all targets once, in order");
+    assert_eq!(
+        cut_off.moves(),
+        whole.moves(),
+        "each of all targets once, in order"
+    );
     assert_eq!(results(&cut_off.path("run")), results(&whole.path("run")));
 }
 
@@ -157,14 +186,24 @@ fn killed_it_goes_on(cut_off: &Stage, moves: usize, whole: &Stage) {
 fn a_meter_apart_gives_the_virtual_runs_results_and_killed_it_goes_on() {
     let whole = metered();
     succeeded(&wait(&mut whole.run_with(&["--yes"])));
-    let certificate = fs::read_to_string(whole.path("run").join("certificate.html")).unwrap().replace('\u{a0}', " ");
+    let certificate = fs::read_to_string(whole.path("run").join("certificate.html"))
+        .unwrap()
+        .replace('\u{a0}', " ");
     for told in ["scpi", "25 kN a count", "12.5 kN a count"] {
         assert!(certificate.contains(told), "no {told}");
     }
     // Nine digits of 25 kN are 0.1 mN.
-    same_but_for(&results(&whole.path("run")), &ideal_of(&whole), |name, size| {
-        if name.contains("energy") || name.contains("error") { 1e-5 } else { 2e-8 + 1e-6 * size }
-    });
+    same_but_for(
+        &results(&whole.path("run")),
+        &ideal_of(&whole),
+        |name, size| {
+            if name.contains("energy") || name.contains("error") {
+                1e-5
+            } else {
+                2e-8 + 1e-6 * size
+            }
+        },
+    );
     killed_it_goes_on(&metered(), 9, &whole);
 }
 
@@ -175,13 +214,20 @@ fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on(
     let whole = gliding();
     succeeded(&wait(&mut whole.run_with(&["--yes"])));
     let proven = whole.proven();
-    assert!(proven.contains("out of the record again, byte for byte"), "{proven}");
+    assert!(
+        proven.contains("out of the record again, byte for byte"),
+        "{proven}"
+    );
     let ideal = ideal_of(&whole);
     let same = |stage: &Stage| {
-        same_but_for(&results(&stage.path("run")), &ideal, |name, size| match name {
-            "max_displacement" | "max_drift" | "periods" => 1e-7 + 1e-5 * size,
-            _ => f64::INFINITY,
-        });
+        same_but_for(
+            &results(&stage.path("run")),
+            &ideal,
+            |name, size| match name {
+                "max_displacement" | "max_drift" | "periods" => 1e-7 + 1e-5 * size,
+                _ => f64::INFINITY,
+            },
+        );
     };
     same(&whole);
 
@@ -206,14 +252,35 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
         assert!(ran.told.contains(axis), "{}", ran.told);
     }
     let proven = whole.proven();
-    assert!(proven.contains("out of the record again, byte for byte"), "{proven}");
+    assert!(
+        proven.contains("out of the record again, byte for byte"),
+        "{proven}"
+    );
     let certificate = fs::read_to_string(whole.path("run").join("certificate.html")).unwrap();
-    for told in ["displacement 1", "force 2", "UKAS 4711", "UKAS 4712", "UKAS 4810", "force 0.40\u{a0}%; zero of the force 1.5"] {
-        assert!(certificate.contains(told), "{told} is not on the certificate");
+    for told in [
+        "displacement 1",
+        "force 2",
+        "UKAS 4711",
+        "UKAS 4712",
+        "UKAS 4810",
+        "force 0.40\u{a0}%; zero of the force 1.5",
+    ] {
+        assert!(
+            certificate.contains(told),
+            "{told} is not on the certificate"
+        );
     }
     // The wire resolves 1 nm and 1 mN; the energy error, nothing on an ideal rig, is a share of the input.
-    same_but_for(&results(&whole.path("run")), &ideal_of(&whole), |name, size| {
-        if name.contains("energy_error") || name.contains("nrms_error") { 1e-6 } else { 2e-8 + 1e-6 * size }
-    });
+    same_but_for(
+        &results(&whole.path("run")),
+        &ideal_of(&whole),
+        |name, size| {
+            if name.contains("energy_error") || name.contains("nrms_error") {
+                1e-6
+            } else {
+                2e-8 + 1e-6 * size
+            }
+        },
+    );
     killed_it_goes_on(&stage_of(PLAN, GROUND), 17, &whole);
 }

@@ -7,7 +7,7 @@ use super::needs;
 
 const PLAN: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\n\
     stiffness ramp k0 {\n  displacements = 1 mm .. 5 mm step 1 mm\n}\n\n\
-    require \"stiff <&> \\\"sound\\\"\" k0.stiffness > 1 N/m\n\nreport {\n  formats = [csv]\n}\n";
+    require \"stiff <&> \\\"sound\\\"\" k0.stiffness > 1 N/m\n\nreport {\n  figures = []\n  formats = [csv]\n}\n";
 
 /// Plans `as` and `moved`, both blessed; the second then gives another number.
 fn two_plans() -> tempfile::TempDir {
@@ -18,13 +18,19 @@ fn two_plans() -> tempfile::TempDir {
     }
     assert!(psd(folder.path(), &["test", "--bless"]).status.success());
     let summary = folder.path().join("reports/moved/summary.json");
-    let text = std::fs::read_to_string(&summary).unwrap().replace("\"stiff <&>", "\"stout <&>");
+    let text = std::fs::read_to_string(&summary)
+        .unwrap()
+        .replace("\"stiff <&>", "\"stout <&>");
     std::fs::write(summary, text).unwrap();
     folder
 }
 
 fn psd(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_psd")).args(arguments).current_dir(folder).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_psd"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -37,17 +43,31 @@ fn junit_is_read_by_a_parser_of_xml() {
         return;
     }
     let folder = two_plans();
-    assert_eq!(psd(folder.path(), &["test", "--junit", "golden.xml"]).status.code(), Some(5));
+    assert_eq!(
+        psd(folder.path(), &["test", "--junit", "golden.xml"])
+            .status
+            .code(),
+        Some(5)
+    );
     let reader = "import xml.etree.ElementTree as e\nr = e.parse('golden.xml').getroot()\n\
         print(r.tag, r.get('tests'), r.get('failures'), r.get('errors'))\n\
         for c in r.iter('testcase'):\n    f = c.find('failure')\n    \
         print(c.get('classname'), c.get('name'), '-' if f is None else f.get('message') + '|' + f.text)\n";
-    let read = Command::new("python3").args(["-c", reader]).current_dir(folder.path()).output().unwrap();
+    let read = Command::new("python3")
+        .args(["-c", reader])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
     assert!(read.status.success(), "{}", text(&read.stderr));
     let told = text(&read.stdout);
     let lines: Vec<&str> = told.lines().collect();
     assert_eq!(lines[..2], ["testsuites 2 1 0", "plans as -"], "{told}");
-    assert!(lines[2].starts_with("plans moved 2 differences from the blessed results|require \"stout <&> \"sound\"\""), "{told}");
+    assert!(
+        lines[2].starts_with(
+            "plans moved 2 differences from the blessed results|require \"stout <&> \"sound\"\""
+        ),
+        "{told}"
+    );
 }
 
 #[test]
@@ -57,14 +77,28 @@ fn tap_is_read_by_prove() {
     }
     let folder = two_plans();
     let proven = |name: &str, arguments: &[&str]| {
-        std::fs::write(folder.path().join(name), psd(folder.path(), arguments).stdout).unwrap();
-        let output = Command::new("prove").args(["--exec", "cat", name]).current_dir(folder.path()).output().unwrap();
+        std::fs::write(
+            folder.path().join(name),
+            psd(folder.path(), arguments).stdout,
+        )
+        .unwrap();
+        let output = Command::new("prove")
+            .args(["--exec", "cat", name])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
         (output.status.success(), text(&output.stdout))
     };
     let (good, told) = proven("good.t", &["test", "--tap", "--filter", "plans/as"]);
-    assert!(good && told.contains("Result: PASS") && told.contains("Tests=1"), "{told}");
+    assert!(
+        good && told.contains("Result: PASS") && told.contains("Tests=1"),
+        "{told}"
+    );
     let (good, told) = proven("bad.t", &["test", "--tap"]);
-    assert!(!good && told.contains("Failed 1/2 subtests") && told.contains("Failed test:  2"), "{told}");
+    assert!(
+        !good && told.contains("Failed 1/2 subtests") && told.contains("Failed test:  2"),
+        "{told}"
+    );
     // Parsed without a complaint of its own: the plan of the protocol and its lines agree.
     assert!(!told.contains("Parse errors"), "{told}");
 }

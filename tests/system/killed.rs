@@ -29,7 +29,10 @@ fn whole() -> Whole {
     let stage = Stage::new();
     let ran = wait(&mut stage.run_with(&["--yes"]));
     assert_eq!(ran.code, Some(0), "{}", ran.told);
-    Whole { results: stage.results(), moves: stage.moves() }
+    Whole {
+        results: stage.results(),
+        moves: stage.moves(),
+    }
 }
 
 /// The run under strace, killed when it is at a place for the `count`-th time. False: it came to its end before.
@@ -41,7 +44,13 @@ fn killed(stage: &Stage, at: At, count: usize) -> bool {
     };
     let mut command = Command::new("strace");
     command.args(["-f", "-o", "/dev/null", "-P"]).arg(path);
-    command.args(["-e", &format!("trace={call}"), "-e", &format!("inject={call}:signal=KILL:when={count}"), PSD]);
+    command.args([
+        "-e",
+        &format!("trace={call}"),
+        "-e",
+        &format!("inject={call}:signal=KILL:when={count}"),
+        PSD,
+    ]);
     stage.run_arguments(&mut command, &["--yes"]);
     let ended = wait(&mut command);
     match ended.code {
@@ -62,20 +71,40 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
     if stage.moves().is_empty() {
         // Before the record knew the rig there is nothing to go on with, and it is said.
         assert_eq!(resumed.code, Some(3), "{at:?} {count}: {}", resumed.told);
-        assert!(resumed.told.contains("error:"), "{at:?} {count}: {}", resumed.told);
+        assert!(
+            resumed.told.contains("error:"),
+            "{at:?} {count}: {}",
+            resumed.told
+        );
         return true;
     }
     // Only the last words of a run that is over can be cut off without anything being left to do.
     let over = resumed.told.contains("there is nothing to go on with");
-    assert!(resumed.code == Some(0) || over, "{at:?} {count}: {}", resumed.told);
+    assert!(
+        resumed.code == Some(0) || over,
+        "{at:?} {count}: {}",
+        resumed.told
+    );
     if over && !stage.path("run").join("manifest.sha256").exists() {
         let gone = stage.verify();
-        assert!(gone.code == Some(3) && gone.told.contains("its results are gone"), "{at:?} {count}: {}", gone.told);
+        assert!(
+            gone.code == Some(3) && gone.told.contains("its results are gone"),
+            "{at:?} {count}: {}",
+            gone.told
+        );
         wait(Command::new(PSD).arg("report").arg(stage.path("run")));
     }
     let verified = stage.verify();
-    assert!(verified.code == Some(0) && !verified.told.contains("INCOMPLETE"), "{at:?} {count}: {}", verified.told);
-    assert_eq!(stage.moves(), whole.moves, "{at:?} {count}: each target once, in order");
+    assert!(
+        verified.code == Some(0) && !verified.told.contains("INCOMPLETE"),
+        "{at:?} {count}: {}",
+        verified.told
+    );
+    assert_eq!(
+        stage.moves(),
+        whole.moves,
+        "{at:?} {count}: each target once, in order"
+    );
     if !over {
         assert_eq!(stage.results(), whole.results, "{at:?} {count}");
     }
@@ -96,7 +125,10 @@ fn everywhere(at: At, step: usize) -> usize {
                         Ok(true) => kills.fetch_add(1, Ordering::SeqCst),
                         Ok(false) => return,
                         Err(why) => {
-                            failures.lock().unwrap().push(why.downcast_ref::<String>().cloned().unwrap_or_default());
+                            failures
+                                .lock()
+                                .unwrap()
+                                .push(why.downcast_ref::<String>().cloned().unwrap_or_default());
                             return;
                         }
                     };
@@ -105,7 +137,12 @@ fn everywhere(at: At, step: usize) -> usize {
         }
     });
     let failures = failures.into_inner().unwrap();
-    assert!(failures.is_empty(), "{} of {at:?} failed:\n{}", failures.len(), failures.join("\n\n"));
+    assert!(
+        failures.is_empty(),
+        "{} of {at:?} failed:\n{}",
+        failures.len(),
+        failures.join("\n\n")
+    );
     kills.into_inner()
 }
 

@@ -8,12 +8,20 @@ use crate::terminal::{RELEASE, Terminal};
 
 #[test]
 fn it_hangs_up() {
-    for script in ["after 3 moves: hang up", "after 12 moves: hang up before reply", "after 25 moves: hang up after reply"] {
+    for script in [
+        "after 3 moves: hang up",
+        "after 12 moves: hang up before reply",
+        "after 25 moves: hang up after reply",
+    ] {
         let stage = Stage::of(str::to_owned, script);
         let ran = wait(&mut stage.run_with(&["--yes"]));
         assert_eq!(ran.code, Some(3), "{script}: {}", ran.told);
         // It is not waited for, nor asked again.
-        assert!(ran.told.contains("the line is gone") && !ran.told.contains("no usable answer"), "{script}: {}", ran.told);
+        assert!(
+            ran.told.contains("the line is gone") && !ran.told.contains("no usable answer"),
+            "{script}: {}",
+            ran.told
+        );
         // The same rig, still on: it hung up the line only.
         stage.goes_on(&[]);
         let mut moves = stage.moves();
@@ -31,7 +39,11 @@ fn one_that_started_anew_since_must_be_referenced_first() {
     stage.power_up("");
     let refused = wait(&mut stage.resume_with(&[]));
     assert_eq!(refused.code, Some(3), "{}", refused.told);
-    assert!(refused.told.contains("started anew") && refused.told.contains("--re-referenced"), "{}", refused.told);
+    assert!(
+        refused.told.contains("started anew") && refused.told.contains("--re-referenced"),
+        "{}",
+        refused.told
+    );
     assert!(stage.moves().is_empty());
 }
 
@@ -44,7 +56,11 @@ fn a_rig_that_was_referenced_again_goes_on_where_it_stands() {
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     stage.power_up("");
     let refused = wait(&mut stage.resume_with(&[]));
-    assert!(refused.code == Some(3) && refused.told.contains("--re-referenced"), "{}", refused.told);
+    assert!(
+        refused.code == Some(3) && refused.told.contains("--re-referenced"),
+        "{}",
+        refused.told
+    );
     stage.goes_on(&["--re-referenced"]);
 }
 
@@ -55,7 +71,10 @@ fn it_starts_anew_in_the_middle() {
     assert_eq!(ran.code, Some(3), "{}", ran.told);
     assert!(ran.told.contains("started anew"), "{}", ran.told);
     let moves = stage.moves().len();
-    for (said, told) in [(&[][..], "--re-referenced"), (&["--re-referenced"][..], "not referenced")] {
+    for (said, told) in [
+        (&[][..], "--re-referenced"),
+        (&["--re-referenced"][..], "not referenced"),
+    ] {
         let refused = wait(&mut stage.resume_with(said));
         assert_eq!(refused.code, Some(3), "{}", refused.told);
         assert!(refused.told.contains(told), "{}", refused.told);
@@ -76,7 +95,11 @@ fn the_program_was_away_for_longer_than_the_watchdog() {
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(10);
     signal(&run, Signal::STOP);
-    waitpid(Some(rustix::process::Pid::from_child(&run)), WaitOptions::UNTRACED).unwrap();
+    waitpid(
+        Some(rustix::process::Pid::from_child(&run)),
+        WaitOptions::UNTRACED,
+    )
+    .unwrap();
     let_it_trip();
     let moves = stage.moves().len();
     signal(&run, Signal::CONT);

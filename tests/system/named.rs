@@ -8,10 +8,21 @@ use crate::terminal::{RELEASE, Terminal};
 /// The commands that may move a real rig, started without a name.
 fn unnamed(stage: &Stage, more: &[&str]) -> Vec<Command> {
     let mut run = Command::new(crate::stage::PSD);
-    run.arg("run").arg(stage.path("plan.psd")).args(["--rig", "bench", "--out"]).arg(stage.path("run")).args(more);
+    run.arg("run")
+        .arg(stage.path("plan.psd"))
+        .args(["--rig", "bench", "--out"])
+        .arg(stage.path("run"))
+        .args(more);
     let mut rehearse = Command::new(crate::stage::PSD);
-    rehearse.arg("run").arg(stage.path("plan.psd")).args(["--rig", "bench", "--rehearse"]).args(more);
-    let serve = stage.tool("serve", &[&["--protocol", "nees", "--listen", "127.0.0.1:0"], more].concat());
+    rehearse
+        .arg("run")
+        .arg(stage.path("plan.psd"))
+        .args(["--rig", "bench", "--rehearse"])
+        .args(more);
+    let serve = stage.tool(
+        "serve",
+        &[&["--protocol", "nees", "--listen", "127.0.0.1:0"], more].concat(),
+    );
     let jog = stage.tool("jog", &[&["--to", "0.1 mm"], more].concat());
     vec![run, rehearse, serve, jog]
 }
@@ -23,10 +34,17 @@ fn where_nobody_can_be_asked_the_name_must_be_given() {
         for mut command in unnamed(&stage, more) {
             let ended = wait(&mut command);
             assert_eq!(ended.code, Some(2), "{command:?}: {}", ended.told);
-            assert!(ended.told.contains("E619") && ended.told.contains("--operator"), "{}", ended.told);
+            assert!(
+                ended.told.contains("E619") && ended.told.contains("--operator"),
+                "{}",
+                ended.told
+            );
         }
     }
-    assert!(stage.requests().is_empty() && !stage.path("run").exists(), "nothing was opened");
+    assert!(
+        stage.requests().is_empty() && !stage.path("run").exists(),
+        "nothing was opened"
+    );
 }
 
 #[test]
@@ -41,13 +59,32 @@ fn a_blank_name_is_none() {
 
 #[test]
 fn the_plan_may_name_who_it_always_is() {
-    let stage = Stage::of(|plan| plan.replace("edition     = 1", "edition     = 1\n  operator    = \"C. Tester\""), "");
+    let stage = Stage::of(
+        |plan| {
+            plan.replace(
+                "edition     = 1",
+                "edition     = 1\n  operator    = \"C. Tester\"",
+            )
+        },
+        "",
+    );
     let mut command = Command::new(crate::stage::PSD);
-    command.arg("run").arg(stage.path("plan.psd")).args(["--rig", "bench", "--yes", "--out"]).arg(stage.path("run"));
+    command
+        .arg("run")
+        .arg(stage.path("plan.psd"))
+        .args(["--rig", "bench", "--yes", "--out"])
+        .arg(stage.path("run"));
     let ended = wait(&mut command);
     assert_eq!(ended.code, Some(0), "{}", ended.told);
     let header = std::fs::read_to_string(stage.journal()).unwrap();
-    assert!(header.lines().next().unwrap().contains("\"operator\":\"C. Tester\""), "{header}");
+    assert!(
+        header
+            .lines()
+            .next()
+            .unwrap()
+            .contains("\"operator\":\"C. Tester\""),
+        "{header}"
+    );
 }
 
 #[test]
@@ -66,6 +103,12 @@ fn at_a_terminal_the_name_is_asked_for_before_anything_is_opened() {
     terminal.answer(RELEASE, "n\n");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     let record = std::fs::read_to_string(stage.journal()).unwrap();
-    let named = record.lines().filter(|line| line.contains("D. Tester")).count();
-    assert!(named >= 2 && record.lines().next().unwrap().contains("D. Tester"), "in the header and at the answer: {record}");
+    let named = record
+        .lines()
+        .filter(|line| line.contains("D. Tester"))
+        .count();
+    assert!(
+        named >= 2 && record.lines().next().unwrap().contains("D. Tester"),
+        "in the header and at the answer: {record}"
+    );
 }

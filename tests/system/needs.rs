@@ -6,32 +6,56 @@ use std::process::{Command, Stdio};
 
 /// Whether `strace` is here and may trace.
 pub fn strace() -> bool {
-    able("strace", "trace", Command::new("strace").args(["-f", "-o", "/dev/null", "true"]))
+    able(
+        "strace",
+        "trace",
+        Command::new("strace").args(["-f", "-o", "/dev/null", "true"]),
+    )
 }
 
 /// Whether a file system of one's own can be mounted.
 pub fn own_mounts() -> bool {
-    able("unshare", "mount a tmpfs of its own", Command::new("unshare").args(["-rm", "mount", "-t", "tmpfs", "tmpfs", "/mnt"]))
+    able(
+        "unshare",
+        "mount a tmpfs of its own",
+        Command::new("unshare").args(["-rm", "mount", "-t", "tmpfs", "tmpfs", "/mnt"]),
+    )
 }
 
 /// Whether limits of a process can be set.
 pub fn prlimit() -> bool {
-    able("prlimit", "set a limit", Command::new("prlimit").args(["--fsize=100000", "true"]))
+    able(
+        "prlimit",
+        "set a limit",
+        Command::new("prlimit").args(["--fsize=100000", "true"]),
+    )
 }
 
 /// Whether `minisign` is here.
 pub fn minisign() -> bool {
-    able("minisign", "say its version", Command::new("minisign").arg("-v"))
+    able(
+        "minisign",
+        "say its version",
+        Command::new("minisign").arg("-v"),
+    )
 }
 
 /// Whether Python reads XML.
 pub fn python() -> bool {
-    able("python3", "read XML", Command::new("python3").args(["-c", "import xml.etree.ElementTree"]))
+    able(
+        "python3",
+        "read XML",
+        Command::new("python3").args(["-c", "import xml.etree.ElementTree"]),
+    )
 }
 
 /// Whether `prove` is here, Perl's reader of the Test Anything Protocol.
 pub fn prove() -> bool {
-    able("prove", "say its version", Command::new("prove").arg("--version"))
+    able(
+        "prove",
+        "say its version",
+        Command::new("prove").arg("--version"),
+    )
 }
 
 /// Whether `qpdf` and poppler's `pdftotext` are here.
@@ -45,16 +69,27 @@ pub const FAKETIME: &str = "/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1"
 
 /// Whether the wall clock of a process can be set.
 pub fn faketime() -> bool {
-    if !able("faketime", "set a clock", Command::new("faketime").args(["-f", "-1y", "true"])) {
+    if !able(
+        "faketime",
+        "set a clock",
+        Command::new("faketime").args(["-f", "-1y", "true"]),
+    ) {
         return false;
     }
     let here = std::path::Path::new(FAKETIME).exists();
-    here || skipped(&format!("the library of faketime is not at {FAKETIME}"), required())
+    here || skipped(
+        &format!("the library of faketime is not at {FAKETIME}"),
+        required(),
+    )
 }
 
 /// Whether a program can be given a terminal of its own, as a shell gives it one.
 pub fn setsid() -> bool {
-    able("setsid", "say its version", Command::new("setsid").arg("--version"))
+    able(
+        "setsid",
+        "say its version",
+        Command::new("setsid").arg("--version"),
+    )
 }
 
 fn able(program: &str, what: &str, proof: &mut Command) -> bool {
@@ -63,7 +98,12 @@ fn able(program: &str, what: &str, proof: &mut Command) -> bool {
 
 /// What stands in the way, if anything.
 fn lacking(program: &str, what: &str, proof: &mut Command) -> Option<String> {
-    match proof.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status() {
+    match proof
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+    {
         Ok(status) if status.success() => None,
         Ok(_) => Some(format!("{program} cannot {what} here")),
         Err(_) => Some(format!("no {program}")),
@@ -78,7 +118,10 @@ fn required() -> bool {
 /// False: the test is not done, and says so.
 fn skipped(lacking: &str, required: bool) -> bool {
     println!("SKIPPED: {lacking}");
-    assert!(!required, "{lacking}, and PSD_REQUIRE_SYSTEM=1 wants every test");
+    assert!(
+        !required,
+        "{lacking}, and PSD_REQUIRE_SYSTEM=1 wants every test"
+    );
     false
 }
 
@@ -87,9 +130,15 @@ fn what_is_missing_and_what_is_forbidden_are_skipped_or_fail_alike() {
     let lacks = |program: &str| lacking(program, "trace", &mut Command::new(program));
     assert_eq!(lacks("true"), None);
     assert_eq!(lacks("false").as_deref(), Some("false cannot trace here"));
-    assert_eq!(lacks("no-such-program").as_deref(), Some("no no-such-program"));
+    assert_eq!(
+        lacks("no-such-program").as_deref(),
+        Some("no no-such-program")
+    );
     assert!(!skipped("false cannot trace here", false));
     let failed = std::panic::catch_unwind(|| skipped("false cannot trace here", true));
     let told = failed.unwrap_err().downcast::<String>().unwrap();
-    assert_eq!(*told, "false cannot trace here, and PSD_REQUIRE_SYSTEM=1 wants every test");
+    assert_eq!(
+        *told,
+        "false cannot trace here, and PSD_REQUIRE_SYSTEM=1 wants every test"
+    );
 }

@@ -20,8 +20,11 @@ fn python() -> Option<PathBuf> {
     let of_ci = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/opensees/bin/python3");
     let can = |python: &PathBuf| {
         let mut import = Command::new(python);
-        let import =
-            import.args(["-c", "import openseespy.opensees"]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        let import = import
+            .args(["-c", "import openseespy.opensees"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
         import.status().is_ok_and(|status| status.success())
     };
     let found = [of_ci, PathBuf::from("python3")].into_iter().find(can);
@@ -42,7 +45,14 @@ fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/system/opensees.py");
     let ended = wait(Command::new(python).arg(script).arg(port));
     assert_eq!(ended.code, Some(0), "{}", ended.told);
-    let way: Vec<f64> = serde_json::from_str(ended.told.lines().find(|line| line.starts_with('[')).unwrap()).unwrap();
+    let way: Vec<f64> = serde_json::from_str(
+        ended
+            .told
+            .lines()
+            .find(|line| line.starts_with('['))
+            .unwrap(),
+    )
+    .unwrap();
     assert_eq!(way.len(), STEPS);
     let angle = 2.0 * ((STIFFNESS / MASS).sqrt() * TIME_STEP / 2.0).asin();
     let amplitude = VELOCITY * TIME_STEP / angle.sin();
@@ -51,18 +61,40 @@ fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
         time += TIME_STEP;
         let expected = amplitude * (f64::from(step) * angle).sin();
         let allowed = 0.5e-3 / MASS * time * time + 1e-9;
-        assert!((found - expected).abs() <= allowed, "step {step}: {found} is not within {allowed} of {expected}");
+        assert!(
+            (found - expected).abs() <= allowed,
+            "step {step}: {found} is not within {allowed} of {expected}"
+        );
     }
     let largest = way.iter().copied().fold(0.0, f64::max);
-    assert!((largest / ((MASS / STIFFNESS).sqrt() * VELOCITY) - 1.0).abs() < 2e-3, "√(M/K)·V: {largest}");
+    assert!(
+        (largest / ((MASS / STIFFNESS).sqrt() * VELOCITY) - 1.0).abs() < 2e-3,
+        "√(M/K)·V: {largest}"
+    );
     let (code, printed) = served.ended();
     assert_eq!(code, Some(0), "{printed}");
-    assert!(printed.starts_with("session: closed by the client\n"), "{printed}");
+    assert!(
+        printed.starts_with("session: closed by the client\n"),
+        "{printed}"
+    );
     served.held();
     // What OpenSees asked for is what the rig was sent to.
-    let table = std::fs::read_to_string(served.stage.path("run").join("tables/served.csv")).unwrap();
+    let table =
+        std::fs::read_to_string(served.stage.path("run").join("tables/served.csv")).unwrap();
     let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
-    let column = header.iter().position(|name| name.starts_with("command")).unwrap();
-    let commands: Vec<f64> = table.lines().skip(1).map(|row| row.split(',').nth(column).unwrap().parse().unwrap()).collect();
-    assert!(way.iter().all(|place| commands.iter().any(|command| (command - place).abs() <= 1e-9)), "{commands:?}");
+    let column = header
+        .iter()
+        .position(|name| name.starts_with("command"))
+        .unwrap();
+    let commands: Vec<f64> = table
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').nth(column).unwrap().parse().unwrap())
+        .collect();
+    assert!(
+        way.iter().all(|place| commands
+            .iter()
+            .any(|command| (command - place).abs() <= 1e-9)),
+        "{commands:?}"
+    );
 }

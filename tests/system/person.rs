@@ -18,8 +18,11 @@ fn held_and_sound(stage: &Stage, ran: &Ended) {
 fn the_second_holds_at_once() {
     // The second step takes ten seconds at this speed: nobody waits for its end.
     let slow = |plan: &str| {
-        plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um")
-            .replace("probe(0.1 mm", "probe(0.02 mm")
+        plan.replace(
+            "speed      = 20 mm/s",
+            "speed      = 0.05 mm/s\n  resolution = 1 um",
+        )
+        .replace("probe(0.1 mm", "probe(0.02 mm")
     };
     let stage = Stage::of(slow, "");
     let run = start(&mut stage.run_with(&["--yes"]));
@@ -31,9 +34,18 @@ fn the_second_holds_at_once() {
     let ran = finish(run);
     assert_eq!(ran.code, Some(4), "{}", ran.told);
     assert_eq!(stage.moves().len(), 3, "{}", stage.log());
-    assert!(stage.requests().iter().any(|request| request.contains('!') || request.contains(">STOP")));
+    assert!(
+        stage
+            .requests()
+            .iter()
+            .any(|request| request.contains('!') || request.contains(">STOP"))
+    );
     let journal = fs::read_to_string(stage.journal()).unwrap();
-    assert_eq!(journal.matches(" STEP ").count(), 0, "held on its way, not at its end");
+    assert_eq!(
+        journal.matches(" STEP ").count(),
+        0,
+        "held on its way, not at its end"
+    );
 }
 
 #[test]
@@ -44,7 +56,13 @@ fn the_end_of_the_input_is_no_yes() {
     terminal.answer(RELEASE, "RELEASE\n");
     terminal.answer(GO_ON, "\u{4}");
     let code = code(&mut terminal.child);
-    held_and_sound(&stage, &Ended { code, told: terminal.shown() });
+    held_and_sound(
+        &stage,
+        &Ended {
+            code,
+            told: terminal.shown(),
+        },
+    );
 }
 
 #[test]
@@ -55,7 +73,13 @@ fn a_terminal_that_goes_away_is_no_yes() {
     terminal.answer(GO_ON, "");
     signal(&terminal.child, Signal::HUP);
     let code = code(&mut terminal.child);
-    held_and_sound(&stage, &Ended { code, told: terminal.shown() });
+    held_and_sound(
+        &stage,
+        &Ended {
+            code,
+            told: terminal.shown(),
+        },
+    );
 }
 
 #[test]
@@ -70,7 +94,11 @@ fn a_record_cut_short_says_so() {
     // Nothing but the record: the manifest would find it out anyway.
     fs::remove_file(stage.path("run").join("manifest.sha256")).unwrap();
     let verified = stage.verify();
-    assert!(verified.told.contains("INCOMPLETE") || verified.told.contains("WRONG"), "{}", verified.told);
+    assert!(
+        verified.told.contains("INCOMPLETE") || verified.told.contains("WRONG"),
+        "{}",
+        verified.told
+    );
     cut.truncate(60);
     fs::write(stage.journal(), cut.join("\n") + "\n").unwrap();
     let verified = stage.verify();
@@ -92,8 +120,11 @@ fn standing(stage: &Stage) -> usize {
 fn the_first_key_after_the_window_got_another_size_holds_the_rig() {
     // A step takes ten seconds at this speed: nobody waits for its end.
     let slow = |plan: &str| {
-        plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um")
-            .replace("probe(0.1 mm", "probe(0.02 mm")
+        plan.replace(
+            "speed      = 20 mm/s",
+            "speed      = 0.05 mm/s\n  resolution = 1 um",
+        )
+        .replace("probe(0.1 mm", "probe(0.02 mm")
     };
     for (keys, resized) in [("h", true), ("\u{3}\u{3}", true), ("h", false)] {
         let stage = Stage::of(slow, "");
@@ -110,7 +141,11 @@ fn the_first_key_after_the_window_got_another_size_holds_the_rig() {
         assert_eq!(code, Some(4), "{}", terminal.shown());
         assert_eq!(stage.moves().len(), 3, "{}", stage.log());
         let journal = fs::read_to_string(stage.journal()).unwrap();
-        assert_eq!(journal.matches(" STEP ").count(), 0, "held on its way, not at its end");
+        assert_eq!(
+            journal.matches(" STEP ").count(),
+            0,
+            "held on its way, not at its end"
+        );
     }
 }
 
@@ -141,10 +176,24 @@ fn a_run_is_paused_taken_a_step_further_noted_and_gone_on_with_by_keys() {
     terminal.press("ino crack\r");
     terminal.press("p");
     assert_eq!(code(&mut terminal.child), Some(0), "{}", terminal.shown());
-    let summary: serde_json::Value = serde_json::from_slice(&fs::read(stage.path("run").join("summary.json")).unwrap()).unwrap();
-    let events: Vec<&str> = summary["events"].as_array().unwrap().iter().filter_map(|event| event["text"].as_str()).collect();
+    let summary: serde_json::Value =
+        serde_json::from_slice(&fs::read(stage.path("run").join("summary.json")).unwrap()).unwrap();
+    let events: Vec<&str> = summary["events"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|event| event["text"].as_str())
+        .collect();
     let place = |text: &str| events.iter().position(|event| *event == text);
-    let said = ["paused (A. Tester)", "no crack (A. Tester)", "went on (A. Tester)"].map(place);
-    assert!(said.is_sorted() && said.iter().all(Option::is_some), "{events:#?}");
+    let said = [
+        "paused (A. Tester)",
+        "no crack (A. Tester)",
+        "went on (A. Tester)",
+    ]
+    .map(place);
+    assert!(
+        said.is_sorted() && said.iter().all(Option::is_some),
+        "{events:#?}"
+    );
     assert!(!stage.proven().contains("INCOMPLETE"));
 }

@@ -3,15 +3,21 @@
 
 use std::fs;
 
-use crate::stage::{Stage, code, start, until, wait};
-use crate::terminal::{RELEASE, Terminal};
+use rustix::process::Signal;
+
+use crate::stage::{Stage, code, signal, start, until, wait};
+use crate::terminal::{LEAVE, RELEASE, TO_RESUME, TO_UNLOAD, Terminal};
 
 /// Everything that was ever taken for a yes, and the word itself.
 const TYPED_AHEAD: &str = "y\nyes\nxyz\nRELEASE\nRELEASE\n";
 
 /// A move takes ten seconds and more: nobody waits for its end.
 fn slow(plan: &str) -> String {
-    plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um").replace("probe(0.1 mm", "probe(0.02 mm")
+    plan.replace(
+        "speed      = 20 mm/s",
+        "speed      = 0.05 mm/s\n  resolution = 1 um",
+    )
+    .replace("probe(0.1 mm", "probe(0.02 mm")
 }
 
 #[test]
@@ -19,7 +25,11 @@ fn what_was_typed_ahead_releases_nothing_and_a_refusal_leaves_no_report() {
     for with_screen in [false, true] {
         let stage = Stage::new();
         let command = &mut stage.run_with(&[]);
-        let mut terminal = if with_screen { Terminal::with_screen(command) } else { Terminal::start(command) };
+        let mut terminal = if with_screen {
+            Terminal::with_screen(command)
+        } else {
+            Terminal::start(command)
+        };
         terminal.press(TYPED_AHEAD);
         until("the question", || terminal.shown().contains("RELEASE:"));
         terminal.press(TYPED_AHEAD);
@@ -30,23 +40,89 @@ fn what_was_typed_ahead_releases_nothing_and_a_refusal_leaves_no_report() {
             terminal.answer(RELEASE, "n\n");
         }
         assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
-        assert!(stage.moves().is_empty() && stage.is_held(), "{}", stage.log());
+        assert!(
+            stage.moves().is_empty() && stage.is_held(),
+            "{}",
+            stage.log()
+        );
         let shown = terminal.shown();
-        for expected in
-            ["rig       bench (", "travel    ", "limits −5 mm .. 10 mm", "force     ", "speed     ", "duration  about "]
-        {
-            assert!(with_screen || shown.contains(expected), "{expected}: {shown}");
+        for expected in [
+            "rig       bench (",
+            "travel    ",
+            "limits −5 mm .. 10 mm",
+            "force     ",
+            "speed     ",
+            "duration  about ",
+        ] {
+            assert!(
+                with_screen || shown.contains(expected),
+                "{expected}: {shown}"
+            );
         }
-        assert!(shown.contains("NOT RELEASED") && !shown.contains("inconclusive"), "{shown}");
-        let mut left: Vec<String> =
-            fs::read_dir(stage.path("run")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        assert!(
+            shown.contains("NOT RELEASED") && !shown.contains("inconclusive"),
+            "{shown}"
+        );
+        let mut left: Vec<String> = fs::read_dir(stage.path("run"))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
         left.sort();
         left.retain(|name| !name.starts_with("journal."));
-        assert_eq!(left, ["manifest.sha256"], "the record is kept, and there is nothing to report");
-        assert!(stage.proven().contains("INCOMPLETE: declined by the operator"));
+        assert_eq!(
+            left,
+            ["manifest.sha256"],
+            "the record is kept, and there is nothing to report"
+        );
+        assert!(
+            stage
+                .proven()
+                .contains("INCOMPLETE: declined by the operator")
+        );
         // What was not released can be released later.
         stage.goes_on(&[]);
     }
+}
+
+#[test]
+fn a_held_rig_is_stayed_with_in_lines_and_goes_on_from_there() {
+    let stage = Stage::of(|plan| slow(plan).replace("0.8 mm step", "0.3 mm step"), "");
+    let mut terminal = Terminal::start(&mut stage.run_with(&[]));
+    terminal.answer(RELEASE, "RELEASE\n");
+    stage.after_moves(3);
+    signal(&terminal.child, Signal::QUIT);
+    terminal.answer(LEAVE, "");
+    let shown = terminal.shown();
+    let held = &shown[shown.rfind("  HELD").expect("why it stays")..];
+    assert!(
+        held.contains("X ")
+            && held.contains("R ")
+            && held.contains(TO_RESUME)
+            && held.contains(TO_UNLOAD),
+        "{shown}"
+    );
+    let heard = stage.requests().len();
+    until("the rig is heard from", || {
+        stage.requests().len() > heard + 5
+    });
+    assert_eq!(stage.moves().len(), 3);
+    terminal.press("r\n");
+    terminal.answer("type the reason", "somebody stood too near\n");
+    // The lines of the run that goes on are those after it.
+    terminal.answer(RELEASE, "");
+    assert_eq!(stage.moves().len(), 3, "a reason is no release");
+    terminal.press("RELEASE\n");
+    stage.after_moves(4);
+    signal(&terminal.child, Signal::QUIT);
+    terminal.answer(LEAVE, "x\n");
+    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    let record = fs::read_to_string(stage.journal()).unwrap();
+    assert!(
+        record.contains("somebody stood too near") && record.contains(r#""released":"A. Tester""#),
+        "{record}"
+    );
+    assert!(stage.is_held());
+    stage.proven();
 }
 
 #[test]
@@ -59,7 +135,9 @@ fn a_held_rig_stays_on_the_screen_and_goes_on_from_there() {
     terminal.press("h");
     terminal.drawn("r resume   u unload   x leave");
     let heard = stage.requests().len();
-    until("the rig is heard from", || stage.requests().len() > heard + 5);
+    until("the rig is heard from", || {
+        stage.requests().len() > heard + 5
+    });
     assert_eq!(stage.moves().len(), 3);
     terminal.press("r");
     terminal.drawn("Enter resume");
@@ -73,7 +151,10 @@ fn a_held_rig_stays_on_the_screen_and_goes_on_from_there() {
     terminal.press("x");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     let record = fs::read_to_string(stage.journal()).unwrap();
-    assert!(record.contains("somebody stood too near") && record.contains(r#""released":"A. Tester""#), "{record}");
+    assert!(
+        record.contains("somebody stood too near") && record.contains(r#""released":"A. Tester""#),
+        "{record}"
+    );
     assert!(stage.is_held());
     stage.proven();
 }
@@ -92,9 +173,17 @@ fn nothing_stands_before_or_beside_a_hold_that_nobody_confirms() {
     assert_eq!(code(&mut terminal.child), Some(3), "{}", terminal.shown());
     let shown = terminal.shown();
     let after = shown.rsplit("\u{1b}[?1049l").next().unwrap();
-    assert!(after.find("NOT CONFIRMED HELD") < after.find("ERROR"), "{after}");
-    assert!(after.contains("ERROR") && !after.contains("psd resume"), "{after}");
-    let ran = wait(&mut Stage::of(str::to_owned, "after 8 moves: hang up before reply").run_with(&["--yes"]));
+    assert!(
+        after.find("NOT CONFIRMED HELD") < after.find("ERROR"),
+        "{after}"
+    );
+    assert!(
+        after.contains("ERROR") && !after.contains("psd resume"),
+        "{after}"
+    );
+    let ran = wait(
+        &mut Stage::of(str::to_owned, "after 8 moves: hang up before reply").run_with(&["--yes"]),
+    );
     assert!(!ran.told.contains("psd resume"), "{}", ran.told);
 }
 
@@ -104,7 +193,11 @@ fn reports_of_records_that_differ_have_numbers_that_differ() {
     let number = || {
         let page = fs::read_to_string(stage.path("run").join("certificate.html")).unwrap();
         let (_, after) = page.split_once("End of report").unwrap();
-        after.split(['<', '>']).find(|text| text.contains('-') && text.len() > 20).unwrap().to_owned()
+        after
+            .split(['<', '>'])
+            .find(|text| text.contains('-') && text.len() > 20)
+            .unwrap()
+            .to_owned()
     };
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(10);

@@ -9,12 +9,14 @@ use std::process::Command;
 use rustix::process::Signal;
 
 use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, until, wait};
-use crate::terminal::{RELEASE, Terminal, UNLOAD};
+use crate::terminal::{LEAVE, RELEASE, TO_UNLOAD, Terminal, UNLOAD};
 
 /// A stepper frame with an indicator beside it.
 fn stepper(plan: &str) -> String {
     let (before, port) = plan.split_once("  link       = serial(port: \"").unwrap();
-    let (port, after) = port.split_once("\", dialect: native, reply_timeout: 2 s)").unwrap();
+    let (port, after) = port
+        .split_once("\", dialect: native, reply_timeout: 2 s)")
+        .unwrap();
     let devices = format!(
         "  actuator   = serial(port: \"{port}\", dialect: grbl, reply_timeout: 1 s)\n  \
            load_cell  = serial(port: \"{port}-cell\", dialect: indicator, reply_timeout: 1 s)\n  \
@@ -23,23 +25,39 @@ fn stepper(plan: &str) -> String {
     );
     let plan = format!("{before}{devices}{after}").replace("duration  = 24 ms", "duration  = 3 ms");
     let plan = plan.replace("samples    = 1", "samples    = 1\n  resolution = 2.5 um");
-    plan.replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm").replace("probe(0.1 mm", "probe(0.4 mm")
+    plan.replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm")
+        .replace("probe(0.1 mm", "probe(0.4 mm")
 }
 
 /// As a program that is dying holds the axis, or somebody else at the port.
 fn hold(stage: &Stage) {
     // Open until it was heard: the kernel throws away what a side that closes said last.
-    let mut port = fs::OpenOptions::new().write(true).open(stage.path("rig")).unwrap();
+    let mut port = fs::OpenOptions::new()
+        .write(true)
+        .open(stage.path("rig"))
+        .unwrap();
     port.write_all(b"!").unwrap();
-    until("it is held", || stage.requests().last().is_some_and(|request| request.contains('!')));
+    until("it is held", || {
+        stage
+            .requests()
+            .last()
+            .is_some_and(|request| request.contains('!'))
+    });
 }
 
 /// Refused for this reason, and nothing of the record has changed.
 fn refused(stage: &Stage, more: &[&str], reason: &str) {
     let before = fs::read(stage.journal()).unwrap();
     let refused = wait(&mut stage.resume_with(more));
-    assert!(refused.code == Some(3) && refused.told.contains(reason), "{}", refused.told);
-    assert!(fs::read(stage.journal()).unwrap() == before, "the record is as it was: {more:?}");
+    assert!(
+        refused.code == Some(3) && refused.told.contains(reason),
+        "{}",
+        refused.told
+    );
+    assert!(
+        fs::read(stage.journal()).unwrap() == before,
+        "the record is as it was: {more:?}"
+    );
 }
 
 fn certificate(stage: &Stage) -> String {
@@ -61,12 +79,19 @@ fn a_stepper_frame_that_was_stopped_is_let_go_of_and_goes_on() {
     refused(&stage, &["--let-go"], "--same-power-up");
     assert_eq!(stage.moves(), moves, "to be let go of moves nothing");
     let ran = stage.goes_on(&["--same-power-up", "--let-go"]);
-    assert!(!ran.told.contains("ignored"), "no answer of several lines is a fault of the line: {}", ran.told);
+    assert!(
+        !ran.told.contains("ignored"),
+        "no answer of several lines is a fault of the line: {}",
+        ran.told
+    );
     let mut all = stage.moves();
     let count = all.len();
     all.dedup();
     assert!(count > moves.len() && all.len() == count, "{all:?}");
-    for word in ["it was not switched off since", "it was let go of where it was held"] {
+    for word in [
+        "it was not switched off since",
+        "it was let go of where it was held",
+    ] {
         assert!(certificate(&stage).contains(word), "{word}");
     }
 }
@@ -81,15 +106,29 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
     hold(&stage);
     fs::rename(stage.path("run"), stage.path("first")).unwrap();
     let held = wait(&mut stage.run_with(&["--yes"]));
-    assert!(held.code == Some(3) && held.told.contains("`--let-go`"), "{}", held.told);
+    assert!(
+        held.code == Some(3) && held.told.contains("`--let-go`"),
+        "{}",
+        held.told
+    );
     let _ = fs::remove_dir_all(stage.path("run"));
     // Its specimen is bent: the zero is that of the run which bent it.
     let first = stage.path("first");
-    let back = ["--datum", first.to_str().unwrap(), "--to", "0 mm", "--yes", "--let-go"];
+    let back = [
+        "--datum",
+        first.to_str().unwrap(),
+        "--to",
+        "0 mm",
+        "--yes",
+        "--let-go",
+    ];
     let jog = wait(&mut stage.recorded_tool("jog", &back));
     assert_eq!(jog.code, Some(0), "{}", jog.told);
     let record = fs::read_to_string(stage.journal()).unwrap();
-    assert!(record.contains("what was found held was let go of where it stands (A. Tester)"), "{record}");
+    assert!(
+        record.contains("what was found held was let go of where it stands (A. Tester)"),
+        "{record}"
+    );
     stage.proven();
     fs::rename(stage.path("run"), stage.path("second")).unwrap();
     let ran = wait(&mut stage.run_with(&["--yes"]));
@@ -100,8 +139,12 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
 /// Stopped at rest and at zero, where a console that was switched off and on again stands too.
 fn stopped_at_zero() -> Stage {
     let console = |plan: &str| {
-        let plan = plan.replace("dialect: native, reply_timeout: 2 s", "dialect: instron, reply_timeout: 1 s");
-        plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um").replace("0.8 mm step", "0.3 mm step")
+        let plan = plan.replace(
+            "dialect: native, reply_timeout: 2 s",
+            "dialect: instron, reply_timeout: 1 s",
+        );
+        plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um")
+            .replace("0.8 mm step", "0.3 mm step")
     };
     let stage = Stage::of(console, "");
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
@@ -113,7 +156,10 @@ fn stopped_at_zero() -> Stage {
 
 #[test]
 fn a_console_that_was_switched_off_meanwhile_does_not_go_on_unsaid() {
-    for (word, told) in [("--re-referenced", "it was referenced anew"), ("--same-power-up", "it was not switched off since")] {
+    for (word, told) in [
+        ("--re-referenced", "it was referenced anew"),
+        ("--same-power-up", "it was not switched off since"),
+    ] {
         let mut stage = stopped_at_zero();
         stage.power_up("");
         refused(&stage, &[], "cannot say whether it was switched off");
@@ -132,28 +178,53 @@ fn a_rig_that_is_not_there_leaves_the_record_as_it_was() {
     assert_eq!(finish(run).code, Some(4));
     stage.power_down();
     let other = stage.path("other.psd");
-    let plan = fs::read_to_string(stage.path("plan.psd")).unwrap().replace("look at the specimen", "look at it");
+    let plan = fs::read_to_string(stage.path("plan.psd"))
+        .unwrap()
+        .replace("look at the specimen", "look at it");
     fs::write(&other, plan).unwrap();
-    refused(&stage, &["--plan", other.to_str().unwrap(), "--amend"], "rig");
+    refused(
+        &stage,
+        &["--plan", other.to_str().unwrap(), "--amend"],
+        "rig",
+    );
     refused(&stage, &[], "rig");
     assert_eq!(stage.verify().code, Some(0));
 }
 
 #[test]
 fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
-    let stage = Stage::of(|plan| plan.replace("safe_state = hold", "safe_state = unload"), "");
+    let stage = Stage::of(
+        |plan| plan.replace("safe_state = hold", "safe_state = unload"),
+        "",
+    );
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
     terminal.answer(RELEASE, "RELEASE\n");
     stage.after_moves(6);
     signal(&terminal.child, Signal::INT);
+    terminal.answer(TO_UNLOAD, "u\n");
     terminal.answer(UNLOAD, "UNLOAD\n");
+    // Unloaded it is neither unloaded once more nor gone on with.
+    terminal.answer(LEAVE, "x\n");
+    assert_eq!(
+        terminal.shown().matches(TO_UNLOAD).count(),
+        1,
+        "{}",
+        terminal.shown()
+    );
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
     let told = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
     assert!(told.contains("unloading to where the run began"), "{told}");
     let moves = stage.moves();
-    assert!(moves.len() > 6 && moves.last().unwrap().ends_with(" to 0"), "{moves:?}");
+    assert!(
+        moves.len() > 6 && moves.last().unwrap().ends_with(" to 0"),
+        "{moves:?}"
+    );
     assert!(stage.proven().contains("INCOMPLETE"));
-    refused(&stage, &[], "the specimen was unloaded when the run stopped");
+    refused(
+        &stage,
+        &[],
+        "the specimen was unloaded when the run stopped",
+    );
     assert_eq!(stage.moves(), moves);
 }
 
@@ -174,16 +245,35 @@ fn a_run_that_came_to_its_end_without_its_results_has_them_made_of_its_record() 
     let report = || wait(Command::new(PSD).arg("report").arg(&run));
     let made = report();
     assert_eq!(made.code, Some(0), "{}", made.told);
-    assert!(fs::read(run.join("summary.json")).unwrap() == whole && !stage.proven().contains("INCOMPLETE"));
+    assert!(
+        fs::read(run.join("summary.json")).unwrap() == whole
+            && !stage.proven().contains("INCOMPLETE")
+    );
     let again = report();
-    assert!(again.code == Some(3) && again.told.contains("has results already"), "{}", again.told);
+    assert!(
+        again.code == Some(3) && again.told.contains("has results already"),
+        "{}",
+        again.told
+    );
 }
 
 #[test]
 fn a_restart_on_record_is_outweighed_by_nobodys_word_that_there_was_none() {
     let stage = Stage::of(stepper, "after 5 moves: reboot");
     let run = wait(&mut stage.run_with(&["--yes"]));
-    assert!(run.code == Some(3) && run.told.contains("started anew"), "{}", run.told);
-    refused(&stage, &["--same-power-up"], "the record says that it started anew");
-    refused(&stage, &["--same-power-up", "--let-go"], "the record says that it started anew");
+    assert!(
+        run.code == Some(3) && run.told.contains("started anew"),
+        "{}",
+        run.told
+    );
+    refused(
+        &stage,
+        &["--same-power-up"],
+        "the record says that it started anew",
+    );
+    refused(
+        &stage,
+        &["--same-power-up", "--let-go"],
+        "the record says that it started anew",
+    );
 }

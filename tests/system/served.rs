@@ -33,28 +33,54 @@ impl Served {
 
     /// The rig of a stage of its own.
     pub fn start_on(stage: Stage, protocol: &str, more: &[&str]) -> Self {
-        let mut command = stage.recorded_tool("serve", &["--protocol", protocol, "--listen", "127.0.0.1:0", "--yes"]);
+        let mut command = stage.recorded_tool(
+            "serve",
+            &["--protocol", protocol, "--listen", "127.0.0.1:0", "--yes"],
+        );
         let told = std::fs::File::create(stage.path("serve.told")).unwrap();
-        let mut program = command.args(more).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(told).spawn().unwrap();
+        let mut program = command
+            .args(more)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(told)
+            .spawn()
+            .unwrap();
         let mut stdout = BufReader::new(program.stdout.take().unwrap());
         let mut ready = String::new();
         stdout.read_line(&mut ready).unwrap();
-        let address = ready.trim_end().strip_prefix(&format!("ready: {protocol} on ")).unwrap_or_else(|| {
-            panic!("not ready: {}", std::fs::read_to_string(stage.path("serve.told")).unwrap());
-        });
+        let address = ready
+            .trim_end()
+            .strip_prefix(&format!("ready: {protocol} on "))
+            .unwrap_or_else(|| {
+                panic!(
+                    "not ready: {}",
+                    std::fs::read_to_string(stage.path("serve.told")).unwrap()
+                );
+            });
         let address = address.to_owned();
-        Self { stage, program, stdout, address }
+        Self {
+            stage,
+            program,
+            stdout,
+            address,
+        }
     }
 
     pub fn connect(&self) -> TcpStream {
         let stream = TcpStream::connect(&self.address).unwrap();
-        stream.set_read_timeout(Some(Duration::from_mins(3))).unwrap();
+        stream
+            .set_read_timeout(Some(Duration::from_mins(3)))
+            .unwrap();
         stream
     }
 
     /// Waits until the program has said this on standard error.
     fn says(&self, words: &str) {
-        until(words, || std::fs::read_to_string(self.stage.path("serve.told")).unwrap().contains(words));
+        until(words, || {
+            std::fs::read_to_string(self.stage.path("serve.told"))
+                .unwrap()
+                .contains(words)
+        });
     }
 
     /// Its end: the code, and what it printed. The rig is held, and the record proven.
@@ -69,7 +95,10 @@ impl Served {
     pub fn held(&self) {
         let requests = self.stage.requests();
         let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
-        assert!(last(">STOP").max(last("!")) > last(">MOVE"), "not held: {requests:#?}");
+        assert!(
+            last(">STOP").max(last("!")) > last(">MOVE"),
+            "not held: {requests:#?}"
+        );
     }
 
     /// A person ends it.
@@ -94,13 +123,22 @@ pub struct Coordinator {
 
 impl Coordinator {
     pub fn come(served: &Served) -> Self {
-        let mut coordinator = Self { lines: BufReader::new(served.connect()), transactions: 0 };
-        assert_eq!(coordinator.ask("open-session\ttest"), "OK\t0\tsession opened");
+        let mut coordinator = Self {
+            lines: BufReader::new(served.connect()),
+            transactions: 0,
+        };
+        assert_eq!(
+            coordinator.ask("open-session\ttest"),
+            "OK\t0\tsession opened"
+        );
         coordinator
     }
 
     fn send(&mut self, line: &str) {
-        self.lines.get_mut().write_all(format!("{line}\n").as_bytes()).unwrap();
+        self.lines
+            .get_mut()
+            .write_all(format!("{line}\n").as_bytes())
+            .unwrap();
     }
 
     pub fn ask(&mut self, line: &str) -> String {
@@ -114,7 +152,9 @@ impl Coordinator {
     fn go(&mut self, place: f64) -> Vec<String> {
         self.transactions += 1;
         let id = format!("trans{}", self.transactions);
-        let proposed = self.ask(&format!("propose\t{id}\tMDL-00-01\tx\tdisplacement\t{place:.10E}"));
+        let proposed = self.ask(&format!(
+            "propose\t{id}\tMDL-00-01\tx\tdisplacement\t{place:.10E}"
+        ));
         let accepted = proposed.starts_with("OK");
         let mut answers = vec![proposed];
         if accepted {
@@ -127,7 +167,11 @@ impl Coordinator {
     fn felt(&mut self) -> (f64, f64) {
         let answer = self.ask("get-control-point\tdummy\tMDL-00-01");
         let words: Vec<&str> = answer.split('\t').collect();
-        assert_eq!((words[0], words[2], words[3]), ("OK", "dummy", "MDL-00-01"), "{answer}");
+        assert_eq!(
+            (words[0], words[2], words[3]),
+            ("OK", "dummy", "MDL-00-01"),
+            "{answer}"
+        );
         (words[6].parse().unwrap(), words[9].parse().unwrap())
     }
 
@@ -148,7 +192,9 @@ impl Element {
     }
 
     fn send(&mut self, words: [f64; 2]) {
-        self.0.write_all(words.map(f64::to_le_bytes).as_flattened()).unwrap();
+        self.0
+            .write_all(words.map(f64::to_le_bytes).as_flattened())
+            .unwrap();
     }
 
     /// The force at a place, N.
@@ -185,14 +231,24 @@ fn a_coordinator_drives_it_and_is_refused_beyond_a_limit() {
     assert_eq!(client.go(1e-3), ["OK\t0\ttrans1", "OK\t0\ttrans1"]);
     assert_eq!(client.felt(), (1e-3, 100.0));
     let refused = client.go(10.001e-3);
-    assert!(refused[0].starts_with("NOT OK\t1\ttrans2\t") && refused[0].contains("outside its limit"), "{refused:?}");
-    assert_eq!(client.ask("execute\ttrans2").split('\t').next(), Some("NOT OK"), "what was refused cannot be executed");
+    assert!(
+        refused[0].starts_with("NOT OK\t1\ttrans2\t") && refused[0].contains("outside its limit"),
+        "{refused:?}"
+    );
+    assert_eq!(
+        client.ask("execute\ttrans2").split('\t').next(),
+        Some("NOT OK"),
+        "what was refused cannot be executed"
+    );
     assert_eq!(client.felt(), (1e-3, 100.0), "nothing has moved");
     assert_eq!(client.go(-1e-3), ["OK\t0\ttrans3", "OK\t0\ttrans3"]);
     client.close();
     let (code, printed) = served.ended();
     assert_eq!(code, Some(4));
-    assert!(printed.starts_with("session: closed by the client\ntargets: 2, 1 refused by a limit\n"), "{printed}");
+    assert!(
+        printed.starts_with("session: closed by the client\ntargets: 2, 1 refused by a limit\n"),
+        "{printed}"
+    );
     assert_eq!(served.stage.moves().len(), probed + 2);
     served.held();
 }
@@ -204,7 +260,10 @@ fn an_element_beyond_a_limit_gets_no_number_until_it_leaves() {
     assert_eq!(element.force_at(-2e-3), -200.0);
     let moves = served.stage.moves().len();
     assert!(element.force_at(-5.001e-3).is_nan());
-    assert!(element.force().is_nan() && element.force_at(1e-3).is_nan(), "nor does it move any more");
+    assert!(
+        element.force().is_nan() && element.force_at(1e-3).is_nan(),
+        "nor does it move any more"
+    );
     element.send([99.0, 0.0]);
     let (code, printed) = served.ended();
     assert_eq!(code, Some(4), "{printed}");
@@ -220,7 +279,10 @@ fn each_signal_in_a_session_holds_the_rig_and_keeps_the_record() {
         client.go(1e-3);
         let (code, printed) = served.stop(sent);
         assert_eq!(code, Some(4), "{printed}");
-        assert!(printed.starts_with("session: stopped by a person\ntargets: 1\n"), "{printed}");
+        assert!(
+            printed.starts_with("session: stopped by a person\ntargets: 1\n"),
+            "{printed}"
+        );
         assert!(is_closed(client.lines.get_mut()));
         served.held();
 
@@ -243,10 +305,16 @@ fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
     let mut client = Coordinator::come(&served);
     let answers = client.go(1e-3);
     let failed = answers.last().unwrap();
-    assert!(failed.starts_with("NOT OK\t4\ttrans1\t") && failed.contains("no usable answer within"), "{answers:?}");
+    assert!(
+        failed.starts_with("NOT OK\t4\ttrans1\t") && failed.contains("no usable answer within"),
+        "{answers:?}"
+    );
     assert!(is_closed(client.lines.get_mut()));
     let (code, printed) = served.ended();
-    assert!(code == Some(3) && printed.contains("no usable answer within"), "{printed}");
+    assert!(
+        code == Some(3) && printed.contains("no usable answer within"),
+        "{printed}"
+    );
     served.held();
 
     let mut served = Served::start_on(silent(), "generic-client", &[]);
@@ -261,10 +329,19 @@ fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
 #[test]
 fn a_rig_that_goes_away_while_nobody_asks_is_noticed() {
     // It is heard from eight times in the time of its watchdog.
-    let hanging_up = || Served::start_on(Stage::of(watched, "after 40 readings: hang up"), "nees", &[]);
+    let hanging_up = || {
+        Served::start_on(
+            Stage::of(watched, "after 40 readings: hang up"),
+            "nees",
+            &[],
+        )
+    };
     let mut served = hanging_up();
     let (code, printed) = served.ended();
-    assert!(code == Some(3) && printed.contains("the line is gone"), "{printed}");
+    assert!(
+        code == Some(3) && printed.contains("the line is gone"),
+        "{printed}"
+    );
 
     let mut served = hanging_up();
     let mut client = served.connect();
@@ -283,7 +360,10 @@ fn a_client_that_goes_away_leaves_it_held_and_the_next_one_goes_on() {
     served.held();
     let mut second = Coordinator::come(&served);
     assert_eq!(second.felt(), (1e-3, 100.0), "where the first one left it");
-    assert!(second.ask("execute\tlast").starts_with("NOT OK"), "what the first one proposed is gone with it");
+    assert!(
+        second.ask("execute\tlast").starts_with("NOT OK"),
+        "what the first one proposed is gone with it"
+    );
     second.go(0.0);
     second.close();
     served.says("session ended: closed by the client");
@@ -295,8 +375,16 @@ fn a_client_that_goes_away_leaves_it_held_and_the_next_one_goes_on() {
 
 /// The stage whose rig takes 400 s to where its client sends it, and 2 s for the gate's probe.
 fn endless() -> Stage {
-    let slower = |plan: &str| plan.replace("speed      = 20 mm/s", "speed      = 0.01 mm/s\n  resolution = 1 um");
-    Stage::of(|plan| slower(plan).replace("probe(0.1 mm", "probe(0.02 mm"), "")
+    let slower = |plan: &str| {
+        plan.replace(
+            "speed      = 20 mm/s",
+            "speed      = 0.01 mm/s\n  resolution = 1 um",
+        )
+    };
+    Stage::of(
+        |plan| slower(plan).replace("probe(0.1 mm", "probe(0.02 mm"),
+        "",
+    )
 }
 
 #[test]
@@ -345,14 +433,21 @@ fn a_client_that_took_its_leave_before_it_went_away_has_its_last_move() {
     element.send([99.0, 0.0]);
     drop(element);
     let (code, printed) = served.ended();
-    assert!(code == Some(0) && printed.contains("session: closed by the client\ntargets: 1\n"), "{printed}");
+    assert!(
+        code == Some(0) && printed.contains("session: closed by the client\ntargets: 1\n"),
+        "{printed}"
+    );
 
     let mut served = Served::start("", "nees", &["--once"]);
     let mut client = Coordinator::come(&served);
     client.ask("propose\tt1\tMDL-00-01\tx\tdisplacement\t1.0E-3");
     client.send("execute\tt1\nclose-session\ttest");
     // It says nothing more, and reads what it is answered.
-    client.lines.get_mut().shutdown(std::net::Shutdown::Write).unwrap();
+    client
+        .lines
+        .get_mut()
+        .shutdown(std::net::Shutdown::Write)
+        .unwrap();
     assert!(is_closed(client.lines.get_mut()));
     assert_eq!(served.ended().0, Some(0));
 }
@@ -399,14 +494,19 @@ fn garbage_is_answered_or_sent_away_and_moves_nothing() {
     assert!(is_closed(client.lines.get_mut()));
     served.says("the client cannot be served: a line of more than 4096 bytes");
     let mut half = served.connect();
-    half.write_all(b"open-session\ttest\npropose\tt1\tMDL-00-01\tx\tdisp").unwrap();
+    half.write_all(b"open-session\ttest\npropose\tt1\tMDL-00-01\tx\tdisp")
+        .unwrap();
     half.shutdown(std::net::Shutdown::Write).unwrap();
     assert!(is_closed(&mut half));
     assert_eq!(served.stop(Signal::INT).0, Some(3));
     assert_eq!(served.stage.moves().len(), moves);
 
     let mut served = Served::generic("");
-    for words in [b"GET / HTTP/1.1\r\nHost: 127.0.0.1:8090\r\nUser-Agent: x\r\n\r\n".as_slice(), &[0xff; 44], &[0; 44]] {
+    for words in [
+        b"GET / HTTP/1.1\r\nHost: 127.0.0.1:8090\r\nUser-Agent: x\r\n\r\n".as_slice(),
+        &[0xff; 44],
+        &[0; 44],
+    ] {
         let mut stranger = served.connect();
         stranger.write_all(words).unwrap();
         assert!(is_closed(&mut stranger), "{words:?}");
@@ -424,14 +524,19 @@ fn a_second_client_at_the_same_time_is_turned_away_and_disturbs_nothing() {
     for _ in 0..3 {
         let mut second = served.connect();
         // Who is turned away may not get rid of a word any more.
-        let _ = second.write_all(b"open-session\tother\npropose\tt\tMDL-00-01\tx\tdisplacement\t0.002\nexecute\tt\n");
+        let _ = second.write_all(
+            b"open-session\tother\npropose\tt\tMDL-00-01\tx\tdisplacement\t0.002\nexecute\tt\n",
+        );
         assert!(is_closed(&mut second));
     }
     assert_eq!(first.felt(), (1e-3, 100.0));
     first.go(2e-3);
     first.close();
     let (code, printed) = served.ended();
-    assert!(code == Some(0) && printed.contains("targets: 2\n"), "{printed}");
+    assert!(
+        code == Some(0) && printed.contains("targets: 2\n"),
+        "{printed}"
+    );
 }
 
 #[test]
@@ -443,7 +548,11 @@ fn a_program_that_is_killed_leaves_a_record_and_a_rig_that_holds_itself() {
     served.program.wait().unwrap();
     let verified = served.stage.verify();
     assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
-    assert!(verified.told.contains("3 came out again"), "two of the gate, and the client's: {}", verified.told);
+    assert!(
+        verified.told.contains("3 came out again"),
+        "two of the gate, and the client's: {}",
+        verified.told
+    );
     let_it_trip();
     let probed = crate::stage::wait(&mut served.stage.tool("probe", &[]));
     let log = served.stage.log();

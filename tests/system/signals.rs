@@ -9,12 +9,17 @@ use rustix::process::Signal;
 use crate::needs;
 use crate::served::Served;
 use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, until};
-use crate::terminal::{GO_ON, MOVE, RELEASE, Terminal};
+use crate::terminal::{GO_ON, LEAVE, MOVE, RELEASE, Terminal};
 
 const SIGNALS: [Signal; 4] = [Signal::INT, Signal::TERM, Signal::HUP, Signal::QUIT];
 
 /// Each signal at the same moment of a run of its own; of the first the run is gone on with, where that is `quick`.
-fn each(plan: impl Fn(&str) -> String + Sync, quick: bool, moment: impl Fn(&Stage) + Sync, then: impl Fn(&Stage) + Sync) {
+fn each(
+    plan: impl Fn(&str) -> String + Sync,
+    quick: bool,
+    moment: impl Fn(&Stage) + Sync,
+    then: impl Fn(&Stage) + Sync,
+) {
     each_of(&SIGNALS, plan, quick, moment, then);
 }
 
@@ -49,18 +54,31 @@ fn as_it_is(plan: &str) -> String {
 
 /// So slow that a signal comes while it moves: the probe takes 0.4 s, a step of the ramp 2 s.
 fn slow(plan: &str) -> String {
-    plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um").replace("probe(0.1 mm", "probe(0.02 mm")
+    plan.replace(
+        "speed      = 20 mm/s",
+        "speed      = 0.05 mm/s\n  resolution = 1 um",
+    )
+    .replace("probe(0.1 mm", "probe(0.02 mm")
 }
 
 /// So slow that nobody waits for the end of a move: the probe takes 2 s, the first step of the ramp 400 s.
 fn endless(plan: &str) -> String {
-    let slower = plan.replace("speed      = 20 mm/s", "speed      = 0.01 mm/s\n  resolution = 1 um");
-    slower.replace("probe(0.1 mm", "probe(0.02 mm").replace("0.1 mm .. 0.8 mm step 0.1 mm", "[4, 5, 6] mm")
+    let slower = plan.replace(
+        "speed      = 20 mm/s",
+        "speed      = 0.01 mm/s\n  resolution = 1 um",
+    );
+    slower
+        .replace("probe(0.1 mm", "probe(0.02 mm")
+        .replace("0.1 mm .. 0.8 mm step 0.1 mm", "[4, 5, 6] mm")
 }
 
 /// How often the rig was asked for a reading.
 fn readings(stage: &Stage) -> usize {
-    stage.requests().iter().filter(|request| request.contains(">MEAS")).count()
+    stage
+        .requests()
+        .iter()
+        .filter(|request| request.contains(">MEAS"))
+        .count()
 }
 
 /// Waits until nothing has gone over the line for a while.
@@ -75,20 +93,43 @@ fn quiet(stage: &Stage) {
 #[test]
 fn at_rest_before_the_probe_of_the_gate() {
     // A second at rest, between the first reading and the one that is held against the zero.
-    each(as_it_is, true, |stage| until("the first reading", || readings(stage) > 0), |stage| assert!(stage.moves().is_empty()));
+    each(
+        as_it_is,
+        true,
+        |stage| until("the first reading", || readings(stage) > 0),
+        |stage| assert!(stage.moves().is_empty()),
+    );
 }
 
 #[test]
 fn in_the_probe_of_the_gate() {
     let out_and_back = |stage: &Stage| assert_eq!(stage.moves().len(), 2, "and nothing after it");
-    each_of(&SIGNALS[..1], slow, false, |stage| stage.after_moves(1), out_and_back);
-    each_of(&SIGNALS[1..], slow, false, |stage| stage.after_moves(1), |stage| assert_eq!(stage.moves().len(), 1));
+    each_of(
+        &SIGNALS[..1],
+        slow,
+        false,
+        |stage| stage.after_moves(1),
+        out_and_back,
+    );
+    each_of(
+        &SIGNALS[1..],
+        slow,
+        false,
+        |stage| stage.after_moves(1),
+        |stage| assert_eq!(stage.moves().len(), 1),
+    );
 }
 
 /// Nobody waits for the end of the move: a system that shuts down kills what has not ended after some seconds.
 #[test]
 fn in_the_middle_of_a_move_all_but_one_ctrl_c_hold_at_once() {
-    each_of(&SIGNALS[1..], endless, false, |stage| stage.after_moves(3), |stage| assert_eq!(stage.moves().len(), 3));
+    each_of(
+        &SIGNALS[1..],
+        endless,
+        false,
+        |stage| stage.after_moves(3),
+        |stage| assert_eq!(stage.moves().len(), 3),
+    );
     let stage = Stage::of(endless, "");
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);
@@ -124,7 +165,12 @@ fn while_a_step_settles() {
         let before = readings(stage);
         until("it settles", || readings(stage) > before + 5);
     };
-    each(|plan| plan.replace("for: 0.01 s", "for: 1 s"), false, settling, |stage| assert_eq!(stage.moves().len(), 3));
+    each(
+        |plan| plan.replace("for: 0.01 s", "for: 1 s"),
+        false,
+        settling,
+        |stage| assert_eq!(stage.moves().len(), 3),
+    );
 }
 
 #[test]
@@ -133,14 +179,24 @@ fn between_two_moves() {
         stage.after_moves(3);
         quiet(stage);
     };
-    each(|plan| plan.replace("pause         = 0 s", "pause         = 2 s"), false, pausing, |_| {});
+    each(
+        |plan| plan.replace("pause         = 0 s", "pause         = 2 s"),
+        false,
+        pausing,
+        |_| {},
+    );
 }
 
 #[test]
 fn in_a_stroke_of_a_sweep() {
     const SWEEP: &str = "damping sweep c {\n  velocities = [0.5, 1] mm/s\n  stroke     = 0.8 mm\n  stiffness  = k0.stiffness\n  \
                          rate       = 20 Hz\n}\n\ninspect look {";
-    each(|plan| plan.replace("inspect look {", SWEEP), false, |stage| stage.after_moves(20), |_| {});
+    each(
+        |plan| plan.replace("inspect look {", SWEEP),
+        false,
+        |stage| stage.after_moves(20),
+        |_| {},
+    );
 }
 
 #[test]
@@ -152,7 +208,10 @@ fn in_a_blow() {
 fn while_it_does_not_stop() {
     // A fifth of a step, in which targets and answers must be there, is 120 ms.
     let moving = |plan: &str| {
-        plan.replace("  duration  = 24 ms\n  pause     = 0 s", "  duration  = 6 ms\n  mode      = continuous(time_scale: 600)")
+        plan.replace(
+            "  duration  = 24 ms\n  pause     = 0 s",
+            "  duration  = 6 ms\n  mode      = continuous(time_scale: 600)",
+        )
     };
     each(moving, true, |stage| stage.after_moves(22), |_| {});
 }
@@ -161,7 +220,10 @@ fn while_it_does_not_stop() {
 #[test]
 fn while_somebody_is_asked() {
     std::thread::scope(|scope| {
-        for (sent, question) in SIGNALS.into_iter().flat_map(|sent| [(sent, RELEASE), (sent, GO_ON)]) {
+        for (sent, question) in SIGNALS
+            .into_iter()
+            .flat_map(|sent| [(sent, RELEASE), (sent, GO_ON)])
+        {
             scope.spawn(move || {
                 let stage = Stage::new();
                 let mut terminal = Terminal::start(&mut stage.run_with(&[]));
@@ -170,8 +232,15 @@ fn while_somebody_is_asked() {
                 }
                 terminal.answer(question, "");
                 signal(&terminal.child, sent);
+                // Who sits at the keys still looks at a rig that was released.
+                if question == GO_ON && [Signal::INT, Signal::QUIT].contains(&sent) {
+                    terminal.answer(LEAVE, "x\n");
+                }
                 let code = code(&mut terminal.child);
-                stage.held_and_sound(&Ended { code, told: terminal.shown() });
+                stage.held_and_sound(&Ended {
+                    code,
+                    told: terminal.shown(),
+                });
                 assert_eq!(stage.moves().is_empty(), question == RELEASE);
             });
         }
@@ -193,7 +262,10 @@ fn while_it_is_paused_by_a_key() {
                 quiet(&stage);
                 signal(&terminal.child, sent);
                 let code = code(&mut terminal.child);
-                stage.held_and_sound(&Ended { code, told: terminal.shown() });
+                stage.held_and_sound(&Ended {
+                    code,
+                    told: terminal.shown(),
+                });
             });
         }
     });
@@ -221,7 +293,11 @@ fn of_a_terminal_that_dies() {
         let mut command = Command::new("setsid");
         command.args(["--ctty", PSD]);
         stage.run_arguments(&mut command, yes);
-        let mut terminal = if screen { Terminal::with_screen(&mut command) } else { Terminal::start(&mut command) };
+        let mut terminal = if screen {
+            Terminal::with_screen(&mut command)
+        } else {
+            Terminal::start(&mut command)
+        };
         moment(&stage, &mut terminal);
         let (mut child, shown) = terminal.dies();
         let code = code(&mut child);
@@ -248,17 +324,28 @@ fn of_a_jog_on_its_way_and_while_it_asks() {
     std::thread::scope(|scope| {
         for sent in SIGNALS {
             scope.spawn(move || {
-                let stage = Stage::of(|plan| plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um"), "");
-                let jog = start(&mut stage.recorded_tool("jog", &["--to", "1 mm", "--speed", "0.05 mm/s", "--yes"]));
+                let stage = Stage::of(
+                    |plan| plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um"),
+                    "",
+                );
+                let jog = start(
+                    &mut stage
+                        .recorded_tool("jog", &["--to", "1 mm", "--speed", "0.05 mm/s", "--yes"]),
+                );
                 stage.after_moves(1);
                 signal(&jog, sent);
                 let ended = finish(jog);
-                assert!(ended.code == Some(4) && ended.told.contains("on request"), "{}", ended.told);
+                assert!(
+                    ended.code == Some(4) && ended.told.contains("on request"),
+                    "{}",
+                    ended.told
+                );
                 assert!(stage.is_held());
                 stage.proven();
             });
             scope.spawn(move || {
-                for (arguments, question) in [(&[][..], "where to?"), (&["--to", "1 mm"][..], MOVE)] {
+                for (arguments, question) in [(&[][..], "where to?"), (&["--to", "1 mm"][..], MOVE)]
+                {
                     let stage = Stage::new();
                     let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", arguments));
                     terminal.answer(question, "");
@@ -277,13 +364,20 @@ fn of_a_serving_in_its_gate_and_while_a_client_is_waited_for() {
     std::thread::scope(|scope| {
         for sent in SIGNALS {
             scope.spawn(move || {
-                let stage = Stage::new();
                 let arguments = ["--protocol", "nees", "--listen", "127.0.0.1:0", "--yes"];
-                let serving = start(&mut stage.recorded_tool("serve", &arguments));
-                until("the first reading", || readings(&stage) > 0);
-                signal(&serving, sent);
-                let ended = finish(serving);
-                assert!(ended.code == Some(4) && !ended.told.contains("ready: nees"), "{}", ended.told);
+                let served = || {
+                    let stage = Stage::new();
+                    let serving = start(&mut stage.recorded_tool("serve", &arguments));
+                    until("the first reading", || readings(&stage) > 0);
+                    signal(&serving, sent);
+                    (stage, finish(serving))
+                };
+                // A loaded machine may deliver the signal after the check. Then it is sent once more, to another run.
+                let in_its_gate = (0..5)
+                    .map(|_| served())
+                    .find(|(_, ended)| !ended.told.contains("ready: nees"));
+                let (stage, ended) = in_its_gate.expect("one signal of five comes in the gate");
+                assert_eq!(ended.code, Some(4), "{}", ended.told);
                 assert!(stage.moves().is_empty() && stage.is_held());
                 stage.proven();
             });

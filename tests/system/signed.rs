@@ -37,7 +37,12 @@ report {
 /// Whether a program ended with 0, in a folder.
 fn accepts(folder: &Path, program: &str, arguments: &[&str]) -> bool {
     let mut command = Command::new(program);
-    command.args(arguments).current_dir(folder).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
     command.status().unwrap().success()
 }
 
@@ -57,19 +62,60 @@ fn who_has_no_psd_proves_the_folder_too() {
     fs::write(bench.join("plan.psd"), PLAN).unwrap();
     fs::write(bench.join("password"), "correct horse\n").unwrap();
     assert!(accepts(bench, PSD, &["run", "plan.psd", "--out", "run"]));
-    assert!(accepts(bench, PSD, &["keygen", "psd.key", "--password-file", "password"]));
-    let by_psd = ["sign", "run", "--key", "psd.key", "--password-file", "password", "--role"];
-    assert!(accepts(bench, PSD, &[&by_psd[..], &["Prüfer", "--name", "Jörg Ä."]].concat()));
+    assert!(accepts(
+        bench,
+        PSD,
+        &["keygen", "psd.key", "--password-file", "password"]
+    ));
+    let by_psd = [
+        "sign",
+        "run",
+        "--key",
+        "psd.key",
+        "--password-file",
+        "password",
+        "--role",
+    ];
+    assert!(accepts(
+        bench,
+        PSD,
+        &[&by_psd[..], &["Prüfer", "--name", "Jörg Ä."]].concat()
+    ));
     assert!(accepts(bench, PSD, &[&by_psd[..], &["Quality"]].concat()));
 
-    let minisign =
-        |signature: &str| accepts(&run, "minisign", &["-Vm", "manifest.sha256", "-x", signature, "-p", "../psd.key.pub"]);
-    let sums = || accepts(&run, "sha256sum", &["--check", "--strict", "manifest.sha256"]);
-    for signature in ["manifest.sha256.pr-fer.minisig", "manifest.sha256.quality.minisig"] {
+    let minisign = |signature: &str| {
+        accepts(
+            &run,
+            "minisign",
+            &[
+                "-Vm",
+                "manifest.sha256",
+                "-x",
+                signature,
+                "-p",
+                "../psd.key.pub",
+            ],
+        )
+    };
+    let sums = || {
+        accepts(
+            &run,
+            "sha256sum",
+            &["--check", "--strict", "manifest.sha256"],
+        )
+    };
+    for signature in [
+        "manifest.sha256.pr-fer.minisig",
+        "manifest.sha256.quality.minisig",
+    ] {
         assert!(minisign(signature), "{signature}");
         let own = fs::read(run.join(signature)).unwrap();
         for line in 1..4 {
-            let start: usize = own.split_inclusive(|byte| *byte == b'\n').take(line).map(<[u8]>::len).sum();
+            let start: usize = own
+                .split_inclusive(|byte| *byte == b'\n')
+                .take(line)
+                .map(<[u8]>::len)
+                .sum();
             flip(&run.join(signature), start + 30);
             assert!(!minisign(signature), "{signature}, line {}", line + 1);
             fs::write(run.join(signature), &own).unwrap();
@@ -92,13 +138,25 @@ fn what_minisign_signs_with_its_own_key_psd_takes() {
     let bench = root.path();
     fs::write(bench.join("plan.psd"), PLAN).unwrap();
     assert!(accepts(bench, PSD, &["run", "plan.psd", "--out", "run"]));
-    assert!(accepts(bench, "minisign", &["-G", "-W", "-p", "own.pub", "-s", "own.key"]));
-    assert!(accepts(bench, "minisign", &["-Sm", "run/manifest.sha256", "-s", "own.key"]));
+    assert!(accepts(
+        bench,
+        "minisign",
+        &["-G", "-W", "-p", "own.pub", "-s", "own.key"]
+    ));
+    assert!(accepts(
+        bench,
+        "minisign",
+        &["-Sm", "run/manifest.sha256", "-s", "own.key"]
+    ));
     assert!(accepts(bench, PSD, &["verify", "run"]));
     // Good, and in none of the roles that the plan names.
     assert!(!accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
     for role in ["Quality", "Prüfer"] {
-        assert!(accepts(bench, PSD, &["sign", "run", "--key", "own.key", "--role", role]));
+        assert!(accepts(
+            bench,
+            PSD,
+            &["sign", "run", "--key", "own.key", "--role", role]
+        ));
     }
     assert!(accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
     flip(&bench.join("run/manifest.sha256.minisig"), 100);

@@ -83,7 +83,11 @@ pub fn impatient(plan: &str) -> String {
 
 /// The plan where the rig holds by itself once it has heard nothing for 8 s.
 pub fn watched(plan: &str) -> String {
-    swapped(&swapped(plan, "watchdog   = 30 s", "watchdog   = 8 s"), "reply_timeout: 2 s", "reply_timeout: 1 s")
+    swapped(
+        &swapped(plan, "watchdog   = 30 s", "watchdog   = 8 s"),
+        "reply_timeout: 2 s",
+        "reply_timeout: 1 s",
+    )
 }
 
 /// Nobody speaks with a rig that is [`watched`] until it has tripped.
@@ -122,12 +126,24 @@ impl Stage {
     }
 
     /// [`Self::of`] with more files in its folder.
-    pub fn laid_out(plan: impl Fn(&str) -> String, script: &str, files: impl FnOnce(&Path)) -> Self {
+    pub fn laid_out(
+        plan: impl Fn(&str) -> String,
+        script: &str,
+        files: impl FnOnce(&Path),
+    ) -> Self {
         let folder = tempfile::tempdir().unwrap();
         files(folder.path());
         let port = folder.path().join("rig");
-        fs::write(folder.path().join("plan.psd"), plan(&PLAN.replace("PORT", port.to_str().unwrap()))).unwrap();
-        let mut stage = Self { folder, simulator: None, logs: 0 };
+        fs::write(
+            folder.path().join("plan.psd"),
+            plan(&PLAN.replace("PORT", port.to_str().unwrap())),
+        )
+        .unwrap();
+        let mut stage = Self {
+            folder,
+            simulator: None,
+            logs: 0,
+        };
         stage.power_up(script);
         stage
     }
@@ -146,12 +162,18 @@ impl Stage {
         self.logs += 1;
         fs::write(self.path("script"), script).unwrap();
         let mut command = Command::new(PSD);
-        command.args(["rig", "simulate"]).arg(self.path("plan.psd")).args(["--rig", "bench", "--log"]).arg(self.log_path());
+        command
+            .args(["rig", "simulate"])
+            .arg(self.path("plan.psd"))
+            .args(["--rig", "bench", "--log"])
+            .arg(self.log_path());
         command.arg("--script").arg(self.path("script"));
         let told = File::create(self.path("simulator.told")).unwrap();
         self.simulator = Some(command.stdin(Stdio::null()).stderr(told).spawn().unwrap());
         let told = self.path("simulator.told");
-        until("the simulator stands in", || fs::read_to_string(&told).unwrap().contains("stands in"));
+        until("the simulator stands in", || {
+            fs::read_to_string(&told).unwrap().contains("stands in")
+        });
     }
 
     fn log_path(&self) -> PathBuf {
@@ -163,7 +185,12 @@ impl Stage {
         if let Some(mut simulator) = self.simulator.take() {
             signal(&simulator, Signal::INT);
             let status = ended(&mut simulator);
-            assert_eq!(status.code(), Some(0), "the simulator: {}", fs::read_to_string(self.path("simulator.told")).unwrap());
+            assert_eq!(
+                status.code(),
+                Some(0),
+                "the simulator: {}",
+                fs::read_to_string(self.path("simulator.told")).unwrap()
+            );
         }
     }
 
@@ -175,19 +202,29 @@ impl Stage {
     /// Number and target of every move since the last power-up, in order.
     pub fn moves(&self) -> Vec<String> {
         let log = self.log();
-        let moves = log.lines().filter_map(|line| line.split_once(" bench move "));
-        moves.map(|(_, what)| what.split(" m at ").next().unwrap().to_owned()).collect()
+        let moves = log
+            .lines()
+            .filter_map(|line| line.split_once(" bench move "));
+        moves
+            .map(|(_, what)| what.split(" m at ").next().unwrap().to_owned())
+            .collect()
     }
 
     /// What the host has sent since the last power-up, one request a line.
     pub fn requests(&self) -> Vec<String> {
         let log = self.log();
-        log.lines().filter_map(|line| line.split_once(" actuator > ")).map(|(_, what)| what.to_owned()).collect()
+        log.lines()
+            .filter_map(|line| line.split_once(" actuator > "))
+            .map(|(_, what)| what.to_owned())
+            .collect()
     }
 
     /// How often a program has said the first word of a conversation.
     pub fn greetings(&self) -> usize {
-        self.requests().iter().filter(|request| request.contains(">HELLO")).count()
+        self.requests()
+            .iter()
+            .filter(|request| request.contains(">HELLO"))
+            .count()
     }
 
     /// Waits until so many moves are done.
@@ -204,13 +241,25 @@ impl Stage {
 
     /// The same as a program that another program starts.
     pub fn run_arguments(&self, command: &mut Command, more: &[&str]) {
-        command.arg("run").arg(self.path("plan.psd")).args(["--rig", "bench", "--operator", "A. Tester", "--out"]);
+        command.arg("run").arg(self.path("plan.psd")).args([
+            "--rig",
+            "bench",
+            "--operator",
+            "A. Tester",
+            "--out",
+        ]);
         command.arg(self.path("run")).args(more);
     }
 
     pub fn resume_with(&self, more: &[&str]) -> Command {
         let mut command = Command::new(PSD);
-        command.arg("resume").arg(self.path("run")).args(["--operator", "B. Tester", "--reason", "it was interrupted", "--yes"]);
+        command.arg("resume").arg(self.path("run")).args([
+            "--operator",
+            "B. Tester",
+            "--reason",
+            "it was interrupted",
+            "--yes",
+        ]);
         command.args(more);
         command
     }
@@ -218,7 +267,11 @@ impl Stage {
     /// `psd rig TOOL` of the stage's plan and rig, with more arguments.
     pub fn tool(&self, tool: &str, more: &[&str]) -> Command {
         let mut command = Command::new(PSD);
-        command.args(["rig", tool]).arg(self.path("plan.psd")).args(["--rig", "bench"]).args(more);
+        command
+            .args(["rig", tool])
+            .arg(self.path("plan.psd"))
+            .args(["--rig", "bench"])
+            .args(more);
         command
     }
 
@@ -252,7 +305,11 @@ impl Stage {
         assert_eq!(ran.code, Some(4), "{}", ran.told);
         assert!(self.is_held(), "not held: {:#?}", self.requests());
         let verified = self.verify();
-        assert!(verified.code == Some(0) && verified.told.contains("INCOMPLETE"), "{}", verified.told);
+        assert!(
+            verified.code == Some(0) && verified.told.contains("INCOMPLETE"),
+            "{}",
+            verified.told
+        );
     }
 
     /// Goes on with the run to its end, whose record is then proven.
@@ -260,15 +317,22 @@ impl Stage {
         let resumed = wait(&mut self.resume_with(more));
         assert_eq!(resumed.code, Some(0), "{}", resumed.told);
         let verified = self.verify();
-        assert!(verified.code == Some(0) && !verified.told.contains("INCOMPLETE"), "{}", verified.told);
+        assert!(
+            verified.code == Some(0) && !verified.told.contains("INCOMPLETE"),
+            "{}",
+            verified.told
+        );
         resumed
     }
 
     /// Everything the run measured and computed, without the times at which it did.
     pub fn results(&self) -> String {
         let run = self.path("run");
-        let mut text: String = ["k0", "hit"].map(|name| without_times(&run.join("tables").join(format!("{name}.csv")))).concat();
-        let summary: serde_json::Value = serde_json::from_slice(&fs::read(run.join("summary.json")).unwrap()).unwrap();
+        let mut text: String = ["k0", "hit"]
+            .map(|name| without_times(&run.join("tables").join(format!("{name}.csv"))))
+            .concat();
+        let summary: serde_json::Value =
+            serde_json::from_slice(&fs::read(run.join("summary.json")).unwrap()).unwrap();
         for part in ["verdict", "requirements", "procedures"] {
             assert!(!summary[part].is_null(), "{part}");
         }
@@ -294,7 +358,10 @@ fn without_times(path: &Path) -> String {
     let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
     assert!(header.contains(&"wall_time_s"));
     let kept = |line: &str| -> String {
-        let fields = line.split(',').zip(&header).filter(|(_, name)| **name != "wall_time_s");
+        let fields = line
+            .split(',')
+            .zip(&header)
+            .filter(|(_, name)| **name != "wall_time_s");
         fields.map(|(field, _)| field).collect::<Vec<_>>().join(",") + "\n"
     };
     text.lines().map(kept).collect()
@@ -302,7 +369,12 @@ fn without_times(path: &Path) -> String {
 
 /// Starts a program whose words are kept until [`finish`].
 pub fn start(command: &mut Command) -> Child {
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
 }
 
 /// Waits for the end of what [`start`] started.
@@ -310,7 +382,10 @@ pub fn finish(mut child: Child) -> Ended {
     let status = ended(&mut child);
     let output = child.wait_with_output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-    Ended { code: status.code(), told: text(output.stderr) + &text(output.stdout) }
+    Ended {
+        code: status.code(),
+        told: text(output.stderr) + &text(output.stdout),
+    }
 }
 
 /// Runs a program to its end.

@@ -20,6 +20,9 @@ use crate::stage::{signal, until};
 pub const RELEASE: &str = "type RELEASE, or n: nothing moves";
 pub const GO_ON: &str = "type RELEASE, or n: the run ends here";
 pub const UNLOAD: &str = "type UNLOAD, or n: it stays held";
+pub const TO_UNLOAD: &str = "type u: unload";
+pub const TO_RESUME: &str = "type r: resume";
+pub const LEAVE: &str = "type x: leave; the rig stays held";
 pub const MOVE: &str = "type MOVE, or n: nothing moves";
 
 pub struct Terminal {
@@ -40,7 +43,12 @@ impl Terminal {
 
     /// Starts a program that has the screen to itself.
     pub fn with_screen(command: &mut Command) -> Self {
-        Self::of_size(100, command.env("TERM", "xterm-256color").env("LC_ALL", "C.UTF-8"))
+        Self::of_size(
+            100,
+            command
+                .env("TERM", "xterm-256color")
+                .env("LC_ALL", "C.UTF-8"),
+        )
     }
 
     fn of_size(columns: u16, command: &mut Command) -> Self {
@@ -53,7 +61,12 @@ impl Terminal {
         let path = std::ffi::OsStr::from_bytes(name.as_bytes());
         let end = File::options().read(true).write(true).open(path).unwrap();
         let (output, error) = (end.try_clone().unwrap(), end.try_clone().unwrap());
-        let child = command.stdin(end).stdout(output).stderr(error).spawn().unwrap();
+        let child = command
+            .stdin(end)
+            .stdout(output)
+            .stderr(error)
+            .spawn()
+            .unwrap();
         let shown = Arc::new(Mutex::new(Vec::new()));
         // Read without waiting, so that it can be closed at any time.
         rustix::io::ioctl_fionbio(&keys, true).unwrap();
@@ -65,19 +78,34 @@ impl Terminal {
             while !close.load(Ordering::SeqCst) {
                 match screen.read(&mut buffer) {
                     Ok(count) => sink.lock().unwrap().extend_from_slice(&buffer[..count]),
-                    Err(error) if error.kind() == ErrorKind::WouldBlock => std::thread::sleep(Duration::from_millis(2)),
+                    Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                        std::thread::sleep(Duration::from_millis(2));
+                    }
                     // A terminal that nobody writes to any more ends with an error.
                     Err(_) => return,
                 }
             }
         });
-        Self { child, keys: File::from(keys), shown, closed, reader, read: 0 }
+        Self {
+            child,
+            keys: File::from(keys),
+            shown,
+            closed,
+            reader,
+            read: 0,
+        }
     }
 
     /// Its window is closed. The program, and what it had shown by then.
     pub fn dies(self) -> (Child, String) {
         let shown = self.shown();
-        let Self { child, keys, closed, reader, .. } = self;
+        let Self {
+            child,
+            keys,
+            closed,
+            reader,
+            ..
+        } = self;
         closed.store(true, Ordering::SeqCst);
         reader.join().unwrap();
         drop(keys);
@@ -95,7 +123,11 @@ impl Terminal {
     /// Waits until this is drawn anew.
     pub fn redrawn(&self, text: &str) {
         let before = self.shown().len();
-        until(text, || self.shown().get(before..).is_some_and(|shown| shown.contains(text)));
+        until(text, || {
+            self.shown()
+                .get(before..)
+                .is_some_and(|shown| shown.contains(text))
+        });
     }
 
     /// Another size of the window, as a window manager gives it.
@@ -106,8 +138,12 @@ impl Terminal {
 
     /// Waits for a question behind the last one, then types.
     pub fn answer(&mut self, question: &str, keys: &str) {
-        let behind =
-            |shown: &str| shown.get(self.read..).and_then(|new| new.find(question)).map(|at| self.read + at + question.len());
+        let behind = |shown: &str| {
+            shown
+                .get(self.read..)
+                .and_then(|new| new.find(question))
+                .map(|at| self.read + at + question.len())
+        };
         until(question, || behind(&self.shown()).is_some());
         self.read = behind(&self.shown()).unwrap();
         self.press(keys);
@@ -121,11 +157,18 @@ impl Terminal {
             let before = self.shown().len();
             self.resize(columns);
             std::thread::sleep(Duration::from_millis(300));
-            self.shown().get(before..).is_some_and(|shown| shown.contains(text))
+            self.shown()
+                .get(before..)
+                .is_some_and(|shown| shown.contains(text))
         });
     }
 }
 
 const fn size(columns: u16) -> Winsize {
-    Winsize { ws_row: if columns == 0 { 0 } else { 30 }, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 }
+    Winsize {
+        ws_row: if columns == 0 { 0 } else { 30 },
+        ws_col: columns,
+        ws_xpixel: 0,
+        ws_ypixel: 0,
+    }
 }

@@ -18,11 +18,22 @@ fn on_one_port() {
     second
         .arg("run")
         .arg(stage.path("plan.psd"))
-        .args(["--rig", "bench", "--yes", "--operator", "A. Tester", "--out"])
+        .args([
+            "--rig",
+            "bench",
+            "--yes",
+            "--operator",
+            "A. Tester",
+            "--out",
+        ])
         .arg(stage.path("second"));
     let second = wait(&mut second);
     assert_eq!(second.code, Some(3), "{}", second.told);
-    assert!(second.told.contains("error:") && second.told.contains("rig"), "{}", second.told);
+    assert!(
+        second.told.contains("error:") && second.told.contains("rig"),
+        "{}",
+        second.told
+    );
     assert_eq!(stage.greetings(), greetings, "not even the first word");
     assert!(!stage.path("second").exists(), "nothing is left behind");
     signal(&first, Signal::CONT);
@@ -38,7 +49,11 @@ fn on_one_record() {
     signal(&first, Signal::INT);
     assert_eq!(finish(first).code, Some(4));
     let resumed = start(&mut stage.resume_with(&[]));
-    until("the run goes on", || fs::read_to_string(stage.journal()).unwrap().contains(" RESUME "));
+    until("the run goes on", || {
+        fs::read_to_string(stage.journal())
+            .unwrap()
+            .contains(" RESUME ")
+    });
     signal(&resumed, Signal::STOP);
     let greetings = stage.greetings();
     let second = wait(&mut stage.resume_with(&[]));
@@ -58,11 +73,25 @@ fn a_report_and_a_proof_of_a_run_that_is_going_on_are_refused_and_spoil_nothing(
     stage.after_moves(8);
     signal(&run, Signal::STOP);
     for more in [&[][..], &["--out", "elsewhere"]] {
-        let report = wait(Command::new(PSD).arg("report").arg(stage.path("run")).args(more).current_dir(stage.path("")));
-        assert!(report.code == Some(3) && report.told.contains("in use by another psd"), "{}", report.told);
+        let report = wait(
+            Command::new(PSD)
+                .arg("report")
+                .arg(stage.path("run"))
+                .args(more)
+                .current_dir(stage.path("")),
+        );
+        assert!(
+            report.code == Some(3) && report.told.contains("in use by another psd"),
+            "{}",
+            report.told
+        );
     }
     let verified = stage.verify();
-    assert!(verified.code == Some(3) && verified.told.contains("in use by another psd"), "{}", verified.told);
+    assert!(
+        verified.code == Some(3) && verified.told.contains("in use by another psd"),
+        "{}",
+        verified.told
+    );
     signal(&run, Signal::CONT);
     let ran = finish(run);
     assert_eq!(ran.code, Some(0), "{}", ran.told);
@@ -76,8 +105,21 @@ fn results_that_somebody_else_put_there_are_not_overwritten_and_the_way_out_is_t
     stage.after_moves(8);
     fs::write(stage.path("run").join("summary.json"), "{}").unwrap();
     let ran = finish(run);
-    assert!(ran.code == Some(3) && ran.told.contains("`psd report RUN --out FOLDER`"), "{}", ran.told);
-    assert_eq!(fs::read(stage.path("run").join("summary.json")).unwrap(), b"{}");
-    let report = wait(Command::new(PSD).arg("report").arg(stage.path("run")).arg("--out").arg(stage.path("anew")));
+    assert!(
+        ran.code == Some(3) && ran.told.contains("`psd report RUN --out FOLDER`"),
+        "{}",
+        ran.told
+    );
+    assert_eq!(
+        fs::read(stage.path("run").join("summary.json")).unwrap(),
+        b"{}"
+    );
+    let report = wait(
+        Command::new(PSD)
+            .arg("report")
+            .arg(stage.path("run"))
+            .arg("--out")
+            .arg(stage.path("anew")),
+    );
     assert_eq!(report.code, Some(0), "{}", report.told);
 }

@@ -7,28 +7,44 @@ use std::process::Command;
 use rustix::process::Signal;
 
 use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
-use crate::terminal::{GO_ON, RELEASE, Terminal, UNLOAD};
+use crate::terminal::{GO_ON, LEAVE, RELEASE, TO_UNLOAD, Terminal, UNLOAD};
 
 /// Looked at where it is bent.
 fn unloading(plan: &str) -> String {
     let plan = plan.replace("safe_state = hold", "safe_state = unload");
-    let plan = plan.replace("inspect look {", "move out { to = 0.2 mm }\n\ninspect look {");
+    let plan = plan.replace(
+        "inspect look {",
+        "move out { to = 0.2 mm }\n\ninspect look {",
+    );
     plan.replace("impact hit {", "move back { to = 0 mm }\n\nimpact hit {")
 }
 
 /// A move takes ten seconds and more: nobody waits for its end.
 fn slow(plan: &str) -> String {
-    plan.replace("speed      = 20 mm/s", "speed      = 0.05 mm/s\n  resolution = 1 um").replace("probe(0.1 mm", "probe(0.02 mm")
+    plan.replace(
+        "speed      = 20 mm/s",
+        "speed      = 0.05 mm/s\n  resolution = 1 um",
+    )
+    .replace("probe(0.1 mm", "probe(0.02 mm")
 }
 
 /// At the look at the specimen, with the rig where it bends it.
 fn at_the_look(stage: &Stage, with_screen: bool) -> Terminal {
     let command = &mut stage.run_with(&[]);
-    let mut terminal = if with_screen { Terminal::with_screen(command) } else { Terminal::start(command) };
+    let mut terminal = if with_screen {
+        Terminal::with_screen(command)
+    } else {
+        Terminal::start(command)
+    };
     if with_screen {
         terminal.drawn("type RELEASE");
         terminal.press("RELEASE\r");
-        until("the way to the look", || stage.moves().last().is_some_and(|last| last.ends_with(" to 0.0002")));
+        until("the way to the look", || {
+            stage
+                .moves()
+                .last()
+                .is_some_and(|last| last.ends_with(" to 0.0002"))
+        });
         terminal.drawn("type RELEASE");
     } else {
         terminal.answer(RELEASE, "RELEASE\n");
@@ -41,7 +57,11 @@ fn at_the_look(stage: &Stage, with_screen: bool) -> Terminal {
 fn held_and_goes_on(stage: &Stage, moves: &[String], ran: &Ended) {
     assert_eq!(stage.moves(), moves, "nothing moved unasked: {}", ran.told);
     stage.held_and_sound(ran);
-    assert!(!fs::read_to_string(stage.journal()).unwrap().contains("unloading to where the run began"));
+    assert!(
+        !fs::read_to_string(stage.journal())
+            .unwrap()
+            .contains("unloading to where the run began")
+    );
     stage.goes_on(&[]);
 }
 
@@ -54,9 +74,27 @@ fn a_rig_that_may_unload_is_held_when_nobody_says_yes() {
     signal(&run, Signal::INT);
     let ran = finish(run);
     let moves = stage.moves();
-    assert!(ran.told.contains("held at ") && ran.told.contains("to go on: psd resume "), "{}", ran.told);
+    assert!(
+        ran.told.contains("held at ") && ran.told.contains("to go on: psd resume "),
+        "{}",
+        ran.told
+    );
     held_and_goes_on(&stage, &moves, &ran);
-    for (looked, then) in [("n\n", Some("n\n")), ("n\n", Some("\u{4}")), ("\u{3}", Some("n\n")), ("\u{4}", None)] {
+    let all: [(&str, &[(&str, &str)]); 6] = [
+        (
+            "n\n",
+            &[(TO_UNLOAD, "u\n"), (UNLOAD, "n\n"), (LEAVE, "x\n")],
+        ),
+        ("n\n", &[(TO_UNLOAD, "u\n"), (UNLOAD, "\u{4}")]),
+        ("n\n", &[(LEAVE, "UNLOAD\n"), (LEAVE, "\u{4}")]),
+        (
+            "\u{3}",
+            &[(TO_UNLOAD, "u\n"), (UNLOAD, "n\n"), (LEAVE, "x\n")],
+        ),
+        ("\u{3}", &[(LEAVE, "\u{3}")]),
+        ("\u{4}", &[]),
+    ];
+    for (looked, then) in all {
         let stage = Stage::of(unloading, "");
         let mut terminal = at_the_look(&stage, false);
         let moves = stage.moves();
@@ -65,11 +103,23 @@ fn a_rig_that_may_unload_is_held_when_nobody_says_yes() {
         } else {
             terminal.press(looked);
         }
-        if let Some(then) = then {
-            terminal.answer(UNLOAD, then);
+        for (question, keys) in then {
+            if *keys == "\u{3}" {
+                terminal.answer(question, "");
+                signal(&terminal.child, Signal::INT);
+            } else {
+                terminal.answer(question, keys);
+            }
         }
         let code = code(&mut terminal.child);
-        held_and_goes_on(&stage, &moves, &Ended { code, told: terminal.shown() });
+        held_and_goes_on(
+            &stage,
+            &moves,
+            &Ended {
+                code,
+                told: terminal.shown(),
+            },
+        );
     }
 }
 
@@ -88,7 +138,10 @@ fn a_terminal_that_dies_at_a_look_leaves_the_rig_where_it_is() {
 
 #[test]
 fn a_yes_unloads_and_the_screen_says_that_the_rig_moves() {
-    let stage = Stage::of(|plan| slow(&unloading(plan)).replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm"), "");
+    let stage = Stage::of(
+        |plan| slow(&unloading(plan)).replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm"),
+        "",
+    );
     let mut terminal = at_the_look(&stage, true);
     let moves = stage.moves().len();
     terminal.press("n\r");
@@ -103,20 +156,38 @@ fn a_yes_unloads_and_the_screen_says_that_the_rig_moves() {
     terminal.drawn(" x leave");
     terminal.press("x");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
-    assert!(stage.moves().last().unwrap().ends_with(" to 0"), "{:?}", stage.moves());
+    assert!(
+        stage.moves().last().unwrap().ends_with(" to 0"),
+        "{:?}",
+        stage.moves()
+    );
     stage.proven();
 }
 
 #[test]
 fn a_limit_on_the_way_unloads_as_the_plan_says() {
     let hard = |plan: &str| {
-        unloading(plan).replace("velocity = 0.1 m/s", "velocity = 0.4 m/s").replace("-5 mm .. 10 mm", "-5 mm .. 0.9 mm")
+        unloading(plan)
+            .replace("velocity = 0.1 m/s", "velocity = 0.4 m/s")
+            .replace("-5 mm .. 10 mm", "-5 mm .. 0.9 mm")
     };
     let stage = Stage::of(hard, "");
     let ran = wait(&mut stage.run_with(&["--yes"]));
-    assert!(ran.code == Some(4) && ran.told.contains("is outside its limit"), "{}", ran.told);
-    assert!(stage.moves().last().unwrap().ends_with(" to 0"), "{:?}", stage.moves());
-    assert!(ran.told.contains("unloading to where the run began"), "{}", ran.told);
+    assert!(
+        ran.code == Some(4) && ran.told.contains("is outside its limit"),
+        "{}",
+        ran.told
+    );
+    assert!(
+        stage.moves().last().unwrap().ends_with(" to 0"),
+        "{:?}",
+        stage.moves()
+    );
+    assert!(
+        ran.told.contains("unloading to where the run began"),
+        "{}",
+        ran.told
+    );
     stage.proven();
 }
 
@@ -130,23 +201,51 @@ fn a_rig_that_was_moved_by_hand_is_not_gone_on_with() {
     std::thread::sleep(std::time::Duration::from_millis(100));
     signal(&run, Signal::INT);
     let ran = finish(run);
-    assert!(ran.code == Some(4) && ran.told.contains("held at "), "{}", ran.told);
+    assert!(
+        ran.code == Some(4) && ran.told.contains("held at "),
+        "{}",
+        ran.told
+    );
     let journal = fs::read(stage.journal()).unwrap();
-    assert_eq!(String::from_utf8_lossy(&journal).matches(" HELD {").count(), 1);
+    assert_eq!(
+        String::from_utf8_lossy(&journal).matches(" HELD {").count(),
+        1
+    );
     let folder = stage.path("jogged");
-    let jogged = ["--operator", "A. Tester", "--to", "0 mm", "--yes", "--out", folder.to_str().unwrap()];
+    let jogged = [
+        "--operator",
+        "A. Tester",
+        "--to",
+        "0 mm",
+        "--yes",
+        "--out",
+        folder.to_str().unwrap(),
+    ];
     assert_eq!(wait(&mut stage.tool("jog", &jogged)).code, Some(0));
     let moves = stage.moves();
     let refused = wait(&mut stage.resume_with(&[]));
-    assert!(refused.code == Some(3) && refused.told.contains("the record left it at"), "{}", refused.told);
-    assert_eq!(stage.moves(), moves, "it is between where the way began and where it led, and not where it was held");
+    assert!(
+        refused.code == Some(3) && refused.told.contains("the record left it at"),
+        "{}",
+        refused.told
+    );
+    assert_eq!(
+        stage.moves(),
+        moves,
+        "it is between where the way began and where it led, and not where it was held"
+    );
     assert!(fs::read(stage.journal()).unwrap() == journal);
 }
 
 /// `psd resume` in front of a person.
 fn resumed(stage: &Stage) -> Terminal {
     let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-    command.arg("resume").arg(stage.path("run")).args(["--operator", "B. Tester", "--reason", "it was interrupted"]);
+    command.arg("resume").arg(stage.path("run")).args([
+        "--operator",
+        "B. Tester",
+        "--reason",
+        "it was interrupted",
+    ]);
     Terminal::start(&mut command)
 }
 
@@ -164,12 +263,20 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
         let mut terminal = resumed(&stage);
         terminal.answer(RELEASE, "");
         let shown = terminal.shown();
-        assert!(shown.contains("found at ") && shown.contains("it will move to 0.1000 mm at 0.05 mm/s"), "{shown}");
+        assert!(
+            shown.contains("found at ") && shown.contains("it will move to 0.1000 mm at 0.05 mm/s"),
+            "{shown}"
+        );
         terminal.press(no);
         assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
-        until("its last words", || terminal.shown().contains("nothing moved"));
+        until("its last words", || {
+            terminal.shown().contains("nothing moved")
+        });
         assert_eq!(stage.moves(), moves);
-        assert!(fs::read(stage.journal()).unwrap() == journal, "the record is as it was");
+        assert!(
+            fs::read(stage.journal()).unwrap() == journal,
+            "the record is as it was"
+        );
     }
     let mut terminal = resumed(&stage);
     terminal.answer(RELEASE, "i it looks well\n");
@@ -179,11 +286,17 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
     signal(&terminal.child, Signal::TERM);
     let _ = code(&mut terminal.child);
     let record = fs::read_to_string(stage.journal()).unwrap();
-    assert!(record.contains(r#""released":"B. Tester: it looks well""#), "{record}");
+    assert!(
+        record.contains(r#""released":"B. Tester: it looks well""#),
+        "{record}"
+    );
     let verified = stage.verify();
     assert!(verified.code == Some(0), "{}", verified.told);
     let told = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
-    assert!(told.contains("had been held on the way and was sent anew, from "), "{told}");
+    assert!(
+        told.contains("had been held on the way and was sent anew, from "),
+        "{told}"
+    );
 }
 
 #[test]
@@ -191,7 +304,11 @@ fn who_cannot_be_heard_is_told_to_press_the_emergency_stop() {
     let stage = Stage::of(str::to_owned, "after 8 moves: hang up before reply");
     let ran = wait(&mut stage.run_with(&["--yes"]));
     assert_eq!(ran.code, Some(3), "{}", ran.told);
-    assert!(ran.told.contains("NOT CONFIRMED HELD") && ran.told.contains("use the emergency stop"), "{}", ran.told);
+    assert!(
+        ran.told.contains("NOT CONFIRMED HELD") && ran.told.contains("use the emergency stop"),
+        "{}",
+        ran.told
+    );
     let verified = stage.verify();
     assert!(verified.code == Some(0), "{}", verified.told);
     let certificate = fs::read_to_string(stage.path("run").join("certificate.html")).unwrap();
@@ -221,7 +338,11 @@ fn ctrl_c_is_answered_at_once_where_there_is_no_screen() {
     let mut terminal = Terminal::start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);
     signal(&terminal.child, Signal::INT);
-    until("a word", || terminal.shown().contains("stopping at the end of this step"));
+    until("a word", || {
+        terminal
+            .shown()
+            .contains("stopping at the end of this step")
+    });
     signal(&terminal.child, Signal::INT);
     until("a word", || terminal.shown().contains("holding now"));
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());

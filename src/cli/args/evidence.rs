@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{date, name};
-use crate::diagnostic::excerpt::one_line;
+use crate::text::diagnostic::excerpt::one_line;
 
 /// The longest reason, characters.
 const REASON: usize = 1000;
@@ -52,7 +52,9 @@ pub struct SignArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Writes the secret key to FILE and the public one to FILE.pub, in minisign's format.")]
+#[command(
+    after_help = "Writes the secret key to FILE and the public one to FILE.pub, in minisign's format."
+)]
 pub struct KeygenArguments {
     /// The secret key's file, new, outside every run folder
     #[arg(value_name = "FILE")]
@@ -66,8 +68,10 @@ pub struct KeygenArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "An amendment changes particulars of the `plan` block, such as the customer's name, and no measured or\n\
-    computed number. Both reports are kept; each has an id of its own.")]
+#[command(
+    after_help = "An amendment changes particulars of the `plan` block, such as the customer's name, and no measured or\n\
+    computed number. Both reports are kept; each has an id of its own."
+)]
 pub struct ReportArguments {
     /// The run folder
     #[arg(value_name = "RUN")]

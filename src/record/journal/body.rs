@@ -19,14 +19,19 @@ pub const DEEPEST: usize = 64;
 pub fn write(out: &mut Vec<u8>, body: &impl Serialize) -> Result<(), Refusal> {
     finite::check(body)?;
     let mut serializer = Serializer::with_formatter(out, Ascii);
-    body.serialize(&mut serializer).map_err(|error| Refusal::NotJson(error.to_string()))
+    body.serialize(&mut serializer)
+        .map_err(|error| Refusal::NotJson(error.to_string()))
 }
 
 /// Appends the body as JSON, with fields of the journal's own before it.
 ///
 /// # Errors
 /// As `write`; or the body has such a field itself.
-pub fn write_with(out: &mut Vec<u8>, own: &[(&'static str, Value)], body: &impl Serialize) -> Result<(), Refusal> {
+pub fn write_with(
+    out: &mut Vec<u8>,
+    own: &[(&'static str, Value)],
+    body: &impl Serialize,
+) -> Result<(), Refusal> {
     finite::check(body)?;
     let Ok(Value::Object(given)) = serde_json::to_value(body) else {
         return Err(Refusal::NotAnObject);
@@ -34,7 +39,9 @@ pub fn write_with(out: &mut Vec<u8>, own: &[(&'static str, Value)], body: &impl 
     if let Some((name, _)) = own.iter().find(|(name, _)| given.contains_key(*name)) {
         return Err(Refusal::Reserved(name));
     }
-    let own = own.iter().map(|(name, value)| ((*name).to_owned(), value.clone()));
+    let own = own
+        .iter()
+        .map(|(name, value)| ((*name).to_owned(), value.clone()));
     write(out, &own.chain(given).collect::<serde_json::Map<_, _>>())
 }
 
@@ -42,7 +49,11 @@ pub fn write_with(out: &mut Vec<u8>, own: &[(&'static str, Value)], body: &impl 
 struct Ascii;
 
 impl Formatter for Ascii {
-    fn write_string_fragment<W: ?Sized + Write>(&mut self, writer: &mut W, fragment: &str) -> io::Result<()> {
+    fn write_string_fragment<W: ?Sized + Write>(
+        &mut self,
+        writer: &mut W,
+        fragment: &str,
+    ) -> io::Result<()> {
         // Control characters never come here; DEL does.
         if fragment.bytes().all(|byte| byte < 0x7f) {
             return writer.write_all(fragment.as_bytes());
@@ -89,7 +100,11 @@ mod tests {
         let mut out = b"before ".to_vec();
         write_with(&mut out, &[("format", json!(1))], &json!({"plan": "ö"})).unwrap();
         assert_eq!(out, br#"before {"format":1,"plan":"\u00f6"}"#);
-        let twice = write_with(&mut out, &[("count", json!(1)), ("head", json!(""))], &json!({"head": 2}));
+        let twice = write_with(
+            &mut out,
+            &[("count", json!(1)), ("head", json!(""))],
+            &json!({"head": 2}),
+        );
         assert_eq!(twice, Err(Refusal::Reserved("head")));
     }
 }

@@ -22,8 +22,16 @@ impl Chain {
         hash.update(self.0);
         hash.update(said);
         let mut digits = [0; CHAIN_DIGITS];
-        for (pair, byte) in digits.as_chunks_mut::<2>().0.iter_mut().zip(hash.finalize()) {
-            *pair = [DIGITS[usize::from(byte >> 4)], DIGITS[usize::from(byte & 15)]];
+        for (pair, byte) in digits
+            .as_chunks_mut::<2>()
+            .0
+            .iter_mut()
+            .zip(hash.finalize())
+        {
+            *pair = [
+                DIGITS[usize::from(byte >> 4)],
+                DIGITS[usize::from(byte & 15)],
+            ];
         }
         Self(digits)
     }
@@ -53,7 +61,10 @@ mod tests {
     #[test]
     fn it_is_what_sha256sum_says() {
         let first = Chain::START.after(br#"1 HEADER {"format":1}"#);
-        assert_eq!(first.as_str(), "a3f4d32628859cf04d3fe4f65d148db18d47efb841f62a386e7962222dc3963a");
+        assert_eq!(
+            first.as_str(),
+            "a3f4d32628859cf04d3fe4f65d148db18d47efb841f62a386e7962222dc3963a"
+        );
         assert_eq!(
             first.after(br#"2 EVENT {"text":"a b"}"#).as_str(),
             "faf9030fc3c21c421a1032c227b5bafa4963c2ad76c6859429fd4e0ccb267395"

@@ -27,7 +27,9 @@ pub enum Wrong {
     Checksum,
     #[error("record {found} stands where record {expected} belongs")]
     Sequence { expected: u64, found: u64 },
-    #[error("the chain does not lead here from the record before: one of the two was altered, or comes from another run")]
+    #[error(
+        "the chain does not lead here from the record before: one of the two was altered, or comes from another run"
+    )]
     Chain,
     #[error("no record is called {0}")]
     UnknownKind(String),

@@ -9,7 +9,11 @@ use super::EntryKind;
 pub enum JournalFault {
     /// The disk failed. Final: every later call gives the same fault and does not ask the disk again.
     #[error("the journal cannot be {doing}: {text}")]
-    Storage { doing: Doing, kind: io::ErrorKind, text: String },
+    Storage {
+        doing: Doing,
+        kind: io::ErrorKind,
+        text: String,
+    },
     /// The record is not one; nothing was written, and the journal can go on.
     #[error("the journal refuses a record: {0}")]
     Refused(#[from] Refusal),
@@ -17,7 +21,11 @@ pub enum JournalFault {
 
 impl JournalFault {
     pub(super) fn storage(doing: Doing, error: &io::Error) -> Self {
-        Self::Storage { doing, kind: error.kind(), text: error.to_string() }
+        Self::Storage {
+            doing,
+            kind: error.kind(),
+            text: error.to_string(),
+        }
     }
 }
 

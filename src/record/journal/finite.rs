@@ -12,7 +12,8 @@ use super::body::DEEPEST;
 /// It is no object, or a part of it would not read back as it is.
 pub fn check(body: &impl Serialize) -> Result<(), Refusal> {
     let mut walk = Walk { depth: 0 };
-    body.serialize(&mut walk).map_err(|Refused(refusal)| refusal)
+    body.serialize(&mut walk)
+        .map_err(|Refused(refusal)| refusal)
 }
 
 /// Walks a value. Objects and lists count their depth; at depth 0 only an object will do.
@@ -34,7 +35,11 @@ type Walked = Result<(), Refused>;
 
 impl Walk {
     const fn leaf(&self) -> Walked {
-        if self.depth == 0 { Err(Refused(Refusal::NotAnObject)) } else { Ok(()) }
+        if self.depth == 0 {
+            Err(Refused(Refusal::NotAnObject))
+        } else {
+            Ok(())
+        }
     }
 
     const fn open(&mut self) -> Walked {
@@ -104,7 +109,11 @@ impl<'a> Serializer for &'a mut Walk {
     }
 
     fn serialize_f64(self, value: f64) -> Walked {
-        if value.is_finite() { self.leaf() } else { Err(Refused(Refusal::NotFinite)) }
+        if value.is_finite() {
+            self.leaf()
+        } else {
+            Err(Refused(Refusal::NotFinite))
+        }
     }
 
     fn serialize_bytes(self, _: &[u8]) -> Walked {
@@ -135,7 +144,13 @@ impl<'a> Serializer for &'a mut Walk {
         value.serialize(self)
     }
 
-    fn serialize_newtype_variant<T: Serialize + ?Sized>(self, _: &'static str, _: u32, _: &'static str, value: &T) -> Walked {
+    fn serialize_newtype_variant<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        _: u32,
+        _: &'static str,
+        value: &T,
+    ) -> Walked {
         self.open()?;
         value.serialize(&mut *self)?;
         self.depth -= 1;
@@ -154,7 +169,13 @@ impl<'a> Serializer for &'a mut Walk {
         self.list()
     }
 
-    fn serialize_tuple_variant(self, _: &'static str, _: u32, _: &'static str, _: usize) -> Result<Variant<'a>, Refused> {
+    fn serialize_tuple_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Variant<'a>, Refused> {
         self.variant()
     }
 
@@ -166,7 +187,13 @@ impl<'a> Serializer for &'a mut Walk {
         self.object()
     }
 
-    fn serialize_struct_variant(self, _: &'static str, _: u32, _: &'static str, _: usize) -> Result<Variant<'a>, Refused> {
+    fn serialize_struct_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        _: &'static str,
+        _: usize,
+    ) -> Result<Variant<'a>, Refused> {
         self.variant()
     }
 }
@@ -243,24 +270,55 @@ mod tests {
     #[test]
     fn finite_objects_pass_in_every_shape_serde_knows() {
         assert_eq!(check(&json!({})), Ok(()));
-        assert_eq!(check(&json!({"a": [1, -2, 0.5, null, true, "nan"], "b": {"c": {}}})), Ok(()));
-        assert_eq!(check(&Some(Body { part: (1_u8, 'x', f32::MIN, Some(f64::MAX), ()) })), Ok(()));
         assert_eq!(
-            check(&Body { part: [Shape::Point, Shape::Circle(1.0), Shape::Line(0.0, -0.0), Shape::Box { width: 5e-324 }] }),
+            check(&json!({"a": [1, -2, 0.5, null, true, "nan"], "b": {"c": {}}})),
             Ok(())
         );
-        assert_eq!(check(&Shape::Line(1.0, 2.0)), Ok(()), "a variant with content is an object");
+        assert_eq!(
+            check(&Some(Body {
+                part: (1_u8, 'x', f32::MIN, Some(f64::MAX), ())
+            })),
+            Ok(())
+        );
+        assert_eq!(
+            check(&Body {
+                part: [
+                    Shape::Point,
+                    Shape::Circle(1.0),
+                    Shape::Line(0.0, -0.0),
+                    Shape::Box { width: 5e-324 }
+                ]
+            }),
+            Ok(())
+        );
+        assert_eq!(
+            check(&Shape::Line(1.0, 2.0)),
+            Ok(()),
+            "a variant with content is an object"
+        );
     }
 
     #[test]
     fn no_number_that_is_none_passes_wherever_it_stands() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            for shape in [Shape::Circle(bad), Shape::Line(0.0, bad), Shape::Box { width: bad }] {
+            for shape in [
+                Shape::Circle(bad),
+                Shape::Line(0.0, bad),
+                Shape::Box { width: bad },
+            ] {
                 assert_eq!(check(&shape), Err(Refusal::NotFinite));
             }
             assert_eq!(check(&Body { part: bad }), Err(Refusal::NotFinite));
-            assert_eq!(check(&Body { part: vec![Some((0, bad))] }), Err(Refusal::NotFinite));
-            assert_eq!(check(&std::collections::BTreeMap::from([("a", bad)])), Err(Refusal::NotFinite));
+            assert_eq!(
+                check(&Body {
+                    part: vec![Some((0, bad))]
+                }),
+                Err(Refusal::NotFinite)
+            );
+            assert_eq!(
+                check(&std::collections::BTreeMap::from([("a", bad)])),
+                Err(Refusal::NotFinite)
+            );
         }
         assert_eq!(check(&Body { part: f32::NAN }), Err(Refusal::NotFinite));
         assert_eq!(check(&Body { part: u128::MAX }), Err(Refusal::TooWide));
@@ -269,7 +327,15 @@ mod tests {
 
     #[test]
     fn only_objects_are_bodies() {
-        for body in [json!(null), json!(1), json!("text"), json!([]), json!([{}]), json!(true), json!(0.5)] {
+        for body in [
+            json!(null),
+            json!(1),
+            json!("text"),
+            json!([]),
+            json!([{}]),
+            json!(true),
+            json!(0.5),
+        ] {
             assert_eq!(check(&body), Err(Refusal::NotAnObject), "{body}");
         }
         assert_eq!(check(&None::<Body<u8>>), Err(Refusal::NotAnObject));
@@ -282,9 +348,27 @@ mod tests {
         let deep = |levels: usize| (1..levels).fold(json!({}), |inside, _| json!({ "a": inside }));
         assert_eq!(check(&deep(DEEPEST)), Ok(()));
         assert_eq!(check(&deep(DEEPEST + 1)), Err(Refusal::TooDeep));
-        assert_eq!(check(&Value::from_iter([("a", Value::from(vec![deep(DEEPEST - 2); 3]))])), Ok(()));
-        assert_eq!(check(&Value::from_iter([("a", Value::from(vec![deep(DEEPEST - 1)]))])), Err(Refusal::TooDeep));
-        let variants = (0..DEEPEST).map(|_| Shape::Box { width: 1.0 }).collect::<Vec<_>>();
-        assert_eq!(check(&Body { part: variants }), Ok(()), "a closed variant is closed");
+        assert_eq!(
+            check(&Value::from_iter([(
+                "a",
+                Value::from(vec![deep(DEEPEST - 2); 3])
+            )])),
+            Ok(())
+        );
+        assert_eq!(
+            check(&Value::from_iter([(
+                "a",
+                Value::from(vec![deep(DEEPEST - 1)])
+            )])),
+            Err(Refusal::TooDeep)
+        );
+        let variants = (0..DEEPEST)
+            .map(|_| Shape::Box { width: 1.0 })
+            .collect::<Vec<_>>();
+        assert_eq!(
+            check(&Body { part: variants }),
+            Ok(()),
+            "a closed variant is closed"
+        );
     }
 }

@@ -35,8 +35,20 @@ pub struct Line {
 
 impl Line {
     /// A record that says `body`, an object; written as `json`.
-    pub(super) fn as_written(seq: u64, kind: EntryKind, body: &Value, json: &str, offset: u64) -> Self {
-        Self { seq, kind, json: json.into(), time: time_of(body), offset }
+    pub(super) fn as_written(
+        seq: u64,
+        kind: EntryKind,
+        body: &Value,
+        json: &str,
+        offset: u64,
+    ) -> Self {
+        Self {
+            seq,
+            kind,
+            json: json.into(),
+            time: time_of(body),
+            offset,
+        }
     }
 
     /// A record that says `body`.
@@ -150,8 +162,19 @@ pub fn parse(line: &[u8]) -> Result<Parts<'_>, Unsound> {
         let (said, chain) = before.rsplit_once(' ')?;
         let (seq, rest) = said.split_once(' ')?;
         let (word, json) = rest.split_once(' ')?;
-        let sound = is_hexadecimal(crc, CRC_DIGITS) && is_hexadecimal(chain, CHAIN_DIGITS) && is_number(seq);
-        sound.then_some((crc, Parts { seq: seq.parse().ok()?, word, json, chain, said: said.as_bytes() }))
+        let sound = is_hexadecimal(crc, CRC_DIGITS)
+            && is_hexadecimal(chain, CHAIN_DIGITS)
+            && is_number(seq);
+        sound.then_some((
+            crc,
+            Parts {
+                seq: seq.parse().ok()?,
+                word,
+                json,
+                chain,
+                said: said.as_bytes(),
+            },
+        ))
     };
     let (crc, parts) = shape().ok_or(Unsound::Shape)?;
     if crc.as_bytes() == crc_digits(crc32c::crc32c(&line[..line.len() - CRC_DIGITS])) {
@@ -162,7 +185,10 @@ pub fn parse(line: &[u8]) -> Result<Parts<'_>, Unsound> {
 }
 
 fn is_hexadecimal(word: &str, digits: usize) -> bool {
-    word.len() == digits && word.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
+    word.len() == digits
+        && word
+            .bytes()
+            .all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
 /// Decimal digits as the writer writes them: no sign, no zero before them.
@@ -187,7 +213,13 @@ mod tests {
     /// Bit by bit, from the definition.
     fn castagnoli(bytes: &[u8]) -> u32 {
         !bytes.iter().fold(u32::MAX, |crc, byte| {
-            (0..8).fold(crc ^ u32::from(*byte), |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0x82f6_3b78 } else { crc >> 1 })
+            (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
+                if crc & 1 == 1 {
+                    crc >> 1 ^ 0x82f6_3b78
+                } else {
+                    crc >> 1
+                }
+            })
         })
     }
 
@@ -196,8 +228,15 @@ mod tests {
         let written = String::from_utf8(line(17, r#"{"text":"a b"}"#)).unwrap();
         let said = r#"17 EVENT {"text":"a b"}"#;
         let (before, end) = written.split_at(said.len() + 66);
-        assert_eq!(before, format!("{said} {} ", Chain::START.after(said.as_bytes()).as_str()));
-        assert_eq!(castagnoli(b"123456789"), 0xe306_9283, "the check value of CRC-32C");
+        assert_eq!(
+            before,
+            format!("{said} {} ", Chain::START.after(said.as_bytes()).as_str())
+        );
+        assert_eq!(
+            castagnoli(b"123456789"),
+            0xe306_9283,
+            "the check value of CRC-32C"
+        );
         assert_eq!(end, format!("{:08x}\n", castagnoli(before.as_bytes())));
     }
 
@@ -210,10 +249,20 @@ mod tests {
             let chain = Chain::START.after(said.as_bytes());
             assert_eq!(
                 whole,
-                Parts { seq, word: "EVENT", json: r#"{"text":"a b"}"#, chain: chain.as_str(), said: said.as_bytes() }
+                Parts {
+                    seq,
+                    word: "EVENT",
+                    json: r#"{"text":"a b"}"#,
+                    chain: chain.as_str(),
+                    said: said.as_bytes()
+                }
             );
         }
-        assert_eq!(parse(&line(1, "{}")), Err(Unsound::Shape), "the LF is cut off before");
+        assert_eq!(
+            parse(&line(1, "{}")),
+            Err(Unsound::Shape),
+            "the LF is cut off before"
+        );
         for bad in ["", " ", "1 EVENT {}", "1 EVENT {} 0 0"] {
             assert_eq!(parse(bad.as_bytes()), Err(Unsound::Shape), "{bad}");
         }
@@ -224,9 +273,20 @@ mod tests {
         for seq in ["0", "01", "+1", "18446744073709551616", "", "1a"] {
             let mut bad = format!("{seq} EVENT {{}}").into_bytes();
             close(&mut bad, 0, &Chain::START);
-            assert_eq!(parse(bad.strip_suffix(b"\n").unwrap()), Err(Unsound::Shape), "{seq}");
+            assert_eq!(
+                parse(bad.strip_suffix(b"\n").unwrap()),
+                Err(Unsound::Shape),
+                "{seq}"
+            );
         }
-        let upper = String::from_utf8(line(1, "{}")).unwrap().trim_end().to_uppercase();
-        assert_eq!(parse(upper.as_bytes()), Err(Unsound::Shape), "digits are lower case");
+        let upper = String::from_utf8(line(1, "{}"))
+            .unwrap()
+            .trim_end()
+            .to_uppercase();
+        assert_eq!(
+            parse(upper.as_bytes()),
+            Err(Unsound::Shape),
+            "digits are lower case"
+        );
     }
 }

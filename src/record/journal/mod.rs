@@ -1,33 +1,7 @@
-//! The journal: one append-only ASCII file, one record a line, each checkable alone (CRC-32C) and in its order (a chain
-//! of SHA-256). In: records as JSON. Out: lines; and back, with what of a damaged file can be trusted. It does not know
-//! what a record means.
-//!
-//! # The format, version 2
-//!
-//! A journal is lines of printable ASCII (bytes 0x20 to 0x7e), each ended by one LF and at most 64 KiB long with it:
-//!
-//! ```text
-//! SEQ TYPE JSON CHAIN CRC
-//! ```
-//!
-//! - `SEQ`: the number of the line, decimal, from 1, without gaps: record 17 is line 17.
-//! - `TYPE`: one of the words of [`EntryKind`]. The first record and no other is `HEADER`; nothing follows `END`.
-//! - `JSON`: one object, without blanks between its parts. Everything outside 0x20 to 0x7e is a `\u` escape, also DEL.
-//!   Numbers are the shortest decimals that read back as the same 64-bit float. `HEADER` begins with `"format":2`, `END`
-//!   with `"count"` (records before it) and `"head"` (`CHAIN` of the record before it).
-//! - `CHAIN`: 64 lower-case hexadecimal digits, the SHA-256 of these bytes, one after the other: the 64 digits of the
-//!   line before (64 times `0` at line 1), then `SEQ TYPE JSON` as written in this line, with the two blanks between.
-//! - `CRC`: 8 lower-case hexadecimal digits, the CRC-32C (Castagnoli, reflected 0x82f63b78, start and final inversion)
-//!   of every byte of the line before them, the blank included.
-//!
-//! JSON holds blanks; `CHAIN` and `CRC` are found from the end of the line. So line 7 is checked by hand, without psd:
-//!
-//! ```sh
-//! cut_off() { sed 's/ [0-9a-f]\{64\} [0-9a-f]\{8\}$//'; }
-//! before=$(sed -n 6p journal | awk '{print $(NF-1)}')
-//! { printf %s "$before"; sed -n 7p journal | cut_off | tr -d '\n'; } | sha256sum
-//! sed -n 7p journal | awk '{print $(NF-1)}'   # must be the same
-//! ```
+//! The run log (journal): one append-only ASCII file, one entry per line, each with its own checksum
+//! (CRC-32C) and chained to the line before (SHA-256). In: entries as JSON. Out: lines; and back, with
+//! the part of a damaged file that can be trusted. It does not know what an entry means. The format is
+//! in `docs/record.md`.
 
 mod body;
 mod chain;

@@ -32,13 +32,19 @@ impl Recovered {
     /// The version of the format, as the first record says; 0 where there is none.
     #[must_use]
     pub fn format(&self) -> u64 {
-        self.lines.first().and_then(|line| line.body()["format"].as_u64()).unwrap_or(0)
+        self.lines
+            .first()
+            .and_then(|line| line.body()["format"].as_u64())
+            .unwrap_or(0)
     }
 
     /// The last field `step` of a record.
     #[must_use]
     pub fn last_step(&self) -> Option<u64> {
-        self.lines.iter().rev().find_map(|line| line.body().get("step")?.as_u64())
+        self.lines
+            .iter()
+            .rev()
+            .find_map(|line| line.body().get("step")?.as_u64())
     }
 
     fn take(&mut self, line: Line, chain: Chain, next: u64) {
@@ -57,7 +63,13 @@ impl Recovered {
 /// # Errors
 /// Any other bad line: the journal was altered.
 pub fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
-    let mut found = Recovered { lines: Vec::new(), whole: 0, torn: None, ended: false, chain: Chain::START };
+    let mut found = Recovered {
+        lines: Vec::new(),
+        whole: 0,
+        torn: None,
+        ended: false,
+        chain: Chain::START,
+    };
     let mut rest = bytes;
     while !rest.is_empty() {
         let wrong = match whole_line(rest) {
@@ -71,12 +83,18 @@ pub fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
             },
             Err(wrong) => wrong,
         };
-        if matches!(wrong, Wrong::Shape | Wrong::Checksum | Wrong::TooLong) && is_torn(rest, &wrong) {
+        if matches!(wrong, Wrong::Shape | Wrong::Checksum | Wrong::TooLong) && is_torn(rest, &wrong)
+        {
             found.torn = Some(found.whole..bytes.len() as u64);
             break;
         }
         let (line, step) = (found.lines.len() as u64 + 1, found.last_step());
-        return Err(Damage { offset: found.whole, line, step, reason: wrong });
+        return Err(Damage {
+            offset: found.whole,
+            line,
+            step,
+            reason: wrong,
+        });
     }
     Ok(found)
 }
@@ -99,7 +117,8 @@ fn is_torn(rest: &[u8], wrong: &Wrong) -> bool {
     }
     let mut later = rest.split(|byte| *byte == b'\n').skip(1).peekable();
     let one_line = later.peek().is_none();
-    (one_line || rest.contains(&0)) && !later.any(|line| line.len() < LINE_BYTES && line::parse(line).is_ok())
+    (one_line || rest.contains(&0))
+        && !later.any(|line| line.len() < LINE_BYTES && line::parse(line).is_ok())
 }
 
 /// A line as the next record after those found.
@@ -110,34 +129,55 @@ fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
     })?;
     let expected = found.lines.len() as u64 + 1;
     if parts.seq != expected {
-        return Err(Wrong::Sequence { expected, found: parts.seq });
+        return Err(Wrong::Sequence {
+            expected,
+            found: parts.seq,
+        });
     }
     let chain = found.chain.after(parts.said);
     if parts.chain != chain.as_str() {
         return Err(Wrong::Chain);
     }
-    let kind = EntryKind::of_word(parts.word).ok_or_else(|| Wrong::UnknownKind(short(parts.word)))?;
+    let kind =
+        EntryKind::of_word(parts.word).ok_or_else(|| Wrong::UnknownKind(short(parts.word)))?;
     let body: Value = serde_json::from_str(parts.json).map_err(|_| Wrong::NotAnObject)?;
     if !body.is_object() {
         return Err(Wrong::NotAnObject);
     }
     place(kind, &body, found)?;
-    Ok((Line::as_written(parts.seq, kind, &body, parts.json, found.whole), chain))
+    Ok((
+        Line::as_written(parts.seq, kind, &body, parts.json, found.whole),
+        chain,
+    ))
 }
 
 /// Whether a record may stand here.
 fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> {
-    let said = |name: &str| body.get(name).map_or_else(|| "missing".to_owned(), |value| short(&value.to_string()));
+    let said = |name: &str| {
+        body.get(name)
+            .map_or_else(|| "missing".to_owned(), |value| short(&value.to_string()))
+    };
     match kind {
         _ if found.ended => Err(Wrong::AfterEnd),
         EntryKind::Header if !found.lines.is_empty() => Err(Wrong::SecondHeader),
-        EntryKind::Header if !body["format"].as_u64().is_some_and(|format| (OLDEST_FORMAT..=FORMAT).contains(&format)) => {
-            Err(Wrong::Format { found: said("format") })
+        EntryKind::Header
+            if !body["format"]
+                .as_u64()
+                .is_some_and(|format| (OLDEST_FORMAT..=FORMAT).contains(&format)) =>
+        {
+            Err(Wrong::Format {
+                found: said("format"),
+            })
         }
         EntryKind::Header => Ok(()),
         _ if found.lines.is_empty() => Err(Wrong::NoHeader),
-        EntryKind::End if body["count"] != found.lines.len() as u64 || body["head"] != found.head() => {
-            Err(Wrong::EndOfAnother { count: said("count"), head: said("head") })
+        EntryKind::End
+            if body["count"] != found.lines.len() as u64 || body["head"] != found.head() =>
+        {
+            Err(Wrong::EndOfAnother {
+                count: said("count"),
+                head: said("head"),
+            })
         }
         _ => Ok(()),
     }
@@ -145,5 +185,8 @@ fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> 
 
 /// The beginning of what a line says, fit for a message.
 fn short(text: &str) -> String {
-    text.chars().take(80).flat_map(char::escape_default).collect()
+    text.chars()
+        .take(80)
+        .flat_map(char::escape_default)
+        .collect()
 }

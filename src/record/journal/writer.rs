@@ -7,7 +7,7 @@ use serde_json::json;
 use super::chain::Chain;
 use super::line::{self, LINE_BYTES};
 use super::{Doing, EntryKind, FORMAT, JournalFault, Recovered, Refusal, Storage, body};
-use crate::rig::failpoint::{Guarding, on};
+use crate::rig::safety::failpoint::{Guarding, on};
 
 /// When records are given to the storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +79,11 @@ impl Journal {
             Durability::Buffered => WRITE_BYTES,
             Durability::EveryPromise => 1,
         };
-        if self.kept_back.len() >= enough { self.give() } else { Ok(()) }
+        if self.kept_back.len() >= enough {
+            self.give()
+        } else {
+            Ok(())
+        }
     }
 
     /// Everything written so far is safe when this comes back; nothing is promised while buffered.
@@ -131,10 +135,20 @@ impl Journal {
     ///
     /// # Errors
     /// The record is none or stands after END, or the storage failed now. Nothing more can be done.
-    pub fn last_words(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), JournalFault> {
+    pub fn last_words(
+        &mut self,
+        kind: EntryKind,
+        body: &impl Serialize,
+    ) -> Result<(), JournalFault> {
         self.storage.release_reserve();
         let earlier = self.fault.take();
-        let unsynced = matches!(earlier, Some(JournalFault::Storage { doing: Doing::Sync, .. }));
+        let unsynced = matches!(
+            earlier,
+            Some(JournalFault::Storage {
+                doing: Doing::Sync,
+                ..
+            })
+        );
         let said = self.say_last(kind, body, unsynced && on(Guarding::FailedSync));
         if earlier.is_some() {
             self.fault = earlier;
@@ -142,14 +156,23 @@ impl Journal {
         said
     }
 
-    fn say_last(&mut self, kind: EntryKind, body: &impl Serialize, unsynced: bool) -> Result<(), JournalFault> {
+    fn say_last(
+        &mut self,
+        kind: EntryKind,
+        body: &impl Serialize,
+        unsynced: bool,
+    ) -> Result<(), JournalFault> {
         if self.half_line {
             // Behind half a line, any words would make the file one that no one can tell from a forged one: rather none.
             let cut = self.storage.cut(self.taken);
             self.noted(Doing::Cut, cut)?;
             self.half_line = false;
         }
-        let kept = if kind == EntryKind::End { Err(Refusal::OutOfPlace(kind)) } else { self.keep_back(kind, body) };
+        let kept = if kind == EntryKind::End {
+            Err(Refusal::OutOfPlace(kind))
+        } else {
+            self.keep_back(kind, body)
+        };
         // Also without the record: what was kept back belongs into the file. After a failed sync none is tried again: it
         // would succeed, and promise what is lost.
         if unsynced {
@@ -183,7 +206,9 @@ impl Journal {
     /// next sync would promise what is lost.
     fn healthy(&self) -> Result<(), JournalFault> {
         match &self.fault {
-            Some(JournalFault::Storage { doing: Doing::Sync, .. }) if !on(Guarding::FailedSync) => Ok(()),
+            Some(JournalFault::Storage {
+                doing: Doing::Sync, ..
+            }) if !on(Guarding::FailedSync) => Ok(()),
             Some(fault) => Err(fault.clone()),
             None => Ok(()),
         }
@@ -208,7 +233,12 @@ impl Journal {
         }
     }
 
-    fn make_line(&mut self, start: usize, kind: EntryKind, body: &impl Serialize) -> Result<Chain, Refusal> {
+    fn make_line(
+        &mut self,
+        start: usize,
+        kind: EntryKind,
+        body: &impl Serialize,
+    ) -> Result<Chain, Refusal> {
         if self.ended || (kind == EntryKind::Header) != (self.count == 0) {
             return Err(Refusal::OutOfPlace(kind));
         }
@@ -217,7 +247,10 @@ impl Journal {
         match kind {
             EntryKind::Header => body::write_with(out, &[("format", json!(FORMAT))], body)?,
             EntryKind::End => {
-                let own = [("count", json!(self.count)), ("head", json!(self.chain.as_str()))];
+                let own = [
+                    ("count", json!(self.count)),
+                    ("head", json!(self.chain.as_str())),
+                ];
                 body::write_with(out, &own, body)?;
             }
             _ => body::write(out, body)?,

@@ -21,14 +21,22 @@ impl Coordinate {
     /// A place of the device, m, as the plan has it.
     pub(super) fn in_plan(self, place: f64) -> f64 {
         // Where the zero lies elsewhere, it is read as 0 and not as −0.
-        if self.datum == 0.0 { self.sign * place } else { self.sign * (place - self.datum) + 0.0 }
+        if self.datum == 0.0 {
+            self.sign * place
+        } else {
+            self.sign * (place - self.datum) + 0.0
+        }
     }
 
     /// A place of the plan, m, as the device has it.
     pub(super) fn at_device(self, place: f64) -> f64 {
         let turned = self.sign * place;
         // A sum with 0 would make 0 of −0, and other bytes of it.
-        if self.datum == 0.0 { turned } else { turned + self.datum }
+        if self.datum == 0.0 {
+            turned
+        } else {
+            turned + self.datum
+        }
     }
 
     /// A force or a velocity, of either side as the other has it.
@@ -38,7 +46,10 @@ impl Coordinate {
 
     /// Limits of the plan as the device has them.
     pub(super) fn limits_at_device(self, limits: &Limits) -> Limits {
-        let between = |ends: [f64; 2]| Interval { low: ends[0].min(ends[1]), high: ends[0].max(ends[1]) };
+        let between = |ends: [f64; 2]| Interval {
+            low: ends[0].min(ends[1]),
+            high: ends[0].max(ends[1]),
+        };
         let (place, force) = (limits.displacement, limits.force);
         Limits {
             displacement: between([place.low, place.high].map(|end| self.at_device(end))),
@@ -54,17 +65,41 @@ mod tests {
 
     #[test]
     fn a_turned_axis_with_its_zero_elsewhere_has_places_and_limits_of_its_own() {
-        let axis = Coordinate { sign: -1.0, datum: -0.5 };
+        let axis = Coordinate {
+            sign: -1.0,
+            datum: -0.5,
+        };
         assert_eq!((axis.at_device(0.25), axis.in_plan(-0.75)), (-0.75, 0.25));
-        assert_eq!((axis.in_plan(-0.5).to_bits(), axis.turned(3.0)), (0.0_f64.to_bits(), -3.0));
+        assert_eq!(
+            (axis.in_plan(-0.5).to_bits(), axis.turned(3.0)),
+            (0.0_f64.to_bits(), -3.0)
+        );
         let limits = Limits {
-            displacement: Interval { low: -0.25, high: 2.0 },
-            force: Interval { low: -1.0, high: f64::INFINITY },
+            displacement: Interval {
+                low: -0.25,
+                high: 2.0,
+            },
+            force: Interval {
+                low: -1.0,
+                high: f64::INFINITY,
+            },
             ..Limits::NONE
         };
         let own = axis.limits_at_device(&limits);
-        assert_eq!(own.displacement, Interval { low: -2.5, high: -0.25 });
-        assert_eq!(own.force, Interval { low: f64::NEG_INFINITY, high: 1.0 });
+        assert_eq!(
+            own.displacement,
+            Interval {
+                low: -2.5,
+                high: -0.25
+            }
+        );
+        assert_eq!(
+            own.force,
+            Interval {
+                low: f64::NEG_INFINITY,
+                high: 1.0
+            }
+        );
         assert_eq!(own.speed, limits.speed);
     }
 

@@ -3,14 +3,25 @@
 //! came to rest.
 
 use super::*;
-use crate::plan::{AxisPlan, Datum, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, RigPlan, SafeState};
-use crate::rig::device::{Channel, DeviceIdentity, Force, Sample};
-use crate::rig::failpoint::without;
+use crate::plan::{
+    AxisPlan, Datum, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, RigPlan, SafeState,
+};
+use crate::rig::controllers::{Channel, DeviceIdentity, Force, Sample};
+use crate::rig::safety::failpoint::without;
 use crate::rig::testing::VirtualClock;
 
 const BAND: f64 = 1e-5;
-const LIMITS: Limits =
-    Limits { displacement: Interval { low: -0.01, high: 0.01 }, force: Interval { low: -5e3, high: 5e3 }, ..Limits::NONE };
+const LIMITS: Limits = Limits {
+    displacement: Interval {
+        low: -0.01,
+        high: 0.01,
+    },
+    force: Interval {
+        low: -5e3,
+        high: 5e3,
+    },
+    ..Limits::NONE
+};
 
 /// How far the axes are from their targets so long after they set off, m.
 type Errors = fn(f64) -> [f64; 2];
@@ -34,7 +45,12 @@ impl Device for Coupled {
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
-        Ok(Move { frames: Vec::new(), targets: targets.to_vec(), speed, id: None })
+        Ok(Move {
+            frames: Vec::new(),
+            targets: targets.to_vec(),
+            speed,
+            id: None,
+        })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -44,13 +60,31 @@ impl Device for Coupled {
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         self.clock.advance(0.01);
-        let errors = if self.set_off > 0.0 { (self.errors)(self.clock.now() - self.set_off) } else { [0.0; 2] };
+        let errors = if self.set_off > 0.0 {
+            (self.errors)(self.clock.now() - self.set_off)
+        } else {
+            [0.0; 2]
+        };
         let [first, other] = [0, 1].map(|axis| {
             let place = self.targets[axis] + errors[axis];
-            Channel { displacement: Some(place), force: Some(Force::Newtons(1e4 * place)), ..Channel::default() }
+            Channel {
+                displacement: Some(place),
+                force: Some(Force::Newtons(1e4 * place)),
+                ..Channel::default()
+            }
         });
-        let Channel { displacement, force, .. } = first;
-        Ok(Sample { displacement, force, moving: Some(false), others: vec![other], ..Sample::default() })
+        let Channel {
+            displacement,
+            force,
+            ..
+        } = first;
+        Ok(Sample {
+            displacement,
+            force,
+            moving: Some(false),
+            others: vec![other],
+            ..Sample::default()
+        })
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {
@@ -67,22 +101,55 @@ impl Device for Coupled {
 }
 
 fn plan() -> RigPlan {
-    let range = Interval { low: -1e4, high: 1e4 };
-    let port = PortPlan::Tcp { address: "rig:1".to_owned() };
+    let range = Interval {
+        low: -1e4,
+        high: 1e4,
+    };
+    let port = PortPlan::Tcp {
+        address: "rig:1".to_owned(),
+    };
     let link = RealLink {
-        actuator: DeviceLink { port, dialect: Dialect::Native, reply_timeout: 0.4, serial_number: None },
+        actuator: DeviceLink {
+            port,
+            dialect: Dialect::Native,
+            reply_timeout: 0.4,
+            serial_number: None,
+        },
         load_cell: None,
         safe_state: SafeState::Hold,
         datum: Datum::Machine,
-        gate: Gate { zero: 10.0, probe: 1e-4, stiffness: Interval::ALL },
-        readings: ReadingRules { samples: 3, rate: 20.0, resolution: 1e-6, noise: 0.1, force_range: range, frozen_after: 100 },
+        gate: Gate {
+            zero: 10.0,
+            probe: 1e-4,
+            stiffness: Interval::ALL,
+        },
+        readings: ReadingRules {
+            samples: 3,
+            rate: 20.0,
+            resolution: 1e-6,
+            noise: 0.1,
+            force_range: range,
+            frozen_after: 100,
+        },
         watchdog: 3.0,
         own_speed: 1.0,
         axes: vec![AxisPlan::default(), AxisPlan::default()],
     };
-    let settle = Settle { band: BAND, force_rate: 5.0, dwell: 0.5, timeout: 4.0 };
+    let settle = Settle {
+        band: BAND,
+        force_rate: 5.0,
+        dwell: 0.5,
+        timeout: 4.0,
+    };
     let (name, calibration) = ("frame".to_owned(), Calibration::default());
-    RigPlan { name, link: Link::Real(link), settle, sign: 1.0, calibration, drift: None }
+    RigPlan {
+        name,
+        link: Link::Real(link),
+        settle,
+        sign: 1.0,
+        calibration,
+        drift: None,
+    }
 }
 
 const TARGETS: [f64; 2] = [1e-3, 2e-3];
@@ -90,8 +157,20 @@ const TARGETS: [f64; 2] = [1e-3, 2e-3];
 /// Goes to the targets at once and reads: when, after it set off, and how far each axis was from its target.
 fn read(errors: Errors) -> Result<(f64, [f64; 2]), RigFault> {
     let clock = VirtualClock::default();
-    let device = Coupled { clock: clock.clone(), errors, targets: [0.0; 2], set_off: 0.0 };
-    let mut rig = RealRig::open(&plan(), &LIMITS, Box::new(device), None, Box::new(clock), Wish::default())?;
+    let device = Coupled {
+        clock: clock.clone(),
+        errors,
+        targets: [0.0; 2],
+        set_off: 0.0,
+    };
+    let mut rig = RealRig::open(
+        &plan(),
+        &LIMITS,
+        Box::new(device),
+        None,
+        Box::new(clock),
+        Wish::default(),
+    )?;
     rig.propose(&TARGETS, Some(1.0))?;
     let began = rig.time();
     rig.execute()?;
@@ -114,7 +193,10 @@ fn late(time: f64) -> [f64; 2] {
 /// The same, and the upper one is pushed while the readings are made.
 fn pushed(time: f64) -> [f64; 2] {
     let [lower, upper] = late(time);
-    [lower, upper - if within(time, 1.56, 1.62) { 3e-5 } else { 0.0 }]
+    [
+        lower,
+        upper - if within(time, 1.56, 1.62) { 3e-5 } else { 0.0 },
+    ]
 }
 
 /// The upper one rests for just long enough, again and again.
@@ -130,13 +212,19 @@ fn inside(errors: [f64; 2]) -> bool {
 fn an_axis_that_another_disturbs_after_it_had_settled_is_waited_for() {
     let (time, errors) = read(late).unwrap();
     // A dwell after the push, and three readings.
-    assert!(within(time, 1.0 + 0.5, 1.85) && inside(errors), "{time} s, {errors:?}");
+    assert!(
+        within(time, 1.0 + 0.5, 1.85) && inside(errors),
+        "{time} s, {errors:?}"
+    );
 }
 
 #[test]
 fn a_reading_in_which_one_axis_has_left_its_place_counts_for_none() {
     let (time, errors) = read(pushed).unwrap();
-    assert!(within(time, 1.62 + 0.5, 2.5) && inside(errors), "{time} s, {errors:?}");
+    assert!(
+        within(time, 1.62 + 0.5, 2.5) && inside(errors),
+        "{time} s, {errors:?}"
+    );
     let (_, missed) = without(Guarding::Settling, || read(pushed)).unwrap();
     assert!(!inside(missed), "the guard alone sees it: {missed:?}");
 }
@@ -144,5 +232,11 @@ fn a_reading_in_which_one_axis_has_left_its_place_counts_for_none() {
 #[test]
 fn a_frame_that_never_rests_long_enough_is_held_and_the_axis_named() {
     let fault = read(restless).unwrap_err();
-    assert_eq!(fault, RigFault::NotSettled { timeout: 4.0, axis: Some(2) });
+    assert_eq!(
+        fault,
+        RigFault::NotSettled {
+            timeout: 4.0,
+            axis: Some(2)
+        }
+    );
 }

@@ -2,7 +2,7 @@
 //! told to hold, and where; every wait is bounded. What it is held for is not its business.
 
 use super::{Part, RealRig};
-use crate::rig::device::{DeviceFault, SLICE};
+use crate::rig::controllers::{DeviceFault, SLICE};
 use crate::rig::safety;
 use crate::rig::{Halted, RigFault};
 
@@ -36,25 +36,45 @@ impl RealRig {
     /// Tells it to hold, waits until it is seen at rest, and reads it once.
     pub(super) fn held_for_good(&mut self) -> Halted {
         let held = self.tell_to_hold().and_then(|()| self.until_at_rest());
-        let (found, raw) = if held.is_ok() { self.reading_at_rest() } else { (None, Vec::new()) };
-        Halted { time: self.clock.now() - self.began, doubt: held.err(), found, raw }
+        let (found, raw) = if held.is_ok() {
+            self.reading_at_rest()
+        } else {
+            (None, Vec::new())
+        };
+        Halted {
+            time: self.clock.now() - self.began,
+            doubt: held.err(),
+            found,
+            raw,
+        }
     }
 
     /// Until the actuator says that it does not move; of one that does not say so, until it is seen twice at one place.
     fn until_at_rest(&mut self) -> Result<(), String> {
         let began = self.clock.now();
         // At its own speed it would be several bands farther.
-        let between = self.period().max(4.0 * self.settle.band / self.link.own_speed).min(1.0);
+        let between = self
+            .period()
+            .max(4.0 * self.settle.band / self.link.own_speed)
+            .min(1.0);
         let mut before: Option<Vec<f64>> = None;
         let mut last = "it still moves".to_owned();
         while self.clock.now() - began <= COMES_TO_REST {
             match self.actuator.sample() {
                 Ok(sample) => {
-                    let places: Vec<f64> = sample.axes().map(|axis| axis.displacement.unwrap_or(f64::NAN)).collect();
+                    let places: Vec<f64> = sample
+                        .axes()
+                        .map(|axis| axis.displacement.unwrap_or(f64::NAN))
+                        .collect();
                     let stays = |before: &Vec<f64>| {
-                        before.iter().zip(&places).all(|(before, now)| (before - now).abs() <= self.settle.band)
+                        before
+                            .iter()
+                            .zip(&places)
+                            .all(|(before, now)| (before - now).abs() <= self.settle.band)
                     };
-                    if sample.moving == Some(false) || sample.moving.is_none() && before.as_ref().is_some_and(stays) {
+                    if sample.moving == Some(false)
+                        || sample.moving.is_none() && before.as_ref().is_some_and(stays)
+                    {
                         return Ok(());
                     }
                     before = Some(places);

@@ -2,7 +2,7 @@
 //! that was not seen to be.
 
 use super::tests::{Stand, stand};
-use crate::rig::device::DeviceFault;
+use crate::rig::controllers::DeviceFault;
 use crate::rig::{Halted, Rig as _};
 
 /// On its way to 2 mm at 1 mm/s, for a second: what it says, and what becomes of it when it is to be held.
@@ -47,7 +47,10 @@ fn a_hold_that_found_no_ear_is_called_none() {
     let halted = stand.rig.halt().unwrap();
     assert!(!halted.is_held() && halted.found.is_none(), "{halted:?}");
     let told = halted.to_string();
-    assert!(told.starts_with("NOT CONFIRMED HELD (actuator on rig:1: no usable answer within 2.81 s)"), "{told}");
+    assert!(
+        told.starts_with("NOT CONFIRMED HELD (actuator on rig:1: no usable answer within 2.81 s)"),
+        "{told}"
+    );
     assert!(told.ends_with("use the emergency stop"), "{told}");
 }
 
@@ -61,10 +64,21 @@ fn a_rig_that_goes_on_is_not_called_held_and_is_not_waited_for_for_ever() {
     let began = stand.rig.time();
     let halted = stand.rig.halt().unwrap();
     assert_eq!(halted.doubt.as_deref(), Some("it still moves"));
-    assert!((5.0..6.5).contains(&(halted.time - began)), "{}", halted.time - began);
-    stand.device.alter(|_, _| Err(DeviceFault::Lost { reason: "unplugged".to_owned() }));
+    assert!(
+        (5.0..6.5).contains(&(halted.time - began)),
+        "{}",
+        halted.time - began
+    );
+    stand.device.alter(|_, _| {
+        Err(DeviceFault::Lost {
+            reason: "unplugged".to_owned(),
+        })
+    });
     let halted = stand.rig.halt().unwrap();
-    assert!(halted.to_string().contains("the line is gone: unplugged"), "{halted}");
+    assert!(
+        halted.to_string().contains("the line is gone: unplugged"),
+        "{halted}"
+    );
 }
 
 #[test]
@@ -75,8 +89,18 @@ fn what_is_read_on_the_way_is_seen_beside_the_run() {
     stand.rig.propose(&[0.002], Some(0.001)).unwrap();
     stand.rig.execute().unwrap();
     let after = live.newest().unwrap();
-    assert!(after.number > before.number + 40, "two seconds at twenty a second: {}", after.number);
-    assert_eq!((before.displacement, after.displacement), (vec![0.0], vec![0.002]));
+    assert!(
+        after.number > before.number + 40,
+        "two seconds at twenty a second: {}",
+        after.number
+    );
+    assert_eq!(
+        (before.displacement, after.displacement),
+        (vec![0.0], vec![0.002])
+    );
     stand.rig.pause(2.0).unwrap();
-    assert!(live.newest().unwrap().number > after.number, "and while nothing moves");
+    assert!(
+        live.newest().unwrap().number > after.number,
+        "and while nothing moves"
+    );
 }

@@ -1,29 +1,32 @@
-//! A rig that moves a real specimen. In: targets, one an axis, and one or two devices. Out: settled readings in the plan's sign, each axis
-//! judged by itself; whatever goes wrong with one holds them all. It knows no dialect and no procedure; what a procedure may ask for is the
-//! guard's business.
+//! A rig that moves a real specimen. In: one target per axis, and the devices. Out: settled
+//! readings in the polarity of the plan, judged axis by axis; a fault of one axis holds all. It
+//! knows no protocol and no procedure; the guard decides which motions are allowed.
 
 mod coordinate;
 mod halt;
-mod heard;
 mod motion;
 mod open;
+mod path;
 mod poll;
+mod raw_decode;
 mod settle;
 mod stroke;
 mod validity;
-mod way;
 
-use crate::mechanics::path::Path;
+use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
 
-use super::device::{Device, DeviceFault, Move};
-use super::failpoint::{Guarding, on};
-use super::moved::of_places;
-use super::port::Clock;
-use super::{CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Live, Offer, Reading, Rig, RigFault, Tally, Wish};
+use super::controllers::{Device, DeviceFault, Move};
+use super::motion::of_places;
+use super::safety::failpoint::{Guarding, on};
+use super::transport::Clock;
+use super::{
+    CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Live, Offer, Reading, Rig,
+    RigFault, Tally, Wish,
+};
 use coordinate::Coordinate;
-pub use heard::ReadBack;
 pub use open::commands_only;
+pub use raw_decode::ReadBack;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.
@@ -118,7 +121,11 @@ impl RealRig {
 
     /// Places of the devices, m, one an axis, as the plan has them.
     fn in_plan(&self, places: &[f64]) -> Vec<f64> {
-        self.axes.iter().zip(places).map(|(axis, place)| axis.coordinate.in_plan(*place)).collect()
+        self.axes
+            .iter()
+            .zip(places)
+            .map(|(axis, place)| axis.coordinate.in_plan(*place))
+            .collect()
     }
 
     /// The wall clock, for the record.
@@ -134,9 +141,10 @@ impl RealRig {
             _ => ("actuator", self.link.actuators(), self.actuator.culprit()),
         };
         // Of several the one it is the fault of; where that is not known the first.
-        let place = behind
-            .get(culprit.unwrap_or(0))
-            .map_or_else(|| role.to_owned(), |behind| format!("{} on {}", behind.name(role), behind.link.port));
+        let place = behind.get(culprit.unwrap_or(0)).map_or_else(
+            || role.to_owned(),
+            |behind| format!("{} on {}", behind.name(role), behind.link.port),
+        );
         let told = format!("{place}: {fault}");
         match fault {
             DeviceFault::Interrupted => return RigFault::Interrupted,
@@ -157,12 +165,20 @@ impl RealRig {
 
 /// As a sentence has it.
 fn degrees_of_freedom(count: usize) -> String {
-    if count == 1 { "one degree of freedom".to_owned() } else { format!("{count} degrees of freedom") }
+    if count == 1 {
+        "one degree of freedom".to_owned()
+    } else {
+        format!("{count} degrees of freedom")
+    }
 }
 
 /// m, after each other.
 fn places(places: &[f64]) -> String {
-    places.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+    places
+        .iter()
+        .map(f64::to_string)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Which device.
@@ -195,19 +211,33 @@ impl Rig for RealRig {
             return Err(RigFault::Device(format!("not moved any more: {reason}")));
         }
         if targets.len() != self.axes.len() {
-            let reason = format!("this rig has {}, not {}", degrees_of_freedom(self.axes.len()), targets.len());
+            let reason = format!(
+                "this rig has {}, not {}",
+                degrees_of_freedom(self.axes.len()),
+                targets.len()
+            );
             return Err(RigFault::Device(reason));
         }
         if let Some(target) = targets.iter().find(|target| !target.is_finite()) {
-            return Err(RigFault::Device(format!("the target {target} m is no place")));
+            return Err(RigFault::Device(format!(
+                "the target {target} m is no place"
+            )));
         }
         let speed = speed.unwrap_or(self.link.own_speed);
         // Asked before the bytes are made, for between them and their sending nothing is asked.
         // What it says of itself there may be a reason to hold, as anywhere.
         let polled = self.poll();
         let from = self.or_hold(polled)?.displacement;
-        let turned: Vec<f64> = self.axes.iter().zip(targets).map(|(axis, target)| axis.coordinate.at_device(*target)).collect();
-        let going = self.actuator.encode(&turned, speed).map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let turned: Vec<f64> = self
+            .axes
+            .iter()
+            .zip(targets)
+            .map(|(axis, target)| axis.coordinate.at_device(*target))
+            .collect();
+        let going = self
+            .actuator
+            .encode(&turned, speed)
+            .map_err(|fault| self.told(Part::Actuator, &fault))?;
         let said = self.in_plan(&going.targets);
         // What the devices resolve is as near as they can say it.
         let apt = |(axis, (said, target)): (&Axis, (&f64, &f64))| {
@@ -220,12 +250,29 @@ impl Rig for RealRig {
             && self.axes.iter().zip(said.iter().zip(targets)).all(apt);
         if on(Guarding::WireNumber) && !apt {
             let [asked, said] = [targets, &said].map(places);
-            let reason = format!("asked for {asked} m, the bytes say {said} m at {} m/s: not sent", going.speed);
+            let reason = format!(
+                "asked for {asked} m, the bytes say {said} m at {} m/s: not sent",
+                going.speed
+            );
             return Err(RigFault::Device(reason));
         }
-        let at_the_rig = self.axes.iter().any(|axis| axis.coordinate.datum != 0.0).then(|| going.targets.clone());
-        let offer = Offer { targets: said, speed: going.speed, wire: going.frames.concat(), move_id: going.id, at_the_rig };
-        self.proposed = Some(Proposed { going, targets: targets.to_vec(), from });
+        let at_the_rig = self
+            .axes
+            .iter()
+            .any(|axis| axis.coordinate.datum != 0.0)
+            .then(|| going.targets.clone());
+        let offer = Offer {
+            targets: said,
+            speed: going.speed,
+            wire: going.frames.concat(),
+            move_id: going.id,
+            at_the_rig,
+        };
+        self.proposed = Some(Proposed {
+            going,
+            targets: targets.to_vec(),
+            from,
+        });
         Ok(offer)
     }
 
@@ -249,22 +296,44 @@ impl Rig for RealRig {
         Ok((self.read()?, moved))
     }
 
-    fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+    fn traverse(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         let traversed = self.stroke(targets, velocity, samples, each);
         self.or_hold(traversed)
     }
 
-    fn traverse_on(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
+    fn traverse_on(
+        &mut self,
+        cut_off: &CutOff<'_>,
+        velocity: f64,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         let traversed = self.rest_of_stroke(cut_off, velocity, each);
         self.or_hold(traversed)
     }
 
-    fn glide(&mut self, paths: &[Path], samples: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+    fn glide(
+        &mut self,
+        paths: &[Path],
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         let followed = self.follow(paths, samples, each);
         self.or_hold(followed)
     }
 
-    fn glide_on(&mut self, paths: &[Path], samples: usize, done: usize, each: EachReading<'_>) -> Result<(), RigFault> {
+    fn glide_on(
+        &mut self,
+        paths: &[Path],
+        samples: usize,
+        done: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         let followed = self.rest_of_way(paths, samples.saturating_sub(done), each);
         self.or_hold(followed)
     }
@@ -292,17 +361,31 @@ impl Rig for RealRig {
     }
 
     fn declared_noise(&self) -> DeclaredNoise {
-        let largest = |of: fn(&ReadingRules) -> f64| self.axes.iter().map(|axis| of(&axis.rules)).fold(0.0, f64::max);
-        DeclaredNoise { force: largest(|rules| rules.noise), resolution: largest(|rules| rules.resolution) }
+        let largest = |of: fn(&ReadingRules) -> f64| {
+            self.axes
+                .iter()
+                .map(|axis| of(&axis.rules))
+                .fold(0.0, f64::max)
+        };
+        DeclaredNoise {
+            force: largest(|rules| rules.noise),
+            resolution: largest(|rules| rules.resolution),
+        }
     }
 
     fn last_move(&self) -> Option<LastMove> {
         let last = self.actuator.last_move()?;
-        Some(LastMove { id: last.id, targets: self.in_plan(&last.targets) })
+        Some(LastMove {
+            id: last.id,
+            targets: self.in_plan(&last.targets),
+        })
     }
 
     fn tally(&self) -> Tally {
-        let cell = self.load_cell.as_ref().map_or_else(Tally::default, |cell| cell.tally());
+        let cell = self
+            .load_cell
+            .as_ref()
+            .map_or_else(Tally::default, |cell| cell.tally());
         let actuator = self.actuator.tally();
         Tally {
             resent: actuator.resent + cell.resent,

@@ -5,10 +5,10 @@ use super::poll::Point;
 use super::settle::Settling;
 use super::{Axis, Part, Proposed, RealRig};
 use crate::plan::Interval;
-use crate::quantity::{Dimension, display};
-use crate::rig::device::SLICE;
-use crate::rig::failpoint::{Guarding, on};
+use crate::rig::controllers::SLICE;
+use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{LimitedQuantity, Reading, RigFault, named_axis, who};
+use crate::units::{Dimension, display};
 
 /// How far off its way an axis may be before it is held: so many settle bands, and this share of the farthest way. A servo passes
 /// its target by less, and the axis of a neighbour that moves is moved by less.
@@ -20,12 +20,17 @@ const LEAP: f64 = 6.0;
 impl RealRig {
     /// Sends the offered move and waits until settled.
     pub(super) fn carry_out(&mut self) -> Result<(), RigFault> {
-        let (began, told) = (self.clock.now(), self.proposed.as_ref().map(|proposed| proposed.going.speed));
+        let (began, told) = (
+            self.clock.now(),
+            self.proposed.as_ref().map(|proposed| proposed.going.speed),
+        );
         let (targets, seconds) = self.set_off()?;
         let there = self.settle_at(&targets, self.clock.now() + seconds)?;
         self.settled = Some(targets);
         // The time on the line counts as time under way: it was no slower than this.
-        self.seen_speed = told.map(|told| told * seconds / (there - began)).filter(|speed| speed.is_finite());
+        self.seen_speed = told
+            .map(|told| told * seconds / (there - began))
+            .filter(|speed| speed.is_finite());
         Ok(())
     }
 
@@ -50,15 +55,21 @@ impl RealRig {
             if !on(Guarding::Settling) && rests {
                 return Ok(now);
             }
-            let readings = settling.iter_mut().zip(point.displacement.iter().zip(&point.force));
-            let met: Vec<bool> = readings.map(|(axis, (x, force))| axis.met(now, *x, *force, steady)).collect();
+            let readings = settling
+                .iter_mut()
+                .zip(point.displacement.iter().zip(&point.force));
+            let met: Vec<bool> = readings
+                .map(|(axis, (x, force))| axis.met(now, *x, *force, steady))
+                .collect();
             let Some(unmet) = met.iter().position(|met| !met) else {
                 self.rested = settling.iter().map(Settling::rested).collect();
                 return Ok(rested.unwrap_or(now));
             };
             if now - rested.unwrap_or(arrival) > self.settle.timeout {
                 return match (rested, astray) {
-                    (Some(_), Some(axis)) if on(Guarding::Following) => Err(self.following(axis, &point, targets)),
+                    (Some(_), Some(axis)) if on(Guarding::Following) => {
+                        Err(self.following(axis, &point, targets))
+                    }
                     (Some(rested), Some(_)) => Ok(rested),
                     (Some(_), None) => Err(self.unsettled(Some(unmet))),
                     (None, axis) => Err(self.unsettled(axis)),
@@ -85,13 +96,29 @@ impl RealRig {
         let count = self.axes.len();
         let mut found = None;
         for (place, axis) in self.axes.iter_mut().enumerate() {
-            let displacement = (LimitedQuantity::MeasuredDisplacement, axis.limits.displacement, point.displacement[place]);
-            let force = (LimitedQuantity::Force, axis.limits.force, point.force[place]);
-            let breach = [displacement, force].into_iter().find(|(_, limit, value)| !limit.contains(*value));
+            let displacement = (
+                LimitedQuantity::MeasuredDisplacement,
+                axis.limits.displacement,
+                point.displacement[place],
+            );
+            let force = (
+                LimitedQuantity::Force,
+                axis.limits.force,
+                point.force[place],
+            );
+            let breach = [displacement, force]
+                .into_iter()
+                .find(|(_, limit, value)| !limit.contains(*value));
             let again = std::mem::replace(&mut axis.outside, breach.is_some());
-            found = found.or(breach.filter(|_| again && on(Guarding::ReadingLimits)).map(|(quantity, limit, value)| {
-                RigFault::LimitBreached { quantity, value, low: limit.low, high: limit.high, axis: named_axis(place, count) }
-            }));
+            found = found.or(breach.filter(|_| again && on(Guarding::ReadingLimits)).map(
+                |(quantity, limit, value)| RigFault::LimitBreached {
+                    quantity,
+                    value,
+                    low: limit.low,
+                    high: limit.high,
+                    axis: named_axis(place, count),
+                },
+            ));
         }
         found.map_or_else(|| self.stays_on_its_way(point), Err)
     }
@@ -108,8 +135,15 @@ impl RealRig {
             };
             if std::mem::replace(&mut axis.off, true) && on(Guarding::Straying) {
                 let shown = |place| display::plain(place, Dimension::LENGTH, 6);
-                let (who, at, low, high) = (who(named_axis(place, count)), shown(at), shown(way.low), shown(way.high));
-                return Err(RigFault::Device(format!("{who} went off its way: it is at {at}, not within {low} .. {high}")));
+                let (who, at, low, high) = (
+                    who(named_axis(place, count)),
+                    shown(at),
+                    shown(way.low),
+                    shown(way.high),
+                );
+                return Err(RigFault::Device(format!(
+                    "{who} went off its way: it is at {at}, not within {low} .. {high}"
+                )));
             }
         }
         Ok(())
@@ -133,19 +167,32 @@ impl RealRig {
     /// Sends the offered move. Gives its targets (m) and the time the farthest way takes, s.
     pub(super) fn set_off(&mut self) -> Result<(Vec<f64>, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
-        let Proposed { going, targets, from } = self.proposed.take().ok_or_else(nothing)?;
+        let Proposed {
+            going,
+            targets,
+            from,
+        } = self.proposed.take().ok_or_else(nothing)?;
         self.moved = true;
-        self.actuator.start(&going).map_err(|fault| self.told(Part::Actuator, &fault))?;
+        self.actuator
+            .start(&going)
+            .map_err(|fault| self.told(Part::Actuator, &fault))?;
         (self.deaf, self.settled) = (false, None);
         self.seen_places = vec![(self.clock.now(), from[0])];
         for axis in &mut self.axes {
             (axis.outside, axis.span) = (false, 0.0);
         }
         self.look_up()?;
-        let farthest = targets.iter().zip(&from).map(|(to, from)| (to - from).abs()).fold(0.0, f64::max);
+        let farthest = targets
+            .iter()
+            .zip(&from)
+            .map(|(to, from)| (to - from).abs())
+            .fold(0.0, f64::max);
         let beside = BESIDE_BANDS * self.settle.band + BESIDE_WAY * farthest;
         for (axis, (to, from)) in self.axes.iter_mut().zip(targets.iter().zip(&from)) {
-            let way = Interval { low: to.min(*from) - beside, high: to.max(*from) + beside };
+            let way = Interval {
+                low: to.min(*from) - beside,
+                high: to.max(*from) + beside,
+            };
             (axis.way, axis.off) = (Some(way), false);
         }
         Ok((targets, farthest / going.speed))
@@ -154,7 +201,8 @@ impl RealRig {
     /// Whether a reading where it settled shows that it has not.
     pub(super) fn disturbed(&self, point: &Point, targets: &[f64]) -> Option<Disturbed> {
         let astray = first_astray(&Settling::of(self.settle, targets), point);
-        (astray.is_some() || point.moving == Some(true) || point.unsettled).then_some(Disturbed { astray })
+        (astray.is_some() || point.moving == Some(true) || point.unsettled)
+            .then_some(Disturbed { astray })
     }
 
     /// Whether the force of a reading is none that the dwell before it leads to: further from the median of that dwell than noise, and a
@@ -168,19 +216,31 @@ impl RealRig {
             })
         };
         let read = self.rested.iter().zip(&reading.force);
-        on(Guarding::Leap) && self.axes.iter().zip(read).any(|(axis, (rested, force))| leaps(axis, *rested, *force))
+        on(Guarding::Leap)
+            && self
+                .axes
+                .iter()
+                .zip(read)
+                .any(|(axis, (rested, force))| leaps(axis, *rested, *force))
     }
 
     /// It says that it has arrived, and the axis at this place stands elsewhere.
     pub(super) fn following(&self, place: usize, point: &Point, targets: &[f64]) -> RigFault {
         let error = (point.displacement[place] - targets[place]).abs();
-        RigFault::Following { error, band: self.settle.band, axis: named_axis(place, self.axes.len()) }
+        RigFault::Following {
+            error,
+            band: self.settle.band,
+            axis: named_axis(place, self.axes.len()),
+        }
     }
 
     /// Too late; the axis at `place` is the first of those that kept it waiting, where that is known.
     pub(super) fn unsettled(&self, place: Option<usize>) -> RigFault {
         let axis = place.and_then(|place| named_axis(place, self.axes.len()));
-        RigFault::NotSettled { timeout: self.settle.timeout, axis }
+        RigFault::NotSettled {
+            timeout: self.settle.timeout,
+            axis,
+        }
     }
 }
 
@@ -193,5 +253,8 @@ pub(super) struct Disturbed {
 
 /// The first axis that is not in position.
 pub(super) fn first_astray(settling: &[Settling], point: &Point) -> Option<usize> {
-    settling.iter().zip(&point.displacement).position(|(axis, displacement)| !axis.in_position(*displacement))
+    settling
+        .iter()
+        .zip(&point.displacement)
+        .position(|(axis, displacement)| !axis.in_position(*displacement))
 }

@@ -5,8 +5,8 @@ use super::coordinate::Coordinate;
 use super::validity::Judge;
 use super::{Axis, Part, RealRig, degrees_of_freedom};
 use crate::plan::{Behind, Datum, DeviceLink, Dialect, Limits, RealLink, RigPlan};
-use crate::rig::device::{Device, DeviceFault, DeviceIdentity};
-use crate::rig::port::Clock;
+use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity};
+use crate::rig::transport::Clock;
 use crate::rig::{Identity, Live, Rig as _, RigFault, Wish, named_axis};
 
 impl RealRig {
@@ -23,7 +23,11 @@ impl RealRig {
         clock: Box<dyn Clock>,
         wish: Wish,
     ) -> Result<Self, RigFault> {
-        let link = plan.link.as_real().ok_or_else(|| RigFault::Device("the plan's rig is not a real one".to_owned()))?.clone();
+        let link = plan
+            .link
+            .as_real()
+            .ok_or_else(|| RigFault::Device("the plan's rig is not a real one".to_owned()))?
+            .clone();
         let began = clock.now();
         let mut rig = Self {
             settle: plan.settle,
@@ -57,7 +61,12 @@ impl RealRig {
                 rig.heard_now();
                 rig.stands_still()?;
                 let here = rig.settled_reading()?.displacement;
-                let own: Vec<f64> = rig.axes.iter().zip(&here).map(|(axis, place)| axis.coordinate.at_device(*place)).collect();
+                let own: Vec<f64> = rig
+                    .axes
+                    .iter()
+                    .zip(&here)
+                    .map(|(axis, place)| axis.coordinate.at_device(*place))
+                    .collect();
                 rig.begin_at(&own)?;
             }
             Datum::At(places) => rig.begin_at(&places)?,
@@ -92,14 +101,19 @@ impl RealRig {
     fn stands_still(&mut self) -> Result<(), RigFault> {
         if self.poll()?.moving == Some(true) {
             self.hold();
-            return Err(RigFault::Device("it was moving before it was told to: held".to_owned()));
+            return Err(RigFault::Device(
+                "it was moving before it was told to: held".to_owned(),
+            ));
         }
         Ok(())
     }
 
     /// Asks who is there.
     fn meet(&mut self) -> Result<(), RigFault> {
-        let actuator = self.actuator.identify().map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let actuator = self
+            .actuator
+            .identify()
+            .map_err(|fault| self.told(Part::Actuator, &fault))?;
         // Several devices of one role know each its own serial number.
         let alone = |behind: Vec<Behind<'_>>| match behind.as_slice() {
             [one] => Some(one.link.clone()),
@@ -110,8 +124,12 @@ impl RealRig {
         let mut said = vec![actuator];
         let cell_link = alone(self.link.load_cells());
         if let Some(cell) = &mut self.load_cell {
-            let fit = |identity: &DeviceIdentity| cell_link.map_or(Ok(()), |link| pinned(&link, identity));
-            let met = cell.identify().and_then(|identity| fit(&identity).map(|()| identity));
+            let fit = |identity: &DeviceIdentity| {
+                cell_link.map_or(Ok(()), |link| pinned(&link, identity))
+            };
+            let met = cell
+                .identify()
+                .and_then(|identity| fit(&identity).map(|()| identity));
             said.push(met.map_err(|fault| self.told(Part::LoadCell, &fault))?);
         }
         self.identity = identity_of(&self.identity.name, &self.link, &said);
@@ -122,20 +140,36 @@ impl RealRig {
     /// Whether the devices have as many axes as the plan says, no more and no less.
     fn count_axes(&mut self) -> Result<(), RigFault> {
         let wanted = self.axes.len();
-        let cell = self.load_cell.as_ref().map(|cell| (Part::LoadCell, cell.axes()));
-        let other = [Some((Part::Actuator, self.actuator.axes())), cell].into_iter().flatten().find(|(_, axes)| *axes != wanted);
+        let cell = self
+            .load_cell
+            .as_ref()
+            .map(|cell| (Part::LoadCell, cell.axes()));
+        let other = [Some((Part::Actuator, self.actuator.axes())), cell]
+            .into_iter()
+            .flatten()
+            .find(|(_, axes)| *axes != wanted);
         other.map_or(Ok(()), |(part, axes)| {
             let wanted = degrees_of_freedom(wanted);
-            Err(self.told(part, &DeviceFault::Unfit(format!("it has {axes}, and the plan's rig is of {wanted}"))))
+            Err(self.told(
+                part,
+                &DeviceFault::Unfit(format!("it has {axes}, and the plan's rig is of {wanted}")),
+            ))
         })
     }
 
     /// Tells the devices the limits, in their own sign.
     fn narrow(&mut self) -> Result<(), RigFault> {
-        let own: Vec<Limits> = self.axes.iter().map(|axis| axis.coordinate.limits_at_device(&axis.limits)).collect();
-        self.actuator.narrow_limits(&own).map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let own: Vec<Limits> = self
+            .axes
+            .iter()
+            .map(|axis| axis.coordinate.limits_at_device(&axis.limits))
+            .collect();
+        self.actuator
+            .narrow_limits(&own)
+            .map_err(|fault| self.told(Part::Actuator, &fault))?;
         if let Some(cell) = &mut self.load_cell {
-            cell.narrow_limits(&own).map_err(|fault| self.told(Part::LoadCell, &fault))?;
+            cell.narrow_limits(&own)
+                .map_err(|fault| self.told(Part::LoadCell, &fault))?;
         }
         Ok(())
     }
@@ -144,11 +178,22 @@ impl RealRig {
 /// Who a rig of this name is whose devices, those that move first, say this of themselves.
 pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) -> Identity {
     let all = |field: fn(&DeviceIdentity) -> &str| {
-        said.iter().map(field).filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" + ")
+        said.iter()
+            .map(field)
+            .filter(|text| !text.is_empty())
+            .collect::<Vec<_>>()
+            .join(" + ")
     };
-    let loop_open = if commands_only(link) { " (open loop: displacement as commanded)" } else { "" };
+    let loop_open = if commands_only(link) {
+        " (open loop: displacement as commanded)"
+    } else {
+        ""
+    };
     let moves = &said[..said.len().min(link.actuators().len())];
-    let boots: Vec<&str> = moves.iter().filter_map(|identity| identity.boot.as_deref()).collect();
+    let boots: Vec<&str> = moves
+        .iter()
+        .filter_map(|identity| identity.boot.as_deref())
+        .collect();
     Identity {
         name: name.to_owned(),
         model: all(|identity| &identity.model) + loop_open,
@@ -167,7 +212,10 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
         limits: plan.limits_of(place, limits),
         rules: link.readings_of(place),
         calibration: plan.calibration_of(place),
-        weighed_apart: link.load_cells().iter().any(|cell| cell.axes.contains(&place)),
+        weighed_apart: link
+            .load_cells()
+            .iter()
+            .any(|cell| cell.axes.contains(&place)),
         judge: Judge::of_axis(named_axis(place, count)),
         outside: false,
         span: 0.0,
@@ -186,15 +234,23 @@ pub const fn commands_only(link: &RealLink) -> bool {
 fn nobody(name: &str) -> Identity {
     let unknown = String::new;
     let name = name.to_owned();
-    Identity { name, model: unknown(), serial: unknown(), firmware: unknown(), boot: None, simulated: false }
+    Identity {
+        name,
+        model: unknown(),
+        serial: unknown(),
+        firmware: unknown(),
+        boot: None,
+        simulated: false,
+    }
 }
 
 /// The plan may say which device it must be.
 fn pinned(link: &DeviceLink, identity: &DeviceIdentity) -> Result<(), DeviceFault> {
     match &link.serial_number {
-        Some(wanted) if *wanted != identity.serial => {
-            Err(DeviceFault::Unfit(format!("the plan wants serial number `{wanted}`, this one is `{}`", identity.serial)))
-        }
+        Some(wanted) if *wanted != identity.serial => Err(DeviceFault::Unfit(format!(
+            "the plan wants serial number `{wanted}`, this one is `{}`",
+            identity.serial
+        ))),
         _ => Ok(()),
     }
 }

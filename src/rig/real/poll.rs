@@ -5,8 +5,8 @@ use super::motion::Disturbed;
 use super::validity::{Invalid, Said};
 use super::{Part, RealRig};
 use crate::plan::Calibration;
-use crate::rig::device::{DeviceFault, Flags, Force, Sample};
-use crate::rig::failpoint::{Guarding, on};
+use crate::rig::controllers::{DeviceFault, Flags, Force, Sample};
+use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{Reading, RigFault, safety};
 
 /// How often a reading that is none is asked for again.
@@ -50,12 +50,20 @@ impl RealRig {
                     left -= 1;
                     self.reread += 1;
                 }
-                Err(Unusable::Impossible(_)) if left > 0 && (self.moved || !on(Guarding::AtRest)) => {
+                Err(Unusable::Impossible(_))
+                    if left > 0 && (self.moved || !on(Guarding::AtRest)) =>
+                {
                     left -= 1;
                     self.reread += 1;
                 }
-                Err(Unusable::Impossible(fault)) if !self.moved => return Err(before_the_first_move(fault)),
-                Err(Unusable::AskAgain(fault) | Unusable::Impossible(fault) | Unusable::Fault(fault)) => return Err(fault),
+                Err(Unusable::Impossible(fault)) if !self.moved => {
+                    return Err(before_the_first_move(fault));
+                }
+                Err(
+                    Unusable::AskAgain(fault)
+                    | Unusable::Impossible(fault)
+                    | Unusable::Fault(fault),
+                ) => return Err(fault),
             }
         }
     }
@@ -64,11 +72,17 @@ impl RealRig {
     /// it settles anew and all are made again.
     pub(super) fn settled_reading(&mut self) -> Result<Reading, RigFault> {
         let began = self.clock.now();
-        let targets = self.settled.clone().filter(|_| on(Guarding::Settling) && on(Guarding::Following));
+        let targets = self
+            .settled
+            .clone()
+            .filter(|_| on(Guarding::Settling) && on(Guarding::Following));
         loop {
             let (points, disturbed) = self.readings_at(targets.as_deref())?;
             let reading = self.reading_of(points, began);
-            let Some(targets) = targets.as_deref().filter(|_| disturbed.is_some() || self.leaps(&reading)) else {
+            let Some(targets) = targets
+                .as_deref()
+                .filter(|_| disturbed.is_some() || self.leaps(&reading))
+            else {
                 return Ok(reading);
             };
             self.reread += u64::from(disturbed.is_none());
@@ -81,7 +95,10 @@ impl RealRig {
     }
 
     /// As many readings as the plan wants, up to the first that shows that the rig has not settled.
-    fn readings_at(&mut self, targets: Option<&[f64]>) -> Result<(Vec<Point>, Option<Disturbed>), RigFault> {
+    fn readings_at(
+        &mut self,
+        targets: Option<&[f64]>,
+    ) -> Result<(Vec<Point>, Option<Disturbed>), RigFault> {
         let mut points = Vec::new();
         for sample in 0..self.link.readings.samples.max(1) {
             if sample > 0 {
@@ -100,23 +117,55 @@ impl RealRig {
     /// The median of each axis, at the time of the last of them, with all their bytes.
     fn reading_of(&self, mut points: Vec<Point>, began: f64) -> Reading {
         if points.len() == 1
-            && let Some(Point { time, displacement, force, raw, .. }) = points.pop()
+            && let Some(Point {
+                time,
+                displacement,
+                force,
+                raw,
+                ..
+            }) = points.pop()
         {
-            return Reading { time, displacement, force, raw };
+            return Reading {
+                time,
+                displacement,
+                force,
+                raw,
+            };
         }
         let time = points.last().map_or(began - self.began, |point| point.time);
         let median = |of: fn(&Point) -> &[f64]| {
             let of_axis = |axis: usize| points.iter().map(|point| of(point)[axis]).collect();
-            (0..self.axes.len()).map(|axis| representative(of_axis(axis))).collect()
+            (0..self.axes.len())
+                .map(|axis| representative(of_axis(axis)))
+                .collect()
         };
-        let (displacement, force) = (median(|point| &point.displacement), median(|point| &point.force));
-        Reading { time, displacement, force, raw: points.into_iter().flat_map(|point| point.raw).collect() }
+        let (displacement, force) = (
+            median(|point| &point.displacement),
+            median(|point| &point.force),
+        );
+        Reading {
+            time,
+            displacement,
+            force,
+            raw: points.into_iter().flat_map(|point| point.raw).collect(),
+        }
     }
 
     /// A reading on the way: one, not a median.
     pub(super) fn reading_now(&mut self) -> Result<Reading, RigFault> {
-        let Point { time, displacement, force, raw, .. } = self.poll()?;
-        Ok(Reading { time, displacement, force, raw })
+        let Point {
+            time,
+            displacement,
+            force,
+            raw,
+            ..
+        } = self.poll()?;
+        Ok(Reading {
+            time,
+            displacement,
+            force,
+            raw,
+        })
     }
 
     /// s between two polls.
@@ -137,7 +186,11 @@ impl RealRig {
         safety::beat();
         let away = self.wish.take_absence();
         self.not_away(away)?;
-        if self.wish.wants_hold() { Err(RigFault::Interrupted) } else { Ok(()) }
+        if self.wish.wants_hold() {
+            Err(RigFault::Interrupted)
+        } else {
+            Ok(())
+        }
     }
 
     /// Away for longer than the watchdog, s, and the rig holds by itself by now: what it does is not what the program thinks.
@@ -166,26 +219,50 @@ impl RealRig {
         let count = self.axes.len();
         if moved.axis_count() != count || weighed.axis_count() != count {
             let (found, wanted) = (moved.axis_count().min(weighed.axis_count()), count);
-            return Err(Unusable::Fault(RigFault::Device(format!("an answer of {found} axes, the rig has {wanted}"))));
+            return Err(Unusable::Fault(RigFault::Device(format!(
+                "an answer of {found} axes, the rig has {wanted}"
+            ))));
         }
         let time = self.clock.now() - self.began;
         let (displacement, force) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let mut point = Point { time, displacement, force, moving: moved.moving, unsettled: false, raw: Vec::new() };
+        let mut point = Point {
+            time,
+            displacement,
+            force,
+            moving: moved.moving,
+            unsettled: false,
+            raw: Vec::new(),
+        };
         for place in 0..count {
             let (moved_axis, weighed_axis) = (moved.axis(place), weighed.axis(place));
-            let lacks = |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
-            let displacement = moved_axis.displacement.ok_or_else(|| lacks("displacement"))?;
-            let weighed_axis = if self.axes[place].weighed_apart { weighed_axis } else { moved_axis };
+            let lacks =
+                |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
+            let displacement = moved_axis
+                .displacement
+                .ok_or_else(|| lacks("displacement"))?;
+            let weighed_axis = if self.axes[place].weighed_apart {
+                weighed_axis
+            } else {
+                moved_axis
+            };
             let original = weighed_axis.force.ok_or_else(|| lacks("force"))?;
             let force = newtons(&self.axes[place].calibration, original)
                 .ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
             let flags = either(moved_axis.flags, weighed_axis.flags);
             // One clock for all axes: the first judges it.
             let device_time = moved.time.filter(|_| place == 0);
-            let said = Said { displacement, force, original, flags, device_time };
+            let said = Said {
+                displacement,
+                force,
+                original,
+                flags,
+                device_time,
+            };
             let axis = &mut self.axes[place];
             let judged = axis.judge.judge(&said, &axis.rules);
-            point.displacement.push(axis.coordinate.in_plan(displacement));
+            point
+                .displacement
+                .push(axis.coordinate.in_plan(displacement));
             point.force.push(axis.coordinate.turned(force));
             point.unsettled |= flags.unsettled;
             judged.map_err(|invalid| self.refuse(invalid))?;
@@ -194,7 +271,12 @@ impl RealRig {
     }
 
     /// Keeps the bytes, also of what is no reading.
-    fn sampled(&mut self, part: Part, sample: Result<Sample, DeviceFault>, raw: &mut Vec<Vec<u8>>) -> Result<Sample, Unusable> {
+    fn sampled(
+        &mut self,
+        part: Part,
+        sample: Result<Sample, DeviceFault>,
+        raw: &mut Vec<Vec<u8>>,
+    ) -> Result<Sample, Unusable> {
         match sample {
             Ok(mut sample) => {
                 raw.append(&mut sample.raw);
@@ -224,7 +306,11 @@ impl RealRig {
             Invalid::Hold(reason) => Unusable::Fault(RigFault::Device(reason)),
             Invalid::Saturated(reason) => {
                 let fault = RigFault::Device(reason);
-                Unusable::Fault(if self.moved { fault } else { before_the_first_move(fault) })
+                Unusable::Fault(if self.moved {
+                    fault
+                } else {
+                    before_the_first_move(fault)
+                })
             }
             Invalid::Untrusted(reason) => {
                 self.untrusted = Some(reason.clone());
@@ -238,10 +324,13 @@ impl RealRig {
 pub(super) fn newtons(calibration: &Calibration, force: Force) -> Option<f64> {
     match force {
         Force::Newtons(force) => Some(force),
-        #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
-        Force::Counts { count, .. } => {
-            calibration.newtons_per_count.map(|factor| (count as f64 - calibration.zero_count) * factor)
-        }
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "converters have at most 32 bits"
+        )]
+        Force::Counts { count, .. } => calibration
+            .newtons_per_count
+            .map(|factor| (count as f64 - calibration.zero_count) * factor),
     }
 }
 
@@ -256,9 +345,9 @@ enum Unusable {
 /// What a sound rig never says at rest. Nothing is sent to it.
 fn before_the_first_move(fault: RigFault) -> RigFault {
     match fault {
-        RigFault::Device(reason) => {
-            RigFault::Device(format!("{reason}; nothing has moved: look for a wrong unit, scale or word order, or a dead sensor"))
-        }
+        RigFault::Device(reason) => RigFault::Device(format!(
+            "{reason}; nothing has moved: look for a wrong unit, scale or word order, or a dead sensor"
+        )),
         other => other,
     }
 }
@@ -285,5 +374,9 @@ pub fn representative(mut values: Vec<f64>) -> f64 {
     }
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
-    if values.len() % 2 == 1 { values[middle] } else { f64::midpoint(values[middle - 1], values[middle]) }
+    if values.len() % 2 == 1 {
+        values[middle]
+    } else {
+        f64::midpoint(values[middle - 1], values[middle])
+    }
 }

@@ -19,11 +19,18 @@ pub(super) struct Settling {
 impl Settling {
     /// One for each axis.
     pub(super) fn of(settle: Settle, targets: &[f64]) -> Vec<Self> {
-        targets.iter().map(|target| Self::new(settle, *target)).collect()
+        targets
+            .iter()
+            .map(|target| Self::new(settle, *target))
+            .collect()
     }
 
     pub(super) const fn new(settle: Settle, target: f64) -> Self {
-        Self { settle, target, window: VecDeque::new() }
+        Self {
+            settle,
+            target,
+            window: VecDeque::new(),
+        }
     }
 
     /// Whether `displacement` (m) is in position. A zero band asks for nothing.
@@ -34,7 +41,10 @@ impl Settling {
     /// When the dwell began, s, and the median force of it, N; None before any reading of it.
     pub(super) fn rested(&self) -> Option<(f64, f64)> {
         let began = self.window.front()?.0;
-        Some((began, representative(self.window.iter().map(|(_, force)| *force).collect())))
+        Some((
+            began,
+            representative(self.window.iter().map(|(_, force)| *force).collect()),
+        ))
     }
 
     /// One more reading at `time` (s); `steady`: the device is at rest and says nothing against its reading. Gives
@@ -46,13 +56,23 @@ impl Settling {
         }
         self.window.push_back((time, force));
         // The window is the shortest that still covers the dwell.
-        while self.window.get(1).is_some_and(|(second, _)| time - second >= self.settle.dwell) && self.window.len() > 2 {
+        while self
+            .window
+            .get(1)
+            .is_some_and(|(second, _)| time - second >= self.settle.dwell)
+            && self.window.len() > 2
+        {
             self.window.pop_front();
         }
-        if !self.window.front().is_some_and(|(first, _)| time - first >= self.settle.dwell) {
+        if !self
+            .window
+            .front()
+            .is_some_and(|(first, _)| time - first >= self.settle.dwell)
+        {
             return false;
         }
-        self.settle.force_rate == 0.0 || slope(&self.window).is_some_and(|rate| rate.abs() <= self.settle.force_rate)
+        self.settle.force_rate == 0.0
+            || slope(&self.window).is_some_and(|rate| rate.abs() <= self.settle.force_rate)
     }
 }
 
@@ -61,7 +81,10 @@ fn slope(window: &VecDeque<(f64, f64)>) -> Option<f64> {
     #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
     let mean = window.iter().map(|(time, _)| time).sum::<f64>() / window.len() as f64;
     let spread: f64 = window.iter().map(|(time, _)| (time - mean).powi(2)).sum();
-    let product: f64 = window.iter().map(|(time, force)| (time - mean) * force).sum();
+    let product: f64 = window
+        .iter()
+        .map(|(time, force)| (time - mean) * force)
+        .sum();
     (window.len() >= 2 && spread > 0.0).then(|| product / spread)
 }
 
@@ -69,19 +92,35 @@ fn slope(window: &VecDeque<(f64, f64)>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    const SETTLE: Settle = Settle { band: 1e-5, force_rate: 2.0, dwell: 0.5, timeout: 10.0 };
+    const SETTLE: Settle = Settle {
+        band: 1e-5,
+        force_rate: 2.0,
+        dwell: 0.5,
+        timeout: 10.0,
+    };
 
     /// First time at which readings every 0.1 s settle.
-    fn settled(settle: Settle, displacement: impl Fn(f64) -> f64, force: impl Fn(f64) -> f64) -> Option<f64> {
+    fn settled(
+        settle: Settle,
+        displacement: impl Fn(f64) -> f64,
+        force: impl Fn(f64) -> f64,
+    ) -> Option<f64> {
         let mut settling = Settling::new(settle, 0.001);
-        (0..100).map(|i| f64::from(i) * 0.125).find(|time| settling.met(*time, displacement(*time), force(*time), true))
+        (0..100)
+            .map(|i| f64::from(i) * 0.125)
+            .find(|time| settling.met(*time, displacement(*time), force(*time), true))
     }
 
     #[test]
     fn the_slope_is_that_of_a_line_whatever_its_noise_is_symmetric_about() {
         let on_line = |time: f64, noise: f64| (time, 3.0 + 2.0 * time + noise);
-        let line =
-            |noise: [f64; 4]| [0.0, 1.0, 2.0, 3.0].into_iter().zip(noise).map(|(time, noise)| on_line(time, noise)).collect();
+        let line = |noise: [f64; 4]| {
+            [0.0, 1.0, 2.0, 3.0]
+                .into_iter()
+                .zip(noise)
+                .map(|(time, noise)| on_line(time, noise))
+                .collect()
+        };
         assert!((slope(&line([0.0; 4])).unwrap() - 2.0).abs() < 1e-12);
         assert!((slope(&line([1.0, -1.0, -1.0, 1.0])).unwrap() - 2.0).abs() < 1e-12);
         assert_eq!(slope(&VecDeque::from([(1.0, 1.0)])), None);
@@ -91,15 +130,39 @@ mod tests {
     fn it_settles_one_dwell_after_band_and_force_rate_are_met() {
         assert_eq!(settled(SETTLE, |_| 0.001, |_| 7.0), Some(0.5));
         // In the band from 1 s on.
-        assert_eq!(settled(SETTLE, |time| if time < 1.0 { 0.0 } else { 0.001 }, |_| 7.0), Some(1.5));
+        assert_eq!(
+            settled(SETTLE, |time| if time < 1.0 { 0.0 } else { 0.001 }, |_| 7.0),
+            Some(1.5)
+        );
         // 16·exp(−t) N: over a window of 0.5 s that ends at t its slope falls below 2 N/s near t − 0.25 = ln 8.
         let relaxed = settled(SETTLE, |_| 0.001, |time| 16.0 * (-time).exp()).unwrap();
         assert!((relaxed - (8_f64.ln() + 0.25)).abs() <= 0.15, "{relaxed}");
         assert_eq!(settled(SETTLE, |_| 0.001, |time| 3.0 * time), None);
-        assert_eq!(settled(Settle { force_rate: 0.0, ..SETTLE }, |_| 0.001, |time| 3.0 * time), Some(0.5));
+        assert_eq!(
+            settled(
+                Settle {
+                    force_rate: 0.0,
+                    ..SETTLE
+                },
+                |_| 0.001,
+                |time| 3.0 * time
+            ),
+            Some(0.5)
+        );
         assert_eq!(settled(SETTLE, |_| 0.0011, |_| 7.0), None);
         assert_eq!(settled(SETTLE, |_| f64::NAN, |_| 7.0), None);
-        assert_eq!(settled(Settle { dwell: 0.0, ..SETTLE }, |_| 0.001, |_| 7.0), Some(0.125), "a rate needs two readings");
+        assert_eq!(
+            settled(
+                Settle {
+                    dwell: 0.0,
+                    ..SETTLE
+                },
+                |_| 0.001,
+                |_| 7.0
+            ),
+            Some(0.125),
+            "a rate needs two readings"
+        );
     }
 
     #[test]

@@ -2,8 +2,8 @@
 //! caught by its guard, and missed without it.
 
 use super::tests::stand;
-use crate::rig::device::Force;
-use crate::rig::failpoint::{Guarding, without};
+use crate::rig::controllers::Force;
+use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{Rig as _, RigFault};
 
 /// Sent to 2 mm by a line that makes `reaches` times as much of it: where it stood when it was held, m, and what was said.
@@ -23,17 +23,27 @@ const BEYOND: f64 = 2.52e-3;
 fn an_axis_that_goes_past_its_target_is_held_on_the_way() {
     let (stood, fault) = sent(5.0);
     let fault = fault.expect("held");
-    assert!(fault.starts_with("the rig went off its way: it is at 2.5"), "{fault}");
+    assert!(
+        fault.starts_with("the rig went off its way: it is at 2.5"),
+        "{fault}"
+    );
     // Two readings, 50 ms apart at 1 mm/s.
     assert!((BEYOND..BEYOND + 2e-4).contains(&stood), "{stood}");
     let (stood, fault) = without(Guarding::Straying, || sent(5.0));
-    assert!(stood > 6e-3 && fault.is_some_and(|fault| fault.contains("settle")), "it alone catches it on the way: {stood}");
+    assert!(
+        stood > 6e-3 && fault.is_some_and(|fault| fault.contains("settle")),
+        "it alone catches it on the way: {stood}"
+    );
 }
 
 #[test]
 fn an_axis_that_goes_the_other_way_is_held() {
     let (stood, fault) = sent(-0.4);
-    assert!(fault.is_some_and(|fault| fault.contains("off its way")) && (-7.2e-4..=-5.2e-4).contains(&stood), "{stood}");
+    assert!(
+        fault.is_some_and(|fault| fault.contains("off its way"))
+            && (-7.2e-4..=-5.2e-4).contains(&stood),
+        "{stood}"
+    );
 }
 
 #[test]

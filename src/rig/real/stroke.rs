@@ -4,7 +4,7 @@
 use super::motion::first_astray;
 use super::settle::Settling;
 use super::{Proposed, RealRig};
-use crate::rig::failpoint::{Guarding, on};
+use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{CutOff, EachReading, Rig as _, RigFault};
 
 /// Readings that a stroke of which more are wanted must give.
@@ -21,12 +21,19 @@ impl RealRig {
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
         if self.axes.len() > 1 {
-            return Err(RigFault::Device("the axes of a frame go to targets: they are not read on the way".to_owned()));
+            return Err(RigFault::Device(
+                "the axes of a frame go to targets: they are not read on the way".to_owned(),
+            ));
         }
         self.propose(targets, Some(velocity.abs()))?;
-        let ahead = self.proposed.as_ref().is_some_and(|Proposed { targets, from, .. }| (targets[0] - from[0]) * velocity > 0.0);
+        let ahead = self
+            .proposed
+            .as_ref()
+            .is_some_and(|Proposed { targets, from, .. }| (targets[0] - from[0]) * velocity > 0.0);
         if samples == 0 || !ahead {
-            return Err(RigFault::Device(format!("a traverse at {velocity} m/s with {samples} samples leads nowhere")));
+            return Err(RigFault::Device(format!(
+                "a traverse at {velocity} m/s with {samples} samples leads nowhere"
+            )));
         }
         let (targets, seconds) = self.set_off()?;
         let began = self.clock.now();
@@ -39,27 +46,47 @@ impl RealRig {
             self.stay_until(began + due)?;
             each(self.reading_now()?)?;
             taken += 1;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and ends the stroke")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "saturates, and ends the stroke"
+            )]
             let passed = ((self.clock.now() - began) / interval).floor() as usize;
             sample = passed.max(sample + 1);
         }
         if taken < LEAST.min(samples) {
-            let reason = format!("the readings cannot keep up: {taken} in a stroke of {seconds:.3} s, {samples} are wanted");
+            let reason = format!(
+                "the readings cannot keep up: {taken} in a stroke of {seconds:.3} s, {samples} are wanted"
+            );
             return Err(RigFault::Device(reason));
         }
         self.come_to_rest(&targets, began + seconds)
     }
 
     /// What is left of a stroke, from where the rig stands. At its end one reading is made, late and at rest, if any is left.
-    pub(super) fn rest_of_stroke(&mut self, cut_off: &CutOff<'_>, velocity: f64, each: EachReading<'_>) -> Result<(), RigFault> {
+    pub(super) fn rest_of_stroke(
+        &mut self,
+        cut_off: &CutOff<'_>,
+        velocity: f64,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
         let (targets, left) = (cut_off.to, cut_off.left());
         self.propose(targets, Some(velocity.abs()))?;
-        let way = self.proposed.as_ref().map_or(0.0, |Proposed { targets, from, .. }| (targets[0] - from[0]) * velocity.signum());
+        let way = self
+            .proposed
+            .as_ref()
+            .map_or(0.0, |Proposed { targets, from, .. }| {
+                (targets[0] - from[0]) * velocity.signum()
+            });
         if left > 0 && way > self.settle.band {
             return self.stroke(targets, velocity, left, each);
         }
         self.carry_out()?;
-        if left > 0 { each(self.reading_now()?) } else { Ok(()) }
+        if left > 0 {
+            each(self.reading_now()?)
+        } else {
+            Ok(())
+        }
     }
 
     /// Waits at the end of a stroke until it rests there, so that the next one sets off from rest. How the force settles
@@ -73,7 +100,9 @@ impl RealRig {
             self.watch(&point)?;
             let rests = point.moving != Some(true) && now >= arrival;
             let astray = first_astray(&settling, &point);
-            let Some(axis) = astray.or((!rests).then_some(0)) else { return Ok(()) };
+            let Some(axis) = astray.or((!rests).then_some(0)) else {
+                return Ok(());
+            };
             if now > deadline {
                 return match rests {
                     true if on(Guarding::Following) => Err(self.following(axis, &point, targets)),

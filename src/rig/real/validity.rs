@@ -2,8 +2,8 @@
 //! hold. It moves nothing and keeps only what shows a sensor that no longer follows.
 
 use crate::plan::ReadingRules;
-use crate::rig::device::{Flags, Force, NOT_TRUSTED};
-use crate::rig::failpoint::{Guarding, on};
+use crate::rig::controllers::{Flags, Force, NOT_TRUSTED};
+use crate::rig::safety::failpoint::{Guarding, on};
 
 /// Nearness to an end of the range at which a reading is saturated, as a fraction of that end.
 const SATURATION: f64 = 1e-3;
@@ -80,14 +80,21 @@ struct Same {
 
 impl Judge {
     pub(super) fn of_axis(axis: Option<usize>) -> Self {
-        Self { axis, ..Self::default() }
+        Self {
+            axis,
+            ..Self::default()
+        }
     }
 
     pub(super) fn judge(&mut self, said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
         self.same_device(said)?;
         whole_rig(said.flags)?;
-        let of_axis = flags(said.flags).and_then(|()| number(said)).and_then(|()| saturation(said, rules));
-        of_axis.and_then(|()| self.frozen(said, rules)).map_err(|invalid| invalid.named(self.axis))
+        let of_axis = flags(said.flags)
+            .and_then(|()| number(said))
+            .and_then(|()| saturation(said, rules));
+        of_axis
+            .and_then(|()| self.frozen(said, rules))
+            .map_err(|invalid| invalid.named(self.axis))
     }
 
     /// A clock that goes back is that of a device that started anew.
@@ -95,9 +102,11 @@ impl Judge {
         let before = self.device_time;
         self.device_time = said.device_time.or(before);
         match (before, said.device_time) {
-            (Some(before), Some(now)) if on(Guarding::Reboot) && now < before => Err(Invalid::Untrusted(format!(
-                "its clock went back from {before} s to {now} s: it started anew, and {NOT_TRUSTED}"
-            ))),
+            (Some(before), Some(now)) if on(Guarding::Reboot) && now < before => {
+                Err(Invalid::Untrusted(format!(
+                    "its clock went back from {before} s to {now} s: it started anew, and {NOT_TRUSTED}"
+                )))
+            }
             _ => Ok(()),
         }
     }
@@ -106,14 +115,28 @@ impl Judge {
     fn frozen(&mut self, said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
         let x = said.displacement;
         let same = match self.same {
-            Some(same) if same.force == said.force && (x - same.last).abs() <= rules.resolution => same,
-            Some(same) if same.force == said.force => {
-                Same { places: same.places.saturating_add(1), last: x, low: same.low.min(x), high: same.high.max(x), ..same }
+            Some(same) if same.force == said.force && (x - same.last).abs() <= rules.resolution => {
+                same
             }
-            _ => Same { force: said.force, places: 1, last: x, low: x, high: x },
+            Some(same) if same.force == said.force => Same {
+                places: same.places.saturating_add(1),
+                last: x,
+                low: same.low.min(x),
+                high: same.high.max(x),
+                ..same
+            },
+            _ => Same {
+                force: said.force,
+                places: 1,
+                last: x,
+                low: x,
+                high: x,
+            },
         };
         self.same = Some(same);
-        let Same { places, low, high, .. } = same;
+        let Same {
+            places, low, high, ..
+        } = same;
         let moved = high - low > FROZEN_OVER * rules.resolution;
         if on(Guarding::Frozen) && places >= rules.frozen_after.max(2) && moved {
             return Err(Invalid::Hold(format!(
@@ -131,7 +154,10 @@ fn whole_rig(flags: Flags) -> Result<(), Invalid> {
     if on(Guarding::Flags) {
         for (set, what) in [
             (flags.emergency_stop, "the emergency stop is pressed"),
-            (flags.watchdog_tripped, "its watchdog tripped: it heard nothing for too long and holds by itself"),
+            (
+                flags.watchdog_tripped,
+                "its watchdog tripped: it heard nothing for too long and holds by itself",
+            ),
         ] {
             if set {
                 return Err(Invalid::Hold(what.to_owned()));
@@ -143,7 +169,9 @@ fn whole_rig(flags: Flags) -> Result<(), Invalid> {
 
 fn flags(flags: Flags) -> Result<(), Invalid> {
     if on(Guarding::Flags) && flags.unreferenced {
-        return Err(Invalid::Untrusted("its position is not referenced".to_owned()));
+        return Err(Invalid::Untrusted(
+            "its position is not referenced".to_owned(),
+        ));
     }
     if on(Guarding::Invalid) && flags.stale {
         return Err(Invalid::AskAgain("the reading is an old one".to_owned()));
@@ -156,7 +184,9 @@ fn number(said: &Said) -> Result<(), Invalid> {
     if !on(Guarding::Invalid) || x.is_finite() && force.is_finite() {
         return Ok(());
     }
-    Err(Invalid::Impossible(format!("{x} m and {force} N are no reading")))
+    Err(Invalid::Impossible(format!(
+        "{x} m and {force} N are no reading"
+    )))
 }
 
 /// At an end of what converter or cell can say, the truth may lie anywhere beyond. A force that is no number is not
@@ -165,12 +195,19 @@ fn saturation(said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
     if !on(Guarding::Saturation) {
         return Ok(());
     }
-    let hold = |what: String| Err(Invalid::Saturated(format!("the force reading is saturated: {what}")));
+    let hold = |what: String| {
+        Err(Invalid::Saturated(format!(
+            "the force reading is saturated: {what}"
+        )))
+    };
     if said.flags.saturated {
         return hold("the device says so".to_owned());
     }
     if let Force::Counts { count, low, high } = said.original {
-        #[expect(clippy::cast_precision_loss, reason = "converters have at most 32 bits")]
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "converters have at most 32 bits"
+        )]
         let (value, low, high) = (count as f64, low as f64, high as f64);
         let margin = SATURATION * (high - low) / 2.0;
         if value <= low + margin || value >= high - margin {
@@ -178,10 +215,16 @@ fn saturation(said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
         }
     }
     let range = rules.force_range;
-    let (low, high) = (range.low + SATURATION * range.low.abs(), range.high - SATURATION * range.high.abs());
+    let (low, high) = (
+        range.low + SATURATION * range.low.abs(),
+        range.high - SATURATION * range.high.abs(),
+    );
     // An end that is not given is infinite, and the margin makes it no number: then nothing is held against it.
     if said.force <= low || said.force >= high {
-        return hold(format!("{} N of {} .. {} N", said.force, range.low, range.high));
+        return hold(format!(
+            "{} N of {} .. {} N",
+            said.force, range.low, range.high
+        ));
     }
     Ok(())
 }
@@ -190,19 +233,28 @@ fn saturation(said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
 mod tests {
     use super::*;
     use crate::plan::Interval;
-    use crate::rig::failpoint::without;
+    use crate::rig::safety::failpoint::without;
 
     const RULES: ReadingRules = ReadingRules {
         samples: 1,
         rate: 10.0,
         resolution: 1e-6,
         noise: 1.0,
-        force_range: Interval { low: -1000.0, high: 1000.0 },
+        force_range: Interval {
+            low: -1000.0,
+            high: 1000.0,
+        },
         frozen_after: 4,
     };
 
     fn said(force: f64) -> Said {
-        Said { displacement: 0.001, force, original: Force::Newtons(force), flags: Flags::default(), device_time: None }
+        Said {
+            displacement: 0.001,
+            force,
+            original: Force::Newtons(force),
+            flags: Flags::default(),
+            device_time: None,
+        }
     }
 
     /// The last of these is refused with `guard` on, and is missed without it.
@@ -221,12 +273,30 @@ mod tests {
 
     #[test]
     fn what_is_no_number_or_old_is_asked_again() {
-        let unbounded = ReadingRules { force_range: Interval::ALL, ..RULES };
-        let stale = Said { flags: Flags { stale: true, ..Flags::default() }, ..said(1.0) };
-        let nowhere = Said { displacement: f64::NAN, ..said(1.0) };
-        assert!(matches!(only_caught_by(Guarding::Invalid, unbounded, &[stale]), Invalid::AskAgain(_)));
+        let unbounded = ReadingRules {
+            force_range: Interval::ALL,
+            ..RULES
+        };
+        let stale = Said {
+            flags: Flags {
+                stale: true,
+                ..Flags::default()
+            },
+            ..said(1.0)
+        };
+        let nowhere = Said {
+            displacement: f64::NAN,
+            ..said(1.0)
+        };
+        assert!(matches!(
+            only_caught_by(Guarding::Invalid, unbounded, &[stale]),
+            Invalid::AskAgain(_)
+        ));
         for bad in [said(f64::NAN), nowhere] {
-            assert!(matches!(only_caught_by(Guarding::Invalid, unbounded, &[bad]), Invalid::Impossible(_)));
+            assert!(matches!(
+                only_caught_by(Guarding::Invalid, unbounded, &[bad]),
+                Invalid::Impossible(_)
+            ));
         }
         let infinite = Judge::default().judge(&said(f64::INFINITY), &unbounded);
         assert!(matches!(infinite, Err(Invalid::Impossible(_))));
@@ -234,10 +304,32 @@ mod tests {
 
     #[test]
     fn an_end_of_the_range_is_saturated_and_what_lies_inside_is_not() {
-        let counts = |count| Said { original: Force::Counts { count, low: -8_388_608, high: 8_388_607 }, ..said(10.0) };
-        let flagged = Said { flags: Flags { saturated: true, ..Flags::default() }, ..said(1.0) };
-        for bad in [said(999.1), said(-5000.0), counts(8_388_607), counts(-8_380_300), flagged] {
-            assert!(matches!(only_caught_by(Guarding::Saturation, RULES, &[bad]), Invalid::Saturated(_)));
+        let counts = |count| Said {
+            original: Force::Counts {
+                count,
+                low: -8_388_608,
+                high: 8_388_607,
+            },
+            ..said(10.0)
+        };
+        let flagged = Said {
+            flags: Flags {
+                saturated: true,
+                ..Flags::default()
+            },
+            ..said(1.0)
+        };
+        for bad in [
+            said(999.1),
+            said(-5000.0),
+            counts(8_388_607),
+            counts(-8_380_300),
+            flagged,
+        ] {
+            assert!(matches!(
+                only_caught_by(Guarding::Saturation, RULES, &[bad]),
+                Invalid::Saturated(_)
+            ));
         }
         for good in [said(998.9), said(-998.9), said(0.0), counts(8_380_000)] {
             assert_eq!(Judge::default().judge(&good, &RULES), Ok(()));
@@ -249,9 +341,27 @@ mod tests {
         let flagged = |flags| Said { flags, ..said(1.0) };
         let none = Flags::default();
         for (flags, untrusted) in [
-            (Flags { emergency_stop: true, ..none }, false),
-            (Flags { watchdog_tripped: true, ..none }, false),
-            (Flags { unreferenced: true, ..none }, true),
+            (
+                Flags {
+                    emergency_stop: true,
+                    ..none
+                },
+                false,
+            ),
+            (
+                Flags {
+                    watchdog_tripped: true,
+                    ..none
+                },
+                false,
+            ),
+            (
+                Flags {
+                    unreferenced: true,
+                    ..none
+                },
+                true,
+            ),
         ] {
             let invalid = only_caught_by(Guarding::Flags, RULES, &[flagged(flags)]);
             assert_eq!(matches!(invalid, Invalid::Untrusted(_)), untrusted);
@@ -260,16 +370,25 @@ mod tests {
 
     #[test]
     fn a_clock_that_goes_back_is_that_of_a_device_that_started_anew() {
-        let at = |time| Said { device_time: Some(time), ..said(time) };
+        let at = |time| Said {
+            device_time: Some(time),
+            ..said(time)
+        };
         let invalid = only_caught_by(Guarding::Reboot, RULES, &[at(100.0), said(3.0), at(0.5)]);
         assert!(matches!(invalid, Invalid::Untrusted(_)));
     }
 
     #[test]
     fn a_force_that_stays_while_the_specimen_is_bent_is_frozen() {
-        let at = |displacement, force| Said { displacement, ..said(force) };
+        let at = |displacement, force| Said {
+            displacement,
+            ..said(force)
+        };
         let stuck: Vec<Said> = (0..4).map(|i| at(f64::from(i) * 3e-6, 5.0)).collect();
-        assert!(matches!(only_caught_by(Guarding::Frozen, RULES, &stuck), Invalid::Hold(_)));
+        assert!(matches!(
+            only_caught_by(Guarding::Frozen, RULES, &stuck),
+            Invalid::Hold(_)
+        ));
         // Where displacement and force are asked for one after the other, the first reading after a move may have the
         // force of its end with a displacement on the way: resting there is not freezing.
         let mut judge = Judge::default();
@@ -280,11 +399,15 @@ mod tests {
         // At rest, or with a force that moves, nothing is frozen.
         let mut judge = Judge::default();
         for i in 0..50 {
-            judge.judge(&at(1e-6 * f64::from(i % 5), 5.0), &RULES).unwrap();
+            judge
+                .judge(&at(1e-6 * f64::from(i % 5), 5.0), &RULES)
+                .unwrap();
         }
         let mut judge = Judge::default();
         for i in 0..50 {
-            judge.judge(&at(1e-5 * f64::from(i), 5.0 + f64::from(i / 3)), &RULES).unwrap();
+            judge
+                .judge(&at(1e-5 * f64::from(i), 5.0 + f64::from(i / 3)), &RULES)
+                .unwrap();
         }
     }
 }

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::VirtualClock;
 use crate::plan::Limits;
-use crate::rig::device::{Device, DeviceFault, DeviceIdentity, Force, Move, Sample};
-use crate::rig::port::Clock as _;
+use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity, Force, Move, Sample};
+use crate::rig::transport::Clock as _;
 use crate::rig::{LastMove, Tally};
 
 /// What becomes of the n-th sample, counted from 0, on its way out.
@@ -56,7 +56,11 @@ impl FakeDevice {
     /// At zero on a spring of 1e5 N/m, and well.
     #[must_use]
     pub fn new(clock: &VirtualClock) -> Self {
-        let identity = DeviceIdentity { model: "fake".to_owned(), serial: "F-1".to_owned(), ..DeviceIdentity::default() };
+        let identity = DeviceIdentity {
+            model: "fake".to_owned(),
+            serial: "F-1".to_owned(),
+            ..DeviceIdentity::default()
+        };
         let inside = Inside {
             identity,
             position: 0.0,
@@ -77,7 +81,10 @@ impl FakeDevice {
             last_move: None,
             time: clock.now(),
         };
-        Self { clock: clock.clone(), inside: Arc::new(Mutex::new(inside)) }
+        Self {
+            clock: clock.clone(),
+            inside: Arc::new(Mutex::new(inside)),
+        }
     }
 
     /// What it is by now.
@@ -85,13 +92,20 @@ impl FakeDevice {
         let mut inside = self.inside.lock().unwrap();
         let way = inside.speed * (self.clock.now() - inside.time);
         let left = inside.target - inside.position;
-        inside.position = if left.abs() <= way { inside.target } else { inside.position + way.copysign(left) };
+        inside.position = if left.abs() <= way {
+            inside.target
+        } else {
+            inside.position + way.copysign(left)
+        };
         inside.time = self.clock.now();
         inside
     }
 
     /// What becomes of its samples from now on, counted from 0.
-    pub fn alter(&self, alter: impl FnMut(u64, &mut Sample) -> Result<(), DeviceFault> + Send + 'static) {
+    pub fn alter(
+        &self,
+        alter: impl FnMut(u64, &mut Sample) -> Result<(), DeviceFault> + Send + 'static,
+    ) {
         let mut inside = self.inside();
         inside.samples = 0;
         inside.alter = Some(Box::new(alter));
@@ -105,7 +119,12 @@ impl Device for FakeDevice {
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
         let target = targets[0] + self.inside().misspoken;
-        Ok(Move { frames: vec![format!("{target} {speed}").into_bytes()], targets: vec![target], speed, id: None })
+        Ok(Move {
+            frames: vec![format!("{target} {speed}").into_bytes()],
+            targets: vec![target],
+            speed,
+            id: None,
+        })
     }
 
     fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
@@ -121,23 +140,33 @@ impl Device for FakeDevice {
         self.clock.advance(answer_time);
         let mut inside = self.inside();
         let force = inside.stiffness * inside.position;
-        let force = inside.newtons_per_count.map_or(Force::Newtons(force), |factor| {
-            #[expect(clippy::cast_possible_truncation, reason = "a test's force")]
-            let count = (force / factor).round() as i64;
-            Force::Counts { count, low: -8_388_608, high: 8_388_607 }
-        });
+        let force = inside
+            .newtons_per_count
+            .map_or(Force::Newtons(force), |factor| {
+                #[expect(clippy::cast_possible_truncation, reason = "a test's force")]
+                let count = (force / factor).round() as i64;
+                Force::Counts {
+                    count,
+                    low: -8_388_608,
+                    high: 8_388_607,
+                }
+            });
         let mut sample = Sample {
             time: Some(inside.time),
             displacement: Some(inside.position),
             force: Some(force),
-            moving: inside.tells_motion.then(|| inside.position != inside.target),
+            moving: inside
+                .tells_motion
+                .then(|| inside.position != inside.target),
             raw: vec![format!("sample {}", inside.samples).into_bytes()],
             ..Sample::default()
         };
         let number = inside.samples;
         inside.samples += 1;
         // The script may look inside.
-        let Some(mut alter) = inside.alter.take() else { return Ok(sample) };
+        let Some(mut alter) = inside.alter.take() else {
+            return Ok(sample);
+        };
         drop(inside);
         let altered = alter(number, &mut sample);
         self.inside().alter.get_or_insert(alter);
@@ -148,7 +177,9 @@ impl Device for FakeDevice {
         let mut inside = self.inside();
         inside.holds += 1;
         if inside.deaf {
-            return Err(DeviceFault::Silent { seconds: 2.805_577_968_000_001_5 });
+            return Err(DeviceFault::Silent {
+                seconds: 2.805_577_968_000_001_5,
+            });
         }
         inside.target = inside.position;
         Ok(())

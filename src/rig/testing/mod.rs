@@ -1,5 +1,5 @@
-//! What tests of real rigs stand on: a clock that only moves when someone waits, a port that says what it is told to
-//! say. In: a script. Out: bytes at their times. No test of a rig sleeps.
+//! Test support for real rigs: a clock that moves only while someone waits, and a scripted port.
+//! In: a script. Out: bytes at their times. No test of a rig sleeps.
 
 mod device;
 mod transcript;
@@ -9,7 +9,7 @@ use std::io;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::port::{Clock, Emergency, Port};
+use super::transport::{Clock, Emergency, Port};
 
 pub use device::FakeDevice;
 pub use transcript::Transcript;
@@ -65,13 +65,20 @@ struct Said {
 impl ScriptedPort {
     #[must_use]
     pub fn new(clock: &VirtualClock) -> Self {
-        Self { clock: clock.clone(), shared: Arc::default() }
+        Self {
+            clock: clock.clone(),
+            shared: Arc::default(),
+        }
     }
 
     /// What is said from now on without being asked.
     pub fn say(&self, script: &[Say]) {
         let mut shared = self.shared.lock().unwrap();
-        let mut at = shared.coming.back().map_or(0.0, |(at, _)| *at).max(self.clock.now());
+        let mut at = shared
+            .coming
+            .back()
+            .map_or(0.0, |(at, _)| *at)
+            .max(self.clock.now());
         for say in script {
             match say {
                 Say::After(seconds, bytes) => {
@@ -85,7 +92,11 @@ impl ScriptedPort {
 
     /// What is said to the next frame that has no reply yet.
     pub fn reply(&self, script: &[Say]) {
-        self.shared.lock().unwrap().replies.push_back(script.to_vec());
+        self.shared
+            .lock()
+            .unwrap()
+            .replies
+            .push_back(script.to_vec());
     }
 
     /// What was sent, with its moments, s.
@@ -109,7 +120,11 @@ impl Port for ScriptedPort {
     fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize> {
         let until = self.clock.now() + timeout.as_secs_f64();
         let mut shared = self.shared.lock().unwrap();
-        let next = shared.coming.front().map(|(at, _)| *at).filter(|at| *at <= until);
+        let next = shared
+            .coming
+            .front()
+            .map(|(at, _)| *at)
+            .filter(|at| *at <= until);
         let Some(at) = next else {
             let left = until - self.clock.now();
             self.clock.advance(left);
@@ -132,7 +147,11 @@ impl Port for ScriptedPort {
 
     fn discard(&mut self) -> io::Result<()> {
         let now = self.clock.now();
-        self.shared.lock().unwrap().coming.retain(|(at, bytes)| *at > now || bytes.is_none());
+        self.shared
+            .lock()
+            .unwrap()
+            .coming
+            .retain(|(at, bytes)| *at > now || bytes.is_none());
         Ok(())
     }
 
@@ -143,6 +162,10 @@ impl Port for ScriptedPort {
 
 impl Emergency for ScriptedPort {
     fn send(&mut self, bytes: &[u8]) {
-        self.shared.lock().unwrap().sent.push((self.clock.now(), bytes.to_vec()));
+        self.shared
+            .lock()
+            .unwrap()
+            .sent
+            .push((self.clock.now(), bytes.to_vec()));
     }
 }

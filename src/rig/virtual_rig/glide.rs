@@ -1,16 +1,16 @@
-//! The virtual rig along a smooth path: read on the way, without a stop. In: a path in the plan's directions. Out:
-//! readings. The piston follows in closed form, so that the number of readings changes none of them.
+//! The virtual rig along smooth paths: all axes together, read on the way, without a stop. In: a path an axis, in the plan's
+//! directions. Out: readings. The pistons follow in closed form, so that the number of readings changes none of them.
 
-use super::VirtualRig;
-use crate::mechanics::maxwell::Travel;
-use crate::mechanics::path::{Path, Rate};
-use crate::rig::actuator::Actuator;
+use super::{Axis, VirtualRig};
+use crate::physics::relaxation::maxwell::Travel;
+use crate::physics::tracking::trajectory::{Path, Rate};
+use crate::rig::virtual_rig::actuator::Actuator;
 use crate::rig::{EachReading, Rig as _, RigFault};
 
 /// The reference of one actuator along a path. What the actuator misses of its increments goes over evenly from what it missed
 /// before to what it misses of this one, so that its reference has no step.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::rig) struct Course {
+pub(crate) struct Course {
     path: Path,
     sign: f64,
     /// At the beginning, m.
@@ -20,27 +20,47 @@ pub(in crate::rig) struct Course {
 }
 
 impl Course {
-    pub(in crate::rig) fn of(path: Path, sign: f64, actuator: &Actuator) -> Self {
+    pub(crate) fn of(path: Path, sign: f64, actuator: &Actuator) -> Self {
         let missed = sign * path.from - actuator.reference();
         let misses = sign * path.to - actuator.aim(sign * path.to);
-        Self { path, sign, missed, drifts: (misses - missed) / path.seconds }
+        Self {
+            path,
+            sign,
+            missed,
+            drifts: (misses - missed) / path.seconds,
+        }
     }
 
     /// Of the path that the actuator was stopped on before, else of one that it sets off on.
-    pub(in crate::rig) fn again(path: Path, sign: f64, actuator: &Actuator, under_way: Option<Self>) -> Self {
-        under_way.filter(|course| course.path == path).unwrap_or_else(|| Self::of(path, sign, actuator))
+    pub(crate) fn again(
+        path: Path,
+        sign: f64,
+        actuator: &Actuator,
+        under_way: Option<Self>,
+    ) -> Self {
+        under_way
+            .filter(|course| course.path == path)
+            .unwrap_or_else(|| Self::of(path, sign, actuator))
     }
 
     /// The actuator goes on from one time on the path to another, s. How the piston went.
-    pub(in crate::rig) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Travel {
+    pub(crate) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Travel {
         let place = self.sign * self.path.place(to) - (self.missed + self.drifts * to);
         actuator.run(place, self.rate(from), self.rate(to), to - from)
     }
 
     fn rate(&self, time: f64) -> Rate {
-        let Rate { velocity, acceleration, jerk } = self.path.rate(time);
+        let Rate {
+            velocity,
+            acceleration,
+            jerk,
+        } = self.path.rate(time);
         let sign = self.sign;
-        Rate { velocity: sign * velocity - self.drifts, acceleration: sign * acceleration, jerk: sign * jerk }
+        Rate {
+            velocity: sign * velocity - self.drifts,
+            acceleration: sign * acceleration,
+            jerk: sign * jerk,
+        }
     }
 }
 
@@ -48,13 +68,25 @@ impl Course {
 ///
 /// # Errors
 /// The paths are not of one length, or lead nowhere.
-pub(in crate::rig) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64>, RigFault> {
+pub(crate) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64>, RigFault> {
     let seconds = paths.first().map_or(0.0, |path| path.seconds);
-    let numbers = |path: &Path| [path.from, path.to, path.start_velocity, path.end_velocity, path.seconds];
+    let numbers = |path: &Path| {
+        [
+            path.from,
+            path.to,
+            path.start_velocity,
+            path.end_velocity,
+            path.seconds,
+        ]
+    };
     let finite = paths.iter().flat_map(numbers).all(f64::is_finite);
-    let together = paths.iter().all(|path| path.seconds.to_bits() == seconds.to_bits());
+    let together = paths
+        .iter()
+        .all(|path| path.seconds.to_bits() == seconds.to_bits());
     if samples == 0 || seconds <= 0.0 || !finite || !together {
-        return Err(RigFault::Device(format!("a path of {seconds} s with {samples} readings leads nowhere")));
+        return Err(RigFault::Device(format!(
+            "a path of {seconds} s with {samples} readings leads nowhere"
+        )));
     }
     #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
     let instants = (0..=samples).map(|sample| seconds * sample as f64 / samples as f64);
@@ -62,25 +94,36 @@ pub(in crate::rig) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64
 }
 
 impl VirtualRig {
-    /// Reads at `samples` equal times, of which the first may be done; the last at the end of the path, where the reference is
-    /// still moving.
+    /// Reads at `samples` equal times, of which the first may be done; the last at the end of the paths, where the references
+    /// are still moving.
     ///
     /// # Errors
-    /// The path leads nowhere, or `each` refuses; the rig then holds.
+    /// The paths lead nowhere, or `each` refuses; the rig then holds.
     pub(super) fn glide_along(
         &mut self,
-        path: &Path,
+        paths: &[Path],
         (samples, done): (usize, usize),
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        let instants = instants(std::slice::from_ref(path), samples)?;
-        let course = Course::again(*path, self.sign, &self.actuator, self.under_way);
-        self.under_way = Some(course);
+        if paths.len() != self.axes.len() {
+            return Err(self.other_order(paths.len()));
+        }
+        let instants = instants(paths, samples)?;
+        let before = |axis: usize| self.under_way.get(axis).copied();
+        let axes = paths.iter().zip(&self.axes).enumerate();
+        let course = |(number, (path, axis)): (usize, (&Path, &Axis))| {
+            Course::again(*path, self.sign, &axis.actuator, before(number))
+        };
+        let courses: Vec<Course> = axes.map(course).collect();
+        self.under_way.clone_from(&courses);
         let began = self.time - instants.get(done).copied().unwrap_or(0.0);
         for pair in instants.windows(2).skip(done) {
-            let travel = course.advance(&mut self.actuator, pair[0], pair[1]);
+            let axes = courses.iter().zip(&mut self.axes);
+            let travels: Vec<Travel> = axes
+                .map(|(course, axis)| course.advance(&mut axis.actuator, pair[0], pair[1]))
+                .collect();
             self.time = began + pair[1];
-            self.follow(&travel);
+            self.follow(&travels);
             let reading = self.reading();
             if let Err(refused) = each(reading) {
                 self.hold();
@@ -100,7 +143,7 @@ mod tests {
     fn readings(link: VirtualLink, path: &Path, samples: usize) -> Vec<(f64, f64, f64)> {
         let mut rig = VirtualRig::new(link, AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
         let mut readings = Vec::new();
-        rig.glide_along(path, (samples, 0), &mut |reading| {
+        rig.glide_along(&[*path], (samples, 0), &mut |reading| {
             readings.push((reading.time, reading.displacement[0], reading.force[0]));
             Ok(())
         })
@@ -108,7 +151,13 @@ mod tests {
         readings
     }
 
-    const PATH: Path = Path { from: 0.0, to: 2e-3, start_velocity: 0.0, end_velocity: 0.03, seconds: 0.1 };
+    const PATH: Path = Path {
+        from: 0.0,
+        to: 2e-3,
+        start_velocity: 0.0,
+        end_velocity: 0.03,
+        seconds: 0.1,
+    };
 
     /// K X + c v + F_c on the way, at the path's own velocity.
     #[test]
@@ -117,30 +166,53 @@ mod tests {
             let velocity = PATH.rate(time).velocity;
             assert!((place - PATH.place(time)).abs() < 1e-15);
             let friction = 0.25 * velocity.signum();
-            assert!((force - (1000.0 * place + 50.0 * velocity + friction)).abs() < 1e-12, "{time} s: {force} N");
+            assert!(
+                (force - (1000.0 * place + 50.0 * velocity + friction)).abs() < 1e-12,
+                "{time} s: {force} N"
+            );
         }
     }
 
     /// ẋ = (path − x)/lag by the midpoint rule, against the closed form; and the number of readings is of no account.
     #[test]
     fn a_lag_follows_the_path_exactly_whatever_the_number_of_readings() {
-        let link = VirtualLink { lag: 0.02, ..VirtualLink::default() };
+        let link = VirtualLink {
+            lag: 0.02,
+            ..VirtualLink::default()
+        };
         let (few, many) = (readings(link, &PATH, 1), readings(link, &PATH, 50));
         assert!((few[0].1 - many[49].1).abs() < 1e-15);
         let (mut place, parts) = (0.0, 20_000);
         let step = PATH.seconds / f64::from(parts);
         for part in 0..parts {
             let half = 0.5 * step / 0.02;
-            place = (place * (1.0 - half) + 2.0 * half * PATH.place(step * (f64::from(part) + 0.5))) / (1.0 + half);
+            place = (place * (1.0 - half)
+                + 2.0 * half * PATH.place(step * (f64::from(part) + 0.5)))
+                / (1.0 + half);
         }
-        assert!((few[0].1 - place).abs() < 1e-12, "{} m, by steps {place} m", few[0].1);
+        assert!(
+            (few[0].1 - place).abs() < 1e-12,
+            "{} m, by steps {place} m",
+            few[0].1
+        );
     }
 
     /// A tenth of the increment is missed at the end, and the way there has no step.
     #[test]
     fn what_is_missed_of_an_increment_comes_evenly() {
-        let found = readings(VirtualLink { tracking: 0.1, ..VirtualLink::default() }, &PATH, 100);
+        let found = readings(
+            VirtualLink {
+                tracking: 0.1,
+                ..VirtualLink::default()
+            },
+            &PATH,
+            100,
+        );
         assert!((found[99].1 - 1.8e-3).abs() < 1e-15);
-        assert!(found.windows(2).all(|pair| (pair[1].1 - pair[0].1).abs() < 4e-5));
+        assert!(
+            found
+                .windows(2)
+                .all(|pair| (pair[1].1 - pair[0].1).abs() < 4e-5)
+        );
     }
 }

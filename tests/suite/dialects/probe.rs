@@ -17,16 +17,37 @@ struct Said {
 
 fn psd(folder: &Path, arguments: &[&str]) -> Said {
     let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-    let ended = command.current_dir(folder).args(arguments).stdin(Stdio::null()).output().expect("psd starts");
+    let ended = command
+        .current_dir(folder)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output()
+        .expect("psd starts");
     let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-    Said { code: ended.status.code(), out: text(ended.stdout), told: text(ended.stderr) }
+    Said {
+        code: ended.status.code(),
+        out: text(ended.stdout),
+        told: text(ended.stderr),
+    }
 }
 
 /// A stand-in of the case for as long as it lives.
 fn stand_in(folder: &Path) -> Process {
-    let simulate = ["rig", "simulate", "plan.psd", "--rig", "real", "--log", "bytes.txt"];
+    let simulate = [
+        "rig",
+        "simulate",
+        "plan.psd",
+        "--rig",
+        "real",
+        "--log",
+        "bytes.txt",
+    ];
     let simulator = super::psd(folder, "simulator.txt", &simulate);
-    assert!(ready(folder), "{}", fs::read_to_string(folder.join("simulator.txt")).unwrap_or_default());
+    assert!(
+        ready(folder),
+        "{}",
+        fs::read_to_string(folder.join("simulator.txt")).unwrap_or_default()
+    );
     simulator
 }
 
@@ -34,14 +55,23 @@ fn stand_in(folder: &Path) -> Process {
 fn moves(folder: &Path) -> usize {
     let bytes = fs::read_to_string(folder.join("bytes.txt")).expect("a log");
     assert!(bytes.contains("opened"), "nobody came");
-    bytes.lines().filter(|line| line.contains(" bench move ")).count()
+    bytes
+        .lines()
+        .filter(|line| line.contains(" bench move "))
+        .count()
 }
 
 /// Does `what` for every case at once; all that failed are told.
 fn each(cases: &[&Case], what: impl Fn(&Case) + Sync) {
     let failed: Vec<&str> = std::thread::scope(|scope| {
-        let running: Vec<_> = cases.iter().map(|case| (case.name, scope.spawn(|| what(case)))).collect();
-        running.into_iter().filter_map(|(name, thread)| thread.join().is_err().then_some(name)).collect()
+        let running: Vec<_> = cases
+            .iter()
+            .map(|case| (case.name, scope.spawn(|| what(case))))
+            .collect();
+        running
+            .into_iter()
+            .filter_map(|(name, thread)| thread.join().is_err().then_some(name))
+            .collect()
     });
     assert!(failed.is_empty(), "{failed:?}");
 }
@@ -55,38 +85,88 @@ fn every_dialect_is_probed_and_watched_and_nothing_moves() {
         let _simulator = stand_in(folder);
         let probed = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
         assert_eq!(probed.code, Some(0), "{}: {}", case.name, probed.told);
-        for expected in ["real", "  model ", "  displacement  0", "  force ", "-1 mm", "margin 1.000 mm", "margin 5.000 kN"] {
-            assert!(probed.out.contains(expected), "{}: {expected} in\n{}", case.name, probed.out);
+        for expected in [
+            "real",
+            "  model ",
+            "  displacement  0",
+            "  force ",
+            "-1 mm",
+            "margin 1.000 mm",
+            "margin 5.000 kN",
+        ] {
+            assert!(
+                probed.out.contains(expected),
+                "{}: {expected} in\n{}",
+                case.name,
+                probed.out
+            );
         }
-        let homed = probed.out.contains("stands at -1 mm of its own: a run would begin there, at 0");
+        let homed = probed
+            .out
+            .contains("stands at -1 mm of its own: a run would begin there, at 0");
         assert_eq!(homed, case.name.starts_with("grbl"), "{}", probed.out);
         let open_loop = probed.out.contains("open loop");
         assert_eq!(open_loop, case.name.starts_with("grbl"), "{}", probed.out);
 
-        let watched = psd(folder, &["rig", "monitor", "plan.psd", "--rig", "real", "--count", "3", "--every", "20 ms"]);
+        let watched = psd(
+            folder,
+            &[
+                "rig", "monitor", "plan.psd", "--rig", "real", "--count", "3", "--every", "20 ms",
+            ],
+        );
         assert_eq!(watched.code, Some(0), "{}: {}", case.name, watched.told);
         let rows: Vec<Vec<f64>> = watched.out.lines().skip(1).map(numbers).collect();
-        assert!(watched.out.starts_with("time_s,displacement_m,force_n\n") && rows.len() == 3, "{}", watched.out);
-        assert!(rows.windows(2).all(|pair| pair[1][0] >= pair[0][0] + 0.02), "{}: {}", case.name, watched.out);
-        assert!(rows.iter().all(|row| row[1] == 0.0 && row[2].abs() < 1.0), "{}: {}", case.name, watched.out);
+        assert!(
+            watched.out.starts_with("time_s,displacement_m,force_n\n") && rows.len() == 3,
+            "{}",
+            watched.out
+        );
+        assert!(
+            rows.windows(2).all(|pair| pair[1][0] >= pair[0][0] + 0.02),
+            "{}: {}",
+            case.name,
+            watched.out
+        );
+        assert!(
+            rows.iter().all(|row| row[1] == 0.0 && row[2].abs() < 1.0),
+            "{}: {}",
+            case.name,
+            watched.out
+        );
         assert_eq!(moves(folder), 0, "{}", case.name);
     });
 }
 
 fn numbers(row: &str) -> Vec<f64> {
-    row.split(',').map(|word| word.parse().expect("a number")).collect()
+    row.split(',')
+        .map(|word| word.parse().expect("a number"))
+        .collect()
 }
 
 /// What somebody says who spoke to a rig that does not listen: whose fault it is, at which place of the plan.
 fn not_understood(said: &Said, place: &str) {
-    assert_eq!((said.code, said.out.as_str()), (Some(3), ""), "{}", said.told);
+    assert_eq!(
+        (said.code, said.out.as_str()),
+        (Some(3), ""),
+        "{}",
+        said.told
+    );
     let lines: Vec<&str> = said.told.lines().collect();
-    let error = lines.iter().rposition(|line| line.starts_with("error: ")).unwrap_or_else(|| panic!("{}", said.told));
+    let error = lines
+        .iter()
+        .rposition(|line| line.starts_with("error: "))
+        .unwrap_or_else(|| panic!("{}", said.told));
     let at = lines.get(error + 1).copied().unwrap_or_default();
-    assert!(at.starts_with("  at: plan.psd:") && at.contains(place), "{}", said.told);
+    assert!(
+        at.starts_with("  at: plan.psd:") && at.contains(place),
+        "{}",
+        said.told
+    );
     let silent = lines[error].contains("no usable answer");
     assert_eq!(
-        lines.get(error + 2).is_some_and(|line| line.starts_with(" help: the baud rate, the dialect")),
+        lines
+            .get(error + 2)
+            .is_some_and(|line| line.starts_with(" help: the baud rate, the dialect")),
         silent,
         "{}",
         said.told
@@ -114,7 +194,8 @@ fn a_rig_of_another_dialect_is_not_taken_for_ours() {
                 let _simulator = stand_in(folder);
                 write_plan(by_name(ours), folder, SILENT);
                 // A load cell of its own has a line, on which nobody talks: the actuator is met first.
-                let _nobody = psd::simulator::PseudoTerminal::linked(&folder.join("b")).expect("a line");
+                let _nobody =
+                    psd::emulator::PseudoTerminal::linked(&folder.join("b")).expect("a line");
                 let said = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
                 not_understood(&said, place);
                 assert_eq!(moves(folder), 0, "{there} for {ours}");
@@ -131,15 +212,33 @@ fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
     write_plan(by_name("native"), folder, SILENT);
     let dead = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
     not_understood(&dead, "link = serial(port: \"");
-    assert!(dead.told.contains("there is no such port") && dead.told.contains("psd rig list"), "{}", dead.told);
+    assert!(
+        dead.told.contains("there is no such port") && dead.told.contains("psd rig list"),
+        "{}",
+        dead.told
+    );
 
     fs::write(folder.join("silence"), "at 0 s: drop replies for ever\n").expect("a script");
-    let simulate = ["rig", "simulate", "plan.psd", "--rig", "real", "--log", "bytes.txt", "--script", "silence"];
+    let simulate = [
+        "rig",
+        "simulate",
+        "plan.psd",
+        "--rig",
+        "real",
+        "--log",
+        "bytes.txt",
+        "--script",
+        "silence",
+    ];
     let _simulator = super::psd(folder, "simulator.txt", &simulate);
     assert!(ready(folder));
     let silent = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
     not_understood(&silent, "link = serial(port: \"");
-    assert!(silent.told.contains("no usable answer within"), "{}", silent.told);
+    assert!(
+        silent.told.contains("no usable answer within"),
+        "{}",
+        silent.told
+    );
 
     // The load cell's own port is the one that is told.
     write_plan(by_name("grbl with hx711"), folder, SILENT);

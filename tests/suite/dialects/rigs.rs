@@ -27,7 +27,10 @@ pub const CASES: &[Case] = &[
         sweep: true,
         resolution: 1e-9,
         force_error: 5e-4,
-        ..serial("native", "link = serial(port: \"FOLDER/a\", dialect: native)")
+        ..serial(
+            "native",
+            "link = serial(port: \"FOLDER/a\", dialect: native)",
+        )
     },
     // Counts of 0.01 N.
     Case {
@@ -58,14 +61,20 @@ pub const CASES: &[Case] = &[
     Case {
         force_error: 1e-4,
         duration: 4.0,
-        ..serial("instron", "link = serial(port: \"FOLDER/a\", dialect: instron)\n  force_range = 15 kN")
+        ..serial(
+            "instron",
+            "link = serial(port: \"FOLDER/a\", dialect: instron)\n  force_range = 15 kN",
+        )
     },
     // Hundredths of a millimetre; 0.1 N.
     Case {
         resolution: 1e-5,
         force_error: 0.05,
         speed: 150.0,
-        ..serial("mark10", "link = serial(port: \"FOLDER/a\", dialect: mark10)")
+        ..serial(
+            "mark10",
+            "link = serial(port: \"FOLDER/a\", dialect: mark10)",
+        )
     },
     Case {
         force_error: 0.05,
@@ -86,30 +95,57 @@ pub const CASES: &[Case] = &[
              moving_mask: 1, command: 109, start_word: 1, stop_word: 2))",
         )
     },
-    Case { force_error: 1e-3, ..serial("nees", "link = tcp(address: \"ADDRESS\", dialect: nees(\"MDL-00-01\"))") },
+    Case {
+        force_error: 1e-3,
+        ..serial(
+            "nees",
+            "link = tcp(address: \"ADDRESS\", dialect: nees(\"MDL-00-01\"))",
+        )
+    },
 ];
 
 /// The case of this name.
 pub fn by_name(name: &str) -> &'static Case {
-    CASES.iter().find(|case| case.name == name).unwrap_or_else(|| panic!("no rig is called {name}"))
+    CASES
+        .iter()
+        .find(|case| case.name == name)
+        .unwrap_or_else(|| panic!("no rig is called {name}"))
 }
 
 /// One that resolves a micrometre, and is as fast as the limits allow.
 const fn serial(name: &'static str, devices: &'static str) -> Case {
-    Case { name, devices, resolution: 1e-6, force_error: 0.05, speed: 400.0, duration: 50.0, sweep: false }
+    Case {
+        name,
+        devices,
+        resolution: 1e-6,
+        force_error: 0.05,
+        speed: 400.0,
+        duration: 50.0,
+        sweep: false,
+    }
 }
 
 impl Case {
     /// The beam of the paper's section 5, in a plan that runs on this rig and on an ideal virtual one. Its velocities are
     /// slow and its readings far apart: a machine under load must keep up with them. `reply_timeout` is in seconds.
     pub fn plan(&self, folder: &Path, address: &str, reply_timeout: f64) -> String {
-        let devices = self.devices.replace("FOLDER", &folder.display().to_string()).replace("ADDRESS", address);
-        let devices = devices.replace("dialect:", &format!("reply_timeout: {reply_timeout} s, dialect:"));
+        let devices = self
+            .devices
+            .replace("FOLDER", &folder.display().to_string())
+            .replace("ADDRESS", address);
+        let devices = devices.replace(
+            "dialect:",
+            &format!("reply_timeout: {reply_timeout} s, dialect:"),
+        );
         let watchdog = 10.0 * reply_timeout;
         let (speed, resolution, duration) = (self.speed, self.resolution * 1e6, self.duration);
         // Half a quantum of the target and half a one of the reading, and a little for the last bit.
         let band = resolution.max(1.0) * 1.5;
-        let (sweep, damping) = if self.sweep { (SWEEP, "c.damping") } else { ("", "6 N*s/m") };
+        let (sweep, damping) = if self.sweep {
+            (SWEEP, "c.damping")
+        } else {
+            ("", "6 N*s/m")
+        };
         format!(
             r#"use "gfrp_beam.psd"
 
@@ -157,6 +193,11 @@ impact hit {{
 }}
 
 require "is struck" hit.max_displacement > 1 mm
+
+report {{
+  figures = []
+  formats = [html, csv]
+}}
 "#
         )
     }

@@ -1,23 +1,24 @@
 //! A finished run made by hand: a ramp, a sweep and a rigid impact by the paper's eqs. 2–5 on a linear structure, so
 //! that outputs are tested without a rig.
 
-use psd::formula::{Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue};
-use psd::mechanics::contact::StepState;
-use psd::mechanics::energy::Energies;
-use psd::mechanics::identification::LineFit;
-use psd::mechanics::monitor::Tracking;
-use psd::output::{Provenance, Run};
+use psd::physics::contact::state::StepState;
+use psd::physics::identification::LineFit;
+use psd::physics::impact::energy::Energies;
+use psd::physics::tracking::monitor::Tracking;
+use psd::plan::formula::{Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue};
 use psd::plan::{
-    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule, Figure, FigureKind, Impact,
-    InspectTrigger, Integrator, Interval, Limits, Link, Mode, Parameter, Plan, PlanFile, Procedure, ProcedureKind, RampFit,
-    Report, Requirement, RigPlan, Settle, Specimen, Stepping, StiffnessRamp, Striker, Test, Until, VirtualLink,
+    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule, Figure,
+    FigureKind, Impact, InspectTrigger, Integrator, Interval, Limits, Link, Mode, Parameter, Plan,
+    PlanFile, Procedure, ProcedureKind, RampFit, Report, Requirement, RigPlan, Settle, Specimen,
+    Stepping, StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
-use psd::quantity::Dimension;
 use psd::record::{
-    BroughtTogether, Event, EventKind, History, ImpactHistory, ImpactStep, NamedResult, Outcome, ProcedureRecord, RampHistory,
-    RampStep, Record, SweepHistory, SweepStep,
+    BroughtTogether, Event, EventKind, History, ImpactHistory, ImpactStep, NamedResult, Outcome,
+    ProcedureRecord, RampHistory, RampStep, Record, SweepHistory, SweepStep,
 };
+use psd::report::{Provenance, Run};
 use psd::rig::Identity;
+use psd::units::Dimension;
 use psd::verdict::{Assessment, Bound, ConditionOutcome, RequirementOutcome, Verdict};
 
 /// Owns what a [`Run`] borrows.
@@ -30,7 +31,12 @@ pub struct Finished {
 
 impl Finished {
     pub fn run(&self) -> Run<'_> {
-        Run { plan: &self.plan, record: &self.record, assessment: &self.assessment, provenance: &self.provenance }
+        Run {
+            plan: &self.plan,
+            record: &self.record,
+            assessment: &self.assessment,
+            provenance: &self.provenance,
+        }
     }
 }
 
@@ -43,10 +49,19 @@ const TIME_STEP: f64 = 0.001;
 pub fn finished() -> Finished {
     let steps = impact_steps();
     let largest = steps.iter().map(|step| step.command).fold(0.0, f64::max);
-    let peak = steps.iter().map(|step| step.contact_force).fold(0.0, f64::max);
-    let impulse = steps.iter().map(|step| step.contact_force * TIME_STEP).sum();
+    let peak = steps
+        .iter()
+        .map(|step| step.contact_force)
+        .fold(0.0, f64::max);
+    let impulse = steps
+        .iter()
+        .map(|step| step.contact_force * TIME_STEP)
+        .sum();
     let error = steps.last().map_or(0.0, |step| step.energies.error) / 5.0;
-    let stop = steps.iter().find(|step| step.striker_velocity <= 0.0).map(|step| step.time);
+    let stop = steps
+        .iter()
+        .find(|step| step.striker_velocity <= 0.0)
+        .map(|step| step.time);
     let number = |name, value, uncertainty, dimension| NamedResult {
         name,
         value: ResultValue::Number { value, uncertainty },
@@ -57,10 +72,22 @@ pub fn finished() -> Finished {
         name: "k0".into(),
         kind: "stiffness ramp",
         complete: true,
-        inputs: vec![("pause", Estimate { value: 2.0, uncertainty: None }, Dimension::TIME)],
+        inputs: vec![(
+            "pause",
+            Estimate {
+                value: 2.0,
+                uncertainty: None,
+            },
+            Dimension::TIME,
+        )],
         results: vec![
             number("stiffness", Some(327.72), Some(0.41), Dimension::STIFFNESS),
-            number("intercept_force", Some(-0.012), Some(0.035), Dimension::FORCE),
+            number(
+                "intercept_force",
+                Some(-0.012),
+                Some(0.035),
+                Dimension::FORCE,
+            ),
             number("r_squared", Some(0.999_98), None, Dimension::NUMBER),
         ],
         history: History::Ramp(RampHistory {
@@ -79,7 +106,14 @@ pub fn finished() -> Finished {
         name: "c".into(),
         kind: "damping sweep",
         complete: true,
-        inputs: vec![("stiffness", Estimate { value: 327.72, uncertainty: Some(0.41) }, Dimension::STIFFNESS)],
+        inputs: vec![(
+            "stiffness",
+            Estimate {
+                value: 327.72,
+                uncertainty: Some(0.41),
+            },
+            Dimension::STIFFNESS,
+        )],
         results: vec![
             number("damping", Some(4.02), Some(0.08), Dimension::DAMPING),
             number("coulomb_force", Some(0.31), Some(0.02), Dimension::FORCE),
@@ -99,9 +133,30 @@ pub fn finished() -> Finished {
         kind: "impact",
         complete: true,
         inputs: vec![
-            ("mass", Estimate { value: MASS, uncertainty: None }, Dimension::MASS),
-            ("stiffness", Estimate { value: STIFFNESS, uncertainty: Some(0.41) }, Dimension::STIFFNESS),
-            ("time_step", Estimate { value: TIME_STEP, uncertainty: None }, Dimension::TIME),
+            (
+                "mass",
+                Estimate {
+                    value: MASS,
+                    uncertainty: None,
+                },
+                Dimension::MASS,
+            ),
+            (
+                "stiffness",
+                Estimate {
+                    value: STIFFNESS,
+                    uncertainty: Some(0.41),
+                },
+                Dimension::STIFFNESS,
+            ),
+            (
+                "time_step",
+                Estimate {
+                    value: TIME_STEP,
+                    uncertainty: None,
+                },
+                Dimension::TIME,
+            ),
         ],
         results: vec![
             number("max_displacement", Some(largest), None, Dimension::LENGTH),
@@ -112,7 +167,12 @@ pub fn finished() -> Finished {
             number("restitution", None, None, Dimension::NUMBER),
             number("energy_error", Some(error), None, Dimension::NUMBER),
         ],
-        history: History::Impact(ImpactHistory { steps, time_step: TIME_STEP, critical_time_step: 0.0347 }),
+        history: History::Impact(ImpactHistory {
+            steps,
+            frame: None,
+            time_step: TIME_STEP,
+            critical_time_step: 0.0347,
+        }),
     };
     Finished {
         plan: plan(),
@@ -127,8 +187,16 @@ pub fn finished() -> Finished {
             },
             procedures: vec![ramp, sweep, hit],
             events: vec![
-                event(EventKind::Remark, 31.0, "the peak contact force depends on the time step under the rigid law"),
-                event(EventKind::Inspection, 12.5, "no visible crack <b>at</b> the support"),
+                event(
+                    EventKind::Remark,
+                    31.0,
+                    "the peak contact force depends on the time step under the rigid law",
+                ),
+                event(
+                    EventKind::Inspection,
+                    12.5,
+                    "no visible crack <b>at</b> the support",
+                ),
             ],
             outcome: Outcome::Completed,
             drift: None,
@@ -144,11 +212,26 @@ pub fn finished() -> Finished {
 }
 
 fn event(kind: EventKind, time: f64, text: &str) -> Event {
-    Event { time, procedure: Some("hit".into()), step: Some(20), kind, text: text.into() }
+    Event {
+        time,
+        procedure: Some("hit".into()),
+        step: Some(20),
+        kind,
+        text: text.into(),
+    }
 }
 
 const fn line(slope: f64, slope_error: f64, intercept: f64, intercept_error: f64) -> LineFit {
-    LineFit { slope, slope_error, intercept, intercept_error, correlation: 0.0, r_squared: 0.999_98, degrees: 8.0 }
+    LineFit {
+        slope,
+        slope_error,
+        intercept,
+        intercept_error,
+        correlation: 0.0,
+        r_squared: 0.999_98,
+        degrees: 8.0,
+        shown: 1.0,
+    }
 }
 
 /// Eqs. 4 and 5 for a linear structure without damping, one row a step.
@@ -170,15 +253,19 @@ fn impact_steps() -> Vec<ImpactStep> {
         striker_velocity: 1.0,
         tangent_stiffness: k,
         indentation: 0.0,
-        energies: Energies { striker: 0.5 * ms, ..Energies::default() },
+        energies: Energies {
+            striker: 0.5 * ms,
+            ..Energies::default()
+        },
         tracking: Tracking::default(),
     };
     let mut steps = vec![now];
     while now.striker_velocity > 0.0 || now.velocity > 0.0 {
         let predicted = dt * now.velocity + 0.25 * dt * dt * now.acceleration;
         let free = -now.restoring_force - k * predicted;
-        let mut a1 = (free - ms / dt * (now.velocity - now.striker_velocity) - 0.5 * ms * now.acceleration)
-            / (m + 0.25 * dt * dt * k + 0.5 * ms);
+        let mut a1 =
+            (free - ms / dt * (now.velocity - now.striker_velocity) - 0.5 * ms * now.acceleration)
+                / (m + 0.25 * dt * dt * k + 0.5 * ms);
         let mut v1 = now.velocity + 0.5 * dt * (now.acceleration + a1);
         let mut vs1 = v1;
         let mut force = ms / dt * (now.striker_velocity - vs1);
@@ -195,10 +282,15 @@ fn impact_steps() -> Vec<ImpactStep> {
             striker: 0.5 * ms * vs1 * vs1,
             structure: 0.5 * m * v1 * v1,
             restoring: now.energies.restoring + 0.5 * (now.restoring_force + k * x1) * dx,
-            contact_loss: now.energies.contact_loss + force * dxs - 0.5 * (now.contact_force + force) * dx,
+            contact_loss: now.energies.contact_loss + force * dxs
+                - 0.5 * (now.contact_force + force) * dx,
             ..Energies::default()
         };
-        energies.error = 0.5 * ms - energies.striker - energies.structure - energies.restoring - energies.contact_loss;
+        energies.error = 0.5 * ms
+            - energies.striker
+            - energies.structure
+            - energies.restoring
+            - energies.contact_loss;
         now = ImpactStep {
             step: now.step + 1,
             time: now.time + dt,
@@ -268,18 +360,32 @@ fn sweep_pairs(steps: &[SweepStep]) -> Vec<(f64, f64)> {
     let strokes = steps.chunks(100).map(|stroke| stroke.split_at(50));
     let pairs = strokes.flat_map(|(out, back)| out.iter().zip(back));
     let steady = pairs.filter(|(out, back)| out.steady && back.steady);
-    steady.map(|(out, back)| (out.velocity, 0.5 * (out.damping_force - back.damping_force))).collect()
+    steady
+        .map(|(out, back)| (out.velocity, 0.5 * (out.damping_force - back.damping_force)))
+        .collect()
 }
 
 fn plan() -> Plan {
     let constant = Formula::Constant;
-    let figure = |procedure, kind| Figure { kind, procedure: ProcedureId(procedure), beside: Vec::new() };
-    let result =
-        |procedure, name| Formula::Result(ResultReference { procedure: ProcedureId(procedure), name, part: Part::Value });
+    let figure = |procedure, kind| Figure {
+        kind,
+        procedure: ProcedureId(procedure),
+        beside: Vec::new(),
+    };
+    let result = |procedure, name| {
+        Formula::Result(ResultReference {
+            procedure: ProcedureId(procedure),
+            name,
+            part: Part::Value,
+        })
+    };
     let compare = |text: &str, value, limit, dimension| Condition {
         text: text.into(),
         value,
-        test: Test::Compare { comparison: Comparison::LessEqual, limit: constant(limit) },
+        test: Test::Compare {
+            comparison: Comparison::LessEqual,
+            limit: constant(limit),
+        },
         dimension,
     };
     let procedures = vec![
@@ -301,7 +407,12 @@ fn plan() -> Plan {
             "c",
             ProcedureKind::DampingSweep(DampingSweep {
                 specimen: 0,
-                velocities: vec![constant(0.005), constant(0.02), constant(0.05), constant(0.1)],
+                velocities: vec![
+                    constant(0.005),
+                    constant(0.02),
+                    constant(0.05),
+                    constant(0.1),
+                ],
                 stroke: constant(0.01),
                 about: None,
                 stiffness: result(0, "stiffness"),
@@ -333,7 +444,10 @@ fn plan() -> Plan {
             }),
         ),
     ];
-    let mut figures = vec![figure(0, FigureKind::ForceDisplacement), figure(1, FigureKind::DampingFit)];
+    let mut figures = vec![
+        figure(0, FigureKind::ForceDisplacement),
+        figure(1, FigureKind::DampingFit),
+    ];
     figures.extend(
         [
             FigureKind::Displacement,
@@ -347,29 +461,66 @@ fn plan() -> Plan {
     );
     Plan {
         title: "Simply supported beam, midspan impact".into(),
-        particulars: vec![("standard", "In-house procedure 12".into()), ("specimen_id", "GFRP-0147".into())],
-        parameters: vec![Parameter { name: "impact_speed".into(), value: 1.0, dimension: Dimension::VELOCITY, set: true }],
+        particulars: vec![
+            ("standard", "In-house procedure 12".into()),
+            ("specimen_id", "GFRP-0147".into()),
+        ],
+        parameters: vec![Parameter {
+            name: "impact_speed".into(),
+            value: 1.0,
+            dimension: Dimension::VELOCITY,
+            set: true,
+        }],
         specimens: vec![Specimen {
             damping: 4.0,
             coulomb: 0.3,
-            ..Specimen::new("beam", MASS, Some(Behaviour::Elastic { stiffness: STIFFNESS }))
+            ..Specimen::new(
+                "beam",
+                MASS,
+                Some(Behaviour::Elastic {
+                    stiffness: STIFFNESS,
+                }),
+            )
         }],
         strikers: vec![Striker::new("pendulum", STRIKER_MASS, 1.0)],
         grounds: Vec::new(),
         rig: RigPlan {
             name: "rehearsal".into(),
-            link: Link::Virtual(VirtualLink { noise: 0.1, resolution: 1e-6, lag: 0.002, seed: 7, ..VirtualLink::default() }),
-            settle: Settle { band: 1e-5, force_rate: 5.0, dwell: 0.3, timeout: 10.0 },
+            link: Link::Virtual(VirtualLink {
+                noise: 0.1,
+                resolution: 1e-6,
+                lag: 0.002,
+                seed: 7,
+                ..VirtualLink::default()
+            }),
+            settle: Settle {
+                band: 1e-5,
+                force_rate: 5.0,
+                dwell: 0.3,
+                timeout: 10.0,
+            },
             sign: 1.0,
             calibration: Calibration::default(),
             drift: None,
         },
         limits: Limits {
-            displacement: Interval { low: -0.01, high: 0.2 },
-            force: Interval { low: f64::NEG_INFINITY, high: 12_000.0 },
+            displacement: Interval {
+                low: -0.01,
+                high: 0.2,
+            },
+            force: Interval {
+                low: f64::NEG_INFINITY,
+                high: 12_000.0,
+            },
             ..Limits::NONE
         },
-        procedures: procedures.into_iter().map(|(name, kind)| Procedure { name: name.into(), kind }).collect(),
+        procedures: procedures
+            .into_iter()
+            .map(|(name, kind)| Procedure {
+                name: name.into(),
+                kind,
+            })
+            .collect(),
         decision_rule: DecisionRule::Simple,
         requirements: vec![
             Requirement {
@@ -383,51 +534,84 @@ fn plan() -> Plan {
             },
             Requirement {
                 label: "energy closes".into(),
-                conditions: vec![compare("abs(hit.energy_error) <= 0.01", result(2, "energy_error"), 0.01, Dimension::NUMBER)],
+                conditions: vec![compare(
+                    "abs(hit.energy_error) <= 0.01",
+                    result(2, "energy_error"),
+                    0.01,
+                    Dimension::NUMBER,
+                )],
             },
         ],
-        report: Report { title: None, figures, formats: Vec::new(), sign: vec!["Test engineer".into(), "Quality".into()] },
+        report: Report {
+            title: None,
+            figures,
+            formats: Vec::new(),
+            sign: vec!["Test engineer".into(), "Quality".into()],
+        },
         golden: psd::plan::Golden::default(),
         rehearses: None,
         unloads_at_once: false,
         files: vec![
             PlanFile {
                 name: "beam.psd".into(),
-                text: "plan \"Beam\" {}\nuse \"lib/frame.psd\"  # <script>alert(1)</script>\n".into(),
+                text: "plan \"Beam\" {}\nuse \"lib/frame.psd\"  # <script>alert(1)</script>\n"
+                    .into(),
             },
-            PlanFile { name: "lib/frame.psd".into(), text: "rig rehearsal { link = virtual }\n".into() },
+            PlanFile {
+                name: "lib/frame.psd".into(),
+                text: "rig rehearsal { link = virtual }\n".into(),
+            },
         ],
         settings: vec![("impact_speed".into(), "1 m/s".into())],
     }
 }
 
 fn assessment(largest: f64, error: f64) -> Assessment {
-    let outcome = |label: &str, text: &str, value: f64, limit: f64, uncertainty, dimension| RequirementOutcome {
-        label: label.into(),
-        verdict: Verdict::Pass,
-        conditions: vec![ConditionOutcome {
-            text: text.into(),
+    let outcome = |label: &str, text: &str, value: f64, limit: f64, uncertainty, dimension| {
+        RequirementOutcome {
+            label: label.into(),
             verdict: Verdict::Pass,
-            dimension,
-            value: Some(value),
-            uncertainty,
-            degrees: f64::INFINITY,
-            bound: Some(Bound::Compare { comparison: Comparison::LessEqual, limit }),
-            margin: Some(limit - value),
-            guard_band: None,
-            margin_degrees: f64::INFINITY,
-            // Far inside its limit.
-            conforms: uncertainty.map(|_| 1.0),
-            wider_than_tolerance: false,
-            reason: None,
-        }],
+            conditions: vec![ConditionOutcome {
+                text: text.into(),
+                verdict: Verdict::Pass,
+                dimension,
+                value: Some(value),
+                uncertainty,
+                degrees: f64::INFINITY,
+                bound: Some(Bound::Compare {
+                    comparison: Comparison::LessEqual,
+                    limit,
+                }),
+                margin: Some(limit - value),
+                guard_band: None,
+                margin_degrees: f64::INFINITY,
+                // Far inside its limit.
+                conforms: uncertainty.map(|_| 1.0),
+                wider_than_tolerance: false,
+                reason: None,
+            }],
+        }
     };
     Assessment {
         verdict: Verdict::Pass,
         rule: DecisionRule::Simple,
         requirements: vec![
-            outcome("stays in travel", "hit.max_displacement <= 170 mm", largest, 0.17, Some(0.000_2), Dimension::LENGTH),
-            outcome("energy closes", "abs(hit.energy_error) <= 0.01", error.abs(), 0.01, None, Dimension::NUMBER),
+            outcome(
+                "stays in travel",
+                "hit.max_displacement <= 170 mm",
+                largest,
+                0.17,
+                Some(0.000_2),
+                Dimension::LENGTH,
+            ),
+            outcome(
+                "energy closes",
+                "abs(hit.energy_error) <= 0.01",
+                error.abs(),
+                0.01,
+                None,
+                Dimension::NUMBER,
+            ),
         ],
     }
 }

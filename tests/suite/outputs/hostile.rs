@@ -1,22 +1,25 @@
 //! Labels that want to be something else, in every sink: page, terminal, tables, JSON, file names, manifest, record. Each
 //! must come out as a text that stands there.
 
-use psd::check::{Checked, LoadFault, Loader, Options, check};
-use psd::comparison::{Comparison, Side, csv};
-use psd::diagnostic::{json, render};
-use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, json as golden_json, junit, tap};
-use psd::inert;
-use psd::output::{Figures, OutputFile, comparison, console, everything};
+use psd::golden::comparison::{Comparison, Side, csv};
+use psd::golden::{
+    Change, Finding, Outcome as TestOutcome, Part, Report, Tested, json as golden_json, junit, tap,
+};
+use psd::language::check::{Checked, LoadFault, Loader, Options, check};
 use psd::plan::Format;
 use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::record::{EventKind, Outcome};
+use psd::report::{Figures, OutputFile, comparison, console, everything};
+use psd::text::diagnostic::{json, render};
+use psd::text::sanitize;
 use rayon::prelude::*;
 
 use super::fixture::{Finished, finished};
 
 /// The labels, and one longer than any that a person writes.
 fn labels() -> Vec<String> {
-    let mut labels: Vec<String> = serde_json::from_str(include_str!("../../hostile_labels.json")).unwrap();
+    let mut labels: Vec<String> =
+        serde_json::from_str(include_str!("../../hostile_labels.json")).unwrap();
     labels.push("long ".repeat(20_000));
     labels.push("=".repeat(5_000));
     labels
@@ -31,7 +34,15 @@ fn run_with(label: &str) -> Finished {
     finished.plan.report.sign = vec![own(), own()];
     finished.plan.report.figures.clear();
     finished.plan.report.formats = vec![Format::Html, Format::Csv];
-    for field in ["customer", "operator", "laboratory", "specimen_id", "deviations", "notes", "date"] {
+    for field in [
+        "customer",
+        "operator",
+        "laboratory",
+        "specimen_id",
+        "deviations",
+        "notes",
+        "date",
+    ] {
         finished.plan.particulars.push((field, own()));
     }
     finished.plan.settings.push((own(), own()));
@@ -40,7 +51,12 @@ fn run_with(label: &str) -> Finished {
         file.name = own();
         file.text = own();
     }
-    for (requirement, outcome) in finished.plan.requirements.iter_mut().zip(&mut finished.assessment.requirements) {
+    for (requirement, outcome) in finished
+        .plan
+        .requirements
+        .iter_mut()
+        .zip(&mut finished.assessment.requirements)
+    {
         requirement.label = own();
         outcome.label = own();
         for condition in &mut outcome.conditions {
@@ -50,7 +66,12 @@ fn run_with(label: &str) -> Finished {
     }
     let rig = &mut finished.record.rig;
     (rig.name, rig.model, rig.serial, rig.firmware) = (own(), own(), own(), own());
-    for (event, kind) in finished.record.events.iter_mut().zip([EventKind::Fault, EventKind::Inspection]) {
+    for (event, kind) in finished
+        .record
+        .events
+        .iter_mut()
+        .zip([EventKind::Fault, EventKind::Inspection])
+    {
         (event.kind, event.text) = (kind, own());
     }
     finished.record.outcome = Outcome::Aborted { reason: own() };
@@ -68,7 +89,9 @@ fn text<'a>(files: &'a [OutputFile], path: &str) -> &'a str {
 
 /// What of a text would steer, newlines apart.
 fn steering(text: &str) -> String {
-    text.chars().filter(|c| inert::steers(*c) && *c != '\n').collect()
+    text.chars()
+        .filter(|c| sanitize::steers(*c) && *c != '\n')
+        .collect()
 }
 
 /// The tags of a page, each with the names of its attributes.
@@ -80,23 +103,41 @@ fn tags(page: &str) -> Vec<String> {
         }
         outside
     };
-    page.split('<').skip(1).map(|after| names(after.split('>').next().unwrap())).collect()
+    page.split('<')
+        .skip(1)
+        .map(|after| names(after.split('>').next().unwrap()))
+        .collect()
 }
 
 #[test]
 fn no_label_is_markup_on_a_page() {
-    let plain = tags(text(&files_of(&run_with("a plain label")), "certificate.html"));
+    let plain = tags(text(
+        &files_of(&run_with("a plain label")),
+        "certificate.html",
+    ));
     assert!(plain.len() > 200);
     labels().par_iter().for_each(|label| {
         let files = files_of(&run_with(label));
         let page = text(&files, "certificate.html");
         assert_eq!(steering(page), "", "{label:?}");
         // A label without letters may be told as missing, and one of lines is more lines of the plan.
-        if !label.trim().is_empty() && !label.contains(['\n', '\r', '\u{85}', '\u{2028}', '\u{2029}', '\u{b}', '\u{c}']) {
+        if !label.trim().is_empty()
+            && !label.contains([
+                '\n', '\r', '\u{85}', '\u{2028}', '\u{2029}', '\u{b}', '\u{c}',
+            ])
+        {
             let tags = tags(page);
             assert!(tags == plain, "{label:?}");
         }
-        for forbidden in ["<script", "<img src=x", "<!--", "src=\"http", "href=", "@import", "url("] {
+        for forbidden in [
+            "<script",
+            "<img src=x",
+            "<!--",
+            "src=\"http",
+            "href=",
+            "@import",
+            "url(",
+        ] {
             assert!(!page.contains(forbidden), "{label:?}: {forbidden}");
         }
     });
@@ -110,7 +151,11 @@ fn no_label_is_markup_on_paper() {
         let mut finished = run_with(label);
         finished.plan.report.formats = vec![Format::Pdf];
         finished.provenance.date = Some("2026-05-31".to_owned());
-        files_of(&finished).into_iter().find(|file| file.path == "certificate.pdf").unwrap().bytes
+        files_of(&finished)
+            .into_iter()
+            .find(|file| file.path == "certificate.pdf")
+            .unwrap()
+            .bytes
     };
     // Each kind once: paper takes its time.
     let marks = [
@@ -128,31 +173,66 @@ fn no_label_is_markup_on_paper() {
         "\u{301}",
     ];
     let all = labels();
-    let of = |mark: &&str| all.iter().find(|label| label.contains(*mark)).unwrap().chars().take(2000).collect::<String>();
+    let of = |mark: &&str| {
+        all.iter()
+            .find(|label| label.contains(*mark))
+            .unwrap()
+            .chars()
+            .take(2000)
+            .collect::<String>()
+    };
     let labels: Vec<String> = marks.iter().map(of).collect();
     labels.par_iter().for_each(|label| {
         let bytes = paper(label);
         let holds = |word: &[u8]| bytes.windows(word.len()).any(|found| found == word);
-        assert!(bytes.starts_with(b"%PDF-1.7") && holds(b"<pdfaid:part>3"), "{label:?}");
-        for forbidden in [b"/JavaScript".as_slice(), b"/Launch", b"/OpenAction", b"/URI"] {
+        assert!(
+            bytes.starts_with(b"%PDF-1.7") && holds(b"<pdfaid:part>3"),
+            "{label:?}"
+        );
+        for forbidden in [
+            b"/JavaScript".as_slice(),
+            b"/Launch",
+            b"/OpenAction",
+            b"/URI",
+        ] {
             assert!(!holds(forbidden), "{label:?}");
         }
     });
-    assert!(paper(&labels[0]) == paper(&labels[0]), "the same bytes again");
+    assert!(
+        paper(&labels[0]) == paper(&labels[0]),
+        "the same bytes again"
+    );
 }
 
 #[test]
 fn no_label_steers_a_terminal_or_makes_another_line() {
-    let lines = |label: &str| console::verdict_text(&run_with(label).run(), false).lines().count();
+    let lines = |label: &str| {
+        console::verdict_text(&run_with(label).run(), false)
+            .lines()
+            .count()
+    };
     let plain = lines("a plain label");
     for label in labels() {
         let told = console::verdict_text(&run_with(&label).run(), true);
-        assert_eq!(steering(&inert::terminal(&told).replace("\u{1b}[", "")), "", "{label:?}");
-        assert_eq!(steering(&console::verdict_text(&run_with(&label).run(), false)), "", "{label:?}");
+        assert_eq!(
+            steering(&sanitize::terminal(&told).replace("\u{1b}[", "")),
+            "",
+            "{label:?}"
+        );
+        assert_eq!(
+            steering(&console::verdict_text(&run_with(&label).run(), false)),
+            "",
+            "{label:?}"
+        );
         assert!(lines(&label) <= plain, "{label:?}");
-        assert_eq!(steering(&inert::one_line(&label)), "");
-        let gated = inert::terminal(&label);
-        assert!(steering(&gated).chars().all(|c| matches!(c, '\u{1b}' | '\t')), "{label:?}: {gated:?}");
+        assert_eq!(steering(&sanitize::one_line(&label)), "");
+        let gated = sanitize::terminal(&label);
+        assert!(
+            steering(&gated)
+                .chars()
+                .all(|c| matches!(c, '\u{1b}' | '\t')),
+            "{label:?}: {gated:?}"
+        );
     }
 }
 
@@ -172,15 +252,26 @@ fn no_label_is_lost_or_loose_in_json() {
 #[test]
 fn no_label_is_a_formula_in_a_table() {
     for label in labels() {
-        let cell = inert::cell(&label);
-        assert!(!cell.trim_start().starts_with(['=', '+', '-', '@', '\t', '\r', '\u{ff1d}']), "{label:?}");
+        let cell = sanitize::cell(&label);
+        assert!(
+            !cell
+                .trim_start()
+                .starts_with(['=', '+', '-', '@', '\t', '\r', '\u{ff1d}']),
+            "{label:?}"
+        );
         assert_eq!(steering(&cell), "");
         assert!(!cell.contains('\n'));
     }
     // Numbers are numbers, also those below zero.
     let files = files_of(&run_with("x"));
     let table = text(&files, "tables/hit.csv");
-    assert!(table.lines().skip(1).any(|line| line.split(',').any(|cell| cell.starts_with('-'))) && !table.contains('\''));
+    assert!(
+        table
+            .lines()
+            .skip(1)
+            .any(|line| line.split(',').any(|cell| cell.starts_with('-')))
+            && !table.contains('\'')
+    );
 }
 
 #[test]
@@ -194,43 +285,87 @@ fn no_label_is_another_place_or_another_line_of_the_manifest() {
         let files = files_of(&finished);
         let mut seen = std::collections::BTreeSet::new();
         for file in &files {
-            assert!(seen.insert(file.path.to_lowercase()), "{label:?}: {} twice", file.path);
+            assert!(
+                seen.insert(file.path.to_lowercase()),
+                "{label:?}: {} twice",
+                file.path
+            );
             for part in file.path.split('/') {
                 // One that was cut and then numbered is longer than one that is cut.
-                assert!(inert::file_part(part) == part || (100..256).contains(&part.len()), "{label:?}: {}", file.path);
+                assert!(
+                    sanitize::file_part(part) == part || (100..256).contains(&part.len()),
+                    "{label:?}: {}",
+                    file.path
+                );
             }
             assert!(
-                ["plan/", "tables/", "certificate.", "summary.json", "manifest.sha256"]
-                    .iter()
-                    .any(|own| file.path.starts_with(own))
+                [
+                    "plan/",
+                    "tables/",
+                    "certificate.",
+                    "summary.json",
+                    "manifest.sha256"
+                ]
+                .iter()
+                .any(|own| file.path.starts_with(own))
             );
         }
-        assert!(seen.contains("tables/con-.csv") && seen.contains("tables/hit.csv") && seen.contains("tables/hit-2.csv"));
-        assert_eq!(text(&files, "manifest.sha256").lines().count(), files.len() - 1, "{label:?}");
+        assert!(
+            seen.contains("tables/con-.csv")
+                && seen.contains("tables/hit.csv")
+                && seen.contains("tables/hit-2.csv")
+        );
+        assert_eq!(
+            text(&files, "manifest.sha256").lines().count(),
+            files.len() - 1,
+            "{label:?}"
+        );
     }
 }
 
 /// A test report whose every text is the label.
 fn tested_with(label: &str) -> Report {
     let own = || label.to_owned();
-    let found = vec![Finding::text(Part::Verdict, label, label, label), Finding::new(Part::Table, label, Change::Gone)];
+    let found = vec![
+        Finding::text(Part::Verdict, label, label, label),
+        Finding::new(Part::Table, label, Change::Gone),
+    ];
     let outcomes = [
-        TestOutcome::Same { verdict: Some("pass") },
+        TestOutcome::Same {
+            verdict: Some("pass"),
+        },
         TestOutcome::Differs(found),
         TestOutcome::NotBlessed { folder: own() },
         TestOutcome::Failed(own()),
         TestOutcome::NotRun,
     ];
-    Report { tested: outcomes.into_iter().map(|outcome| Tested { name: own(), outcome }).collect(), unused: vec![own()] }
+    Report {
+        tested: outcomes
+            .into_iter()
+            .map(|outcome| Tested {
+                name: own(),
+                outcome,
+            })
+            .collect(),
+        unused: vec![own()],
+    }
 }
 
 #[test]
 fn no_label_is_another_result_of_a_test() {
-    let begins = |text: &str, with: &[&str]| text.lines().filter(|line| with.iter().any(|word| line.starts_with(word))).count();
+    let begins = |text: &str, with: &[&str]| {
+        text.lines()
+            .filter(|line| with.iter().any(|word| line.starts_with(word)))
+            .count()
+    };
     let xml_tags = |text: &str| {
         // A suite is a folder: a label with a slash names another.
-        let named = tags(text).into_iter().map(|tag| tag.split(' ').next().unwrap().to_owned());
-        named.filter(|tag| !tag.starts_with("testsuite") && !tag.starts_with("/testsuite")).collect::<Vec<_>>()
+        let named = tags(text)
+            .into_iter()
+            .map(|tag| tag.split(' ').next().unwrap().to_owned());
+        named
+            .filter(|tag| !tag.starts_with("testsuite") && !tag.starts_with("/testsuite"))
+            .collect::<Vec<_>>()
     };
     let plain = tested_with("a plain label");
     let (plain_tap, plain_xml) = (tap(&plain), junit(&plain).unwrap());
@@ -238,12 +373,30 @@ fn no_label_is_another_result_of_a_test() {
         let report = tested_with(&label);
         let text = tap(&report);
         assert_eq!(steering(&text), "", "{label:?}");
-        assert_eq!(text.lines().count(), plain_tap.lines().count(), "{label:?}: {text}");
-        for word in ["ok ", "not ok ", "1..", "Bail out!", "# unused", "  ---", "  ..."] {
-            assert_eq!(begins(&text, &[word]), begins(&plain_tap, &[word]), "{label:?}: {word} in {text}");
+        assert_eq!(
+            text.lines().count(),
+            plain_tap.lines().count(),
+            "{label:?}: {text}"
+        );
+        for word in [
+            "ok ",
+            "not ok ",
+            "1..",
+            "Bail out!",
+            "# unused",
+            "  ---",
+            "  ...",
+        ] {
+            assert_eq!(
+                begins(&text, &[word]),
+                begins(&plain_tap, &[word]),
+                "{label:?}: {word} in {text}"
+            );
         }
         assert_eq!(
-            text.lines().filter(|line| line.starts_with("ok ") && line.contains('#')).count(),
+            text.lines()
+                .filter(|line| line.starts_with("ok ") && line.contains('#'))
+                .count(),
             1,
             "only what was not run is skipped"
         );
@@ -254,15 +407,24 @@ fn no_label_is_another_result_of_a_test() {
         let document = golden_json::text(&report);
         assert_eq!(steering(&document), "", "{label:?}");
         let read: serde_json::Value = serde_json::from_str(&document).unwrap();
-        assert_eq!((&read["plans"][3]["message"], &read["unused"][0]), (&label.as_str().into(), &label.as_str().into()));
+        assert_eq!(
+            (&read["plans"][3]["message"], &read["unused"][0]),
+            (&label.as_str().into(), &label.as_str().into())
+        );
         assert_eq!(read["plans"][1]["differences"].as_array().unwrap().len(), 2);
     }
 }
 
 /// Two runs side by side, each with the label wherever a text from outside can stand.
 fn compared_with(label: &str) -> Comparison {
-    let summary: serde_json::Value = serde_json::from_str(text(&files_of(&run_with(label)), "summary.json")).unwrap();
-    let side = |name: String| Side { name, summary: summary.clone(), figures: Figures::default(), plan: Some(label.to_owned()) };
+    let summary: serde_json::Value =
+        serde_json::from_str(text(&files_of(&run_with(label)), "summary.json")).unwrap();
+    let side = |name: String| Side {
+        name,
+        summary: summary.clone(),
+        figures: Figures::default(),
+        plan: Some(label.to_owned()),
+    };
     Comparison::of(&[side(label.to_owned()), side(format!("{label} again"))])
 }
 
@@ -270,16 +432,30 @@ fn compared_with(label: &str) -> Comparison {
 fn no_label_is_markup_or_a_formula_in_a_comparison() {
     let made = |label: &str| {
         let compared = compared_with(label);
-        (comparison::page(&compared, &[(label.to_owned(), Vec::new())]), csv(&compared))
+        (
+            comparison::page(&compared, &[(label.to_owned(), Vec::new())]),
+            csv(&compared),
+        )
     };
     let (plain_page, plain_table) = made("a plain label");
     labels().par_iter().for_each(|label| {
         let (page, table) = made(label);
-        assert_eq!((steering(&page), steering(&table)), (String::new(), String::new()), "{label:?}");
+        assert_eq!(
+            (steering(&page), steering(&table)),
+            (String::new(), String::new()),
+            "{label:?}"
+        );
         assert!(tags(&page) == tags(&plain_page), "{label:?}");
-        assert_eq!(table.lines().count(), plain_table.lines().count(), "{label:?}");
+        assert_eq!(
+            table.lines().count(),
+            plain_table.lines().count(),
+            "{label:?}"
+        );
         for begin in [",=", ",\"=", ",+", ",\"+", ",@", ",\"@", ",\u{ff1d}"] {
-            assert!(!table.lines().next().unwrap().contains(begin) || label.contains(begin), "{label:?}: {begin}");
+            assert!(
+                !table.lines().next().unwrap().contains(begin) || label.contains(begin),
+                "{label:?}: {begin}"
+            );
         }
     });
 }
@@ -296,17 +472,30 @@ impl Loader for Nothing {
 fn no_label_steers_a_terminal_from_a_diagnostic() {
     for label in labels() {
         let quoted = label.replace('\\', "\\\\").replace('"', "\\\"");
-        for plan in
-            [label.clone(), format!("plan \"{quoted}\" {{ customr = \"{quoted}\" }}\nuse \"{quoted}\"\nparam x = {label}\n")]
-        {
-            let Checked { diagnostics, sources, .. } = check("plan.psd", &plan, &Nothing, &Options::default());
+        for plan in [
+            label.clone(),
+            format!(
+                "plan \"{quoted}\" {{ customr = \"{quoted}\" }}\nuse \"{quoted}\"\nparam x = {label}\n"
+            ),
+        ] {
+            let Checked {
+                diagnostics,
+                sources,
+                ..
+            } = check("plan.psd", &plan, &Nothing, &Options::default());
             let told = render::render_all(&diagnostics, &sources, &render::Appearance::plain());
             assert_eq!(steering(&told), "", "{label:?}: {told}");
-            let found: Vec<_> = diagnostics.iter().map(|found| json::diagnostic(found, &sources, &label, "")).collect();
+            let found: Vec<_> = diagnostics
+                .iter()
+                .map(|found| json::diagnostic(found, &sources, &label, ""))
+                .collect();
             let document = json::text(&found);
             assert_eq!(steering(&document), "", "{label:?}");
             let read: serde_json::Value = serde_json::from_str(&document).unwrap();
-            assert_eq!(read["diagnostics"].as_array().unwrap().len(), diagnostics.len());
+            assert_eq!(
+                read["diagnostics"].as_array().unwrap().len(),
+                diagnostics.len()
+            );
         }
     }
 }
@@ -315,17 +504,34 @@ fn no_label_steers_a_terminal_from_a_diagnostic() {
 fn no_label_is_another_record() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("journal.psdj");
-    let mut journal = Journal::create(Box::new(FileStorage::create(&path).unwrap()), Durability::Buffered);
-    journal.append(EntryKind::Header, &serde_json::json!({})).unwrap();
-    let labels: Vec<String> = labels().into_iter().map(|label| label.chars().take(8192).collect()).collect();
+    let mut journal = Journal::create(
+        Box::new(FileStorage::create(&path).unwrap()),
+        Durability::Buffered,
+    );
+    journal
+        .append(EntryKind::Header, &serde_json::json!({}))
+        .unwrap();
+    let labels: Vec<String> = labels()
+        .into_iter()
+        .map(|label| label.chars().take(8192).collect())
+        .collect();
     for label in &labels {
-        journal.append(EntryKind::Event, &serde_json::json!({ "text": label })).unwrap();
+        journal
+            .append(EntryKind::Event, &serde_json::json!({ "text": label }))
+            .unwrap();
     }
     journal.promise().unwrap();
     drop(journal);
     let bytes = std::fs::read(&path).unwrap();
-    assert!(bytes.iter().all(|byte| (b' '..=b'~').contains(byte) || *byte == b'\n'));
+    assert!(
+        bytes
+            .iter()
+            .all(|byte| (b' '..=b'~').contains(byte) || *byte == b'\n')
+    );
     let found = recover(&bytes).unwrap();
-    let texts: Vec<String> = found.lines[1..].iter().map(|line| line.body()["text"].as_str().unwrap().to_owned()).collect();
+    let texts: Vec<String> = found.lines[1..]
+        .iter()
+        .map(|line| line.body()["text"].as_str().unwrap().to_owned())
+        .collect();
     assert_eq!(texts, labels);
 }

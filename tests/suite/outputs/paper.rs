@@ -1,11 +1,14 @@
 //! The certificate on paper: made from the document that the page is made from, by a world without a clock.
 
+use psd::plan::Format;
+
 use super::fixture::finished;
 use super::{bytes, files, hostile};
 
 #[test]
 fn a_run_has_one_paper_whatever_its_texts_want_to_be() {
-    for finished in [finished(), hostile()] {
+    for mut finished in [finished(), hostile()] {
+        finished.plan.report.formats = vec![Format::Pdf];
         let (first, second) = (files(&finished), files(&finished));
         let paper = bytes(&first, "certificate.pdf");
         assert!(paper.starts_with(b"%PDF-1.7") && paper == bytes(&second, "certificate.pdf"));
@@ -18,9 +21,14 @@ fn another_day_is_another_paper_and_an_impossible_day_is_none() {
         let mut finished = finished();
         finished.provenance.date = Some(date.into());
         finished.plan.report.figures.clear();
+        finished.plan.report.formats = vec![Format::Pdf];
         bytes(&files(&finished), "certificate.pdf").to_vec()
     };
-    let archived = |paper: &[u8]| paper.windows(14).any(|window| window == b"pdfaid:part>3<".as_slice());
+    let archived = |paper: &[u8]| {
+        paper
+            .windows(14)
+            .any(|window| window == b"pdfaid:part>3<".as_slice())
+    };
     assert!(archived(&dated("2026-05-31")) && archived(&dated("2026-06-01T10:00:00Z")));
     assert!(!archived(&dated("2026-02-31")) && !archived(&dated("next week")));
     assert!(dated("2026-05-31") != dated("2026-06-01"));

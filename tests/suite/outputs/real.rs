@@ -1,9 +1,13 @@
 //! What the outputs of a run on a real rig say of it: its standing, its equipment, its record.
 
-use psd::output::standing::{self, Standing};
-use psd::output::{Change, Issue, IssueKind, Issues, RealRun, console};
-use psd::plan::{Calibration, Datum, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, ReadingRules, RealLink, SafeState};
+use psd::plan::{
+    Calibration, Datum, DeviceLink, Dialect, Format, Gate, Interval, Link, PortPlan, ReadingRules,
+    RealLink, SafeState,
+};
 use psd::record::{Event, EventKind, Outcome};
+use psd::report::report_status;
+use psd::report::report_status::Standing;
+use psd::report::{Change, Issue, IssueKind, Issues, RealRun, console};
 
 use super::fixture::{Finished, finished};
 use super::{files, text};
@@ -11,28 +15,46 @@ use super::{files, text};
 /// A test of a specimen that lacks nothing.
 fn real() -> Finished {
     let mut finished = finished();
+    // Nothing here looks at a figure, a table or paper.
+    finished.plan.report.figures.clear();
+    finished.plan.report.formats = vec![Format::Html];
     finished.plan.rig.link = Link::Real(RealLink {
         actuator: DeviceLink {
-            port: PortPlan::Serial { path: "/dev/ttyUSB7".into(), baud: 115_200 },
+            port: PortPlan::Serial {
+                path: "/dev/ttyUSB7".into(),
+                baud: 115_200,
+            },
             dialect: Dialect::Native,
             reply_timeout: 0.1,
             serial_number: Some("PSD-0001".into()),
         },
         load_cell: Some(DeviceLink {
-            port: PortPlan::Tcp { address: "10.0.0.7:5025".into() },
+            port: PortPlan::Tcp {
+                address: "10.0.0.7:5025".into(),
+            },
             dialect: Dialect::Indicator,
             reply_timeout: 0.1,
             serial_number: None,
         }),
         safe_state: SafeState::Hold,
         datum: Datum::Machine,
-        gate: Gate { zero: 20.0, probe: 20e-6, stiffness: Interval { low: 250e3, high: 350e3 } },
+        gate: Gate {
+            zero: 20.0,
+            probe: 20e-6,
+            stiffness: Interval {
+                low: 250e3,
+                high: 350e3,
+            },
+        },
         readings: ReadingRules {
             samples: 5,
             rate: 100.0,
             resolution: 1e-6,
             noise: 2.0,
-            force_range: Interval { low: -15e3, high: 15e3 },
+            force_range: Interval {
+                low: -15e3,
+                high: 15e3,
+            },
             frozen_after: 50,
         },
         watchdog: 2.0,
@@ -55,8 +77,14 @@ fn real() -> Finished {
     finished.plan.rig.calibration = Calibration {
         reference: Some("UKAS 4711".into()),
         due: Some("2027-03-01".into()),
-        force_calibrated: Some(Interval { low: 10.0, high: 12e3 }),
-        displacement_calibrated: Some(Interval { low: 0.0, high: 0.2 }),
+        force_calibrated: Some(Interval {
+            low: 10.0,
+            high: 12e3,
+        }),
+        displacement_calibrated: Some(Interval {
+            low: 0.0,
+            high: 0.2,
+        }),
         ..Calibration::default()
     };
     finished.provenance.date = Some("2027-02-28".into());
@@ -74,7 +102,7 @@ fn real() -> Finished {
 }
 
 fn missing(finished: &Finished) -> Vec<String> {
-    match standing::of(&finished.run()) {
+    match report_status::of(&finished.run()) {
         Standing::NotCertifiable { missing } => missing,
         other => panic!("{other:?}"),
     }
@@ -83,7 +111,7 @@ fn missing(finished: &Finished) -> Vec<String> {
 #[test]
 fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with() {
     let finished = real();
-    assert_eq!(standing::of(&finished.run()), Standing::Certifiable);
+    assert_eq!(report_status::of(&finished.run()), Standing::Certifiable);
     let files = files(&finished);
     let html = text(&files, "certificate.html").replace('\u{a0}', " ");
     for told in [
@@ -104,12 +132,25 @@ fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with()
     ] {
         assert!(html.contains(told), "{told}");
     }
-    for secret in ["ttyUSB7", "10.0.0.7", "class=\"watermark\"", "REHEARSAL", "NOT CERTIFIABLE", "Seed"] {
+    for secret in [
+        "ttyUSB7",
+        "10.0.0.7",
+        "class=\"watermark\"",
+        "REHEARSAL",
+        "NOT CERTIFIABLE",
+        "Seed",
+    ] {
         assert!(!html.contains(secret), "{secret}");
     }
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
-    assert_eq!((&summary["standing"], &summary["record"]["records"]), (&"certifiable".into(), &1234.into()));
-    assert_eq!(summary["procedures"]["hit"]["results"]["contacts"]["value"].to_string(), "6");
+    assert_eq!(
+        (&summary["standing"], &summary["record"]["records"]),
+        (&"certifiable".into(), &1234.into())
+    );
+    assert_eq!(
+        summary["procedures"]["hit"]["results"]["contacts"]["value"].to_string(),
+        "6"
+    );
     assert!(!console::verdict_text(&finished.run(), false).contains("CERTIFIABLE"));
 }
 
@@ -120,26 +161,43 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
     assert_eq!(missing(&anonymous), ["the operator's name"]);
     let mut uncalibrated = real();
     uncalibrated.plan.rig.calibration = Calibration::default();
-    let ranges = ["displacement", "force"].map(|channel| format!("the range over which the {channel} is calibrated"));
-    let lacks = ["the calibration's reference", &ranges[0], &ranges[1], "the day until which the calibration holds"];
+    let ranges = ["displacement", "force"]
+        .map(|channel| format!("the range over which the {channel} is calibrated"));
+    let lacks = [
+        "the calibration's reference",
+        &ranges[0],
+        &ranges[1],
+        "the day until which the calibration holds",
+    ];
     assert_eq!(missing(&uncalibrated), lacks);
     // It held when the run began, and no more when it ended, a day later.
     let mut expired = real();
     expired.plan.rig.calibration.due = Some("2027-02-28".into());
-    assert_eq!(missing(&expired), ["a valid calibration (it held until 2027-02-28, the test ended on 2027-03-01)"]);
+    assert_eq!(
+        missing(&expired),
+        ["a valid calibration (it held until 2027-02-28, the test ended on 2027-03-01)"]
+    );
     let files = files(&expired);
     let html = text(&files, "certificate.html");
     assert!(
-        html.contains("class=\"watermark\"") && html.contains("NOT CERTIFIABLE") && html.contains("OVERDUE</span> on 2027-03-01")
+        html.contains("class=\"watermark\"")
+            && html.contains("NOT CERTIFIABLE")
+            && html.contains("OVERDUE</span> on 2027-03-01")
     );
-    assert!(console::verdict_text(&expired.run(), false).contains("(NOT CERTIFIABLE: lacks a valid calibration"));
+    assert!(
+        console::verdict_text(&expired.run(), false)
+            .contains("(NOT CERTIFIABLE: lacks a valid calibration")
+    );
     // Without times in the record the plan's own date is judged, and a date that is none is none.
     let mut undated = real();
-    undated.provenance.real = Some(RealRun { operator: Some("A. Tester".into()), ..RealRun::default() });
+    undated.provenance.real = Some(RealRun {
+        operator: Some("A. Tester".into()),
+        ..RealRun::default()
+    });
     undated.provenance.date = Some("next week, perhaps".into());
     assert_eq!(missing(&undated), ["the day of the test"]);
     undated.provenance.date = Some("2027-02-28".into());
-    assert_eq!(standing::of(&undated.run()), Standing::Certifiable);
+    assert_eq!(report_status::of(&undated.run()), Standing::Certifiable);
 }
 
 #[test]
@@ -149,21 +207,41 @@ fn what_lies_outside_the_range_of_its_calibration_is_told() {
         let range = |[low, high]: [f64; 2]| Some(Interval { low, high });
         finished.plan.rig.calibration.force_calibrated = range(force);
         finished.plan.rig.calibration.displacement_calibrated = range(displacement);
-        let summary: serde_json::Value = serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
-        let deviations = summary["deviations"].as_array().unwrap().iter().map(|text| text.as_str().unwrap().to_owned());
-        deviations.filter(|text| text.contains("calibrated")).collect()
+        let summary: serde_json::Value =
+            serde_json::from_str(text(&files(&finished), "summary.json")).unwrap();
+        let deviations = summary["deviations"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|text| text.as_str().unwrap().to_owned());
+        deviations
+            .filter(|text| text.contains("calibrated"))
+            .collect()
     };
     // 157 mm and 51.6 N at most.
     assert_eq!(told([10.0, 100.0], [0.0, 0.2]), [""; 0]);
-    let (weak, far) = (told([300.0, 15e3], [0.0, 0.2]), told([0.0, 100.0], [0.0, 0.1]));
-    assert!(weak.len() == 1 && weak[0].starts_with("The largest force, ") && weak[0].contains("is below the range"), "{weak:?}");
-    assert!(far.len() == 1 && far[0].starts_with("The largest displacement, ") && far[0].contains("is beyond"), "{far:?}");
+    let (weak, far) = (
+        told([300.0, 15e3], [0.0, 0.2]),
+        told([0.0, 100.0], [0.0, 0.1]),
+    );
+    assert!(
+        weak.len() == 1
+            && weak[0].starts_with("The largest force, ")
+            && weak[0].contains("is below the range"),
+        "{weak:?}"
+    );
+    assert!(
+        far.len() == 1
+            && far[0].starts_with("The largest displacement, ")
+            && far[0].contains("is beyond"),
+        "{far:?}"
+    );
 }
 
 fn particulars_missing(change: impl FnOnce(&mut Vec<(&'static str, String)>)) -> Vec<String> {
     let mut finished = real();
     change(&mut finished.plan.particulars);
-    match standing::of(&finished.run()) {
+    match report_status::of(&finished.run()) {
         Standing::ParticularsMissing { missing } => missing,
         other => panic!("{other:?}"),
     }
@@ -181,30 +259,54 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
         ("issued", "date of issue"),
         ("authorised_by", "authorised by"),
     ] {
-        assert_eq!(particulars_missing(|all| all.retain(|(own, _)| *own != field)), [name]);
-        let blank = |all: &mut Vec<(&'static str, String)>| all.iter_mut().find(|(own, _)| *own == field).unwrap().1 = " ".into();
+        assert_eq!(
+            particulars_missing(|all| all.retain(|(own, _)| *own != field)),
+            [name]
+        );
+        let blank = |all: &mut Vec<(&'static str, String)>| {
+            all.iter_mut().find(|(own, _)| *own == field).unwrap().1 = " ".into();
+        };
         assert_eq!(particulars_missing(blank), [name]);
     }
     // What matters only to some tests is said to be missing, and bars nothing.
     let mut bare = real();
-    bare.plan.particulars.retain(|(field, _)| *field != "receipt_date");
-    assert_eq!(standing::of(&bare.run()), Standing::Certifiable);
-    assert!(text(&files(&bare), "certificate.html").contains("Not given: Condition, Item received."));
+    bare.plan
+        .particulars
+        .retain(|(field, _)| *field != "receipt_date");
+    assert_eq!(report_status::of(&bare.run()), Standing::Certifiable);
+    assert!(
+        text(&files(&bare), "certificate.html").contains("Not given: Condition, Item received.")
+    );
 
     bare.plan.particulars.clear();
     let files = files(&bare);
     let html = text(&files, "certificate.html");
-    for told in ["<div>PARTICULARS MISSING</div>", "wants of a report and this one lacks: laboratory; address; "] {
+    for told in [
+        "<div>PARTICULARS MISSING</div>",
+        "wants of a report and this one lacks: laboratory; address; ",
+    ] {
         assert!(html.contains(told), "{told}");
     }
-    assert!(html.contains("Not given: Condition, Item received."), "what the mark names is not told twice");
+    assert!(
+        html.contains("Not given: Condition, Item received."),
+        "what the mark names is not told twice"
+    );
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
-    assert_eq!((&summary["standing"], summary["missing"].as_array().unwrap().len()), (&"particulars missing".into(), 8));
+    assert_eq!(
+        (
+            &summary["standing"],
+            summary["missing"].as_array().unwrap().len()
+        ),
+        (&"particulars missing".into(), 8)
+    );
     let told = console::verdict_text(&bare.run(), false);
-    assert!(told.contains("(PARTICULARS MISSING: laboratory, address, ") && told.contains("psd issue"), "{told}");
+    assert!(
+        told.contains("(PARTICULARS MISSING: laboratory, address, ") && told.contains("psd issue"),
+        "{told}"
+    );
     // A rehearsal is issued by nobody.
     bare.record.rig.simulated = true;
-    assert_eq!(standing::grounds(&bare.run()), [Standing::Rehearsal]);
+    assert_eq!(report_status::grounds(&bare.run()), [Standing::Rehearsal]);
 }
 
 #[test]
@@ -217,22 +319,42 @@ fn days_out_of_their_order_are_told() {
         })
     };
     // Tested from 2027-02-28 to 2027-03-01, by UTC.
-    assert_eq!(dated("issued", "2020-01-01"), ["days in their order (tested 2027-03-01, issued 2020-01-01)"]);
-    assert_eq!(dated("issued", "2027-02-27"), ["days in their order (tested 2027-03-01, issued 2027-02-27)"]);
-    assert_eq!(dated("receipt_date", "2027-03-02"), ["days in their order (received 2027-03-02, tested 2027-02-28)"]);
-    assert_eq!(dated("receipt_date", "in spring"), ["a day on which the item was received (“in spring” is none)"]);
+    assert_eq!(
+        dated("issued", "2020-01-01"),
+        ["days in their order (tested 2027-03-01, issued 2020-01-01)"]
+    );
+    assert_eq!(
+        dated("issued", "2027-02-27"),
+        ["days in their order (tested 2027-03-01, issued 2027-02-27)"]
+    );
+    assert_eq!(
+        dated("receipt_date", "2027-03-02"),
+        ["days in their order (received 2027-03-02, tested 2027-02-28)"]
+    );
+    assert_eq!(
+        dated("receipt_date", "in spring"),
+        ["a day on which the item was received (“in spring” is none)"]
+    );
     let mut near = real();
     for (field, day) in [("issued", "2027-02-28"), ("receipt_date", "2027-03-01")] {
         near.plan.particulars.retain(|(own, _)| *own != field);
         near.plan.particulars.push((field, day.into()));
     }
-    assert_eq!(standing::of(&near.run()), Standing::Certifiable, "the days of a laboratory may be one off those of UTC");
+    assert_eq!(
+        report_status::of(&near.run()),
+        Standing::Certifiable,
+        "the days of a laboratory may be one off those of UTC"
+    );
 }
 
 #[test]
 fn an_amended_name_of_the_operator_stands_on_the_first_page_and_not_in_the_provenance() {
     let mut amended = real();
-    let change = Change { field: "operator", was: "A. Tester".into(), is: "A. B. Tester".into() };
+    let change = Change {
+        field: "operator",
+        was: "A. Tester".into(),
+        is: "A. B. Tester".into(),
+    };
     let issue = Issue {
         kind: IssueKind::Amendment,
         replaces: "0123".into(),
@@ -241,12 +363,21 @@ fn an_amended_name_of_the_operator_stands_on_the_first_page_and_not_in_the_prove
         reason: Some("a letter".into()),
         changes: vec![change],
     };
-    amended.plan.particulars.push(("operator", "A. B. Tester".into()));
-    amended.provenance.issues = Some(Issues { report_id: "4567".into(), all: vec![issue] });
+    amended
+        .plan
+        .particulars
+        .push(("operator", "A. B. Tester".into()));
+    amended.provenance.issues = Some(Issues {
+        report_id: "4567".into(),
+        all: vec![issue],
+    });
     let files = files(&amended);
     let html = text(&files, "certificate.html");
     assert!(html.contains("Operator</span><span>A. B. Tester</span>"));
-    assert!(html.contains("Operator</th><td>A. Tester</td>"), "the record says who stood by");
+    assert!(
+        html.contains("Operator</th><td>A. Tester</td>"),
+        "the record says who stood by"
+    );
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
     assert_eq!(summary["record"]["operator"], "A. Tester");
 }
@@ -255,21 +386,35 @@ fn an_amended_name_of_the_operator_stands_on_the_first_page_and_not_in_the_prove
 fn a_simulated_rig_on_a_real_line_is_marked_across_the_page_whatever_else_is_wrong() {
     let mut rehearsed = real();
     rehearsed.record.rig.simulated = true;
-    assert_eq!(standing::of(&rehearsed.run()), Standing::Rehearsal);
-    rehearsed.record.outcome = Outcome::Aborted { reason: "stopped on request".into() };
-    assert_eq!(standing::grounds(&rehearsed.run()), [Standing::Rehearsal, Standing::Incomplete]);
+    assert_eq!(report_status::of(&rehearsed.run()), Standing::Rehearsal);
+    rehearsed.record.outcome = Outcome::Aborted {
+        reason: "stopped on request".into(),
+    };
+    assert_eq!(
+        report_status::grounds(&rehearsed.run()),
+        [Standing::Rehearsal, Standing::Incomplete]
+    );
     let files = files(&rehearsed);
     let html = text(&files, "certificate.html");
     assert!(html.contains("<div>REHEARSAL ON A SIMULATED RIG</div><div>INCOMPLETE</div>"));
     // A virtual rig says so too: of a paper that is passed on, any page may be the only one.
-    assert!(text(&super::files(&finished()), "certificate.html").contains("<div>REHEARSAL</div>"));
+    assert!(text(super::made(), "certificate.html").contains("<div>REHEARSAL</div>"));
 }
 
 #[test]
 fn what_went_otherwise_comes_before_the_requirements() {
     let mut finished = real();
-    let event = |kind, text: &str| Event { time: 1.0, procedure: None, step: None, kind, text: text.into() };
-    finished.plan.particulars.push(("deviations", "The supports were greased".into()));
+    let event = |kind, text: &str| Event {
+        time: 1.0,
+        procedure: None,
+        step: None,
+        kind,
+        text: text.into(),
+    };
+    finished
+        .plan
+        .particulars
+        .push(("deviations", "The supports were greased".into()));
     finished.record.events = vec![
         event(EventKind::Note, "gate passed: 0.1 N at rest"),
         event(EventKind::Note, "line: 3 frames sent again"),

@@ -1,8 +1,8 @@
 //! Strikers that fall: Ms Ẍs = Ms g − F, against the flight of a ball, the pair on a spring and the energy balance.
 
-use psd::mechanics::contact::{ContactLaw, StepState};
-use psd::mechanics::impact::ImpactInput;
-use psd::mechanics::specimen::Elastic;
+use psd::physics::contact::state::{ContactLaw, StepState};
+use psd::physics::impact::ImpactInput;
+use psd::physics::specimen::Elastic;
 
 use super::support::{impact, run, run_while};
 
@@ -10,7 +10,10 @@ const G: f64 = 9.806_65;
 const K: f64 = 2e4;
 
 fn falling(law: ContactLaw, time_step: f64) -> ImpactInput {
-    ImpactInput { gravity: G, ..impact(1.0, K, law, time_step) }
+    ImpactInput {
+        gravity: G,
+        ..impact(1.0, K, law, time_step)
+    }
 }
 
 /// The balance counts the work of the weight, and closes to rounding whatever the law and the length of the step.
@@ -19,16 +22,30 @@ fn the_work_of_the_weight_closes_the_balance() {
     let laws = [
         ContactLaw::Rigid,
         ContactLaw::Limit { force: 900.0 },
-        ContactLaw::Hertz { stiffness: 1e7, loss: 0.0, force_limit: None },
+        ContactLaw::Hertz {
+            stiffness: 1e7,
+            loss: 0.0,
+            force_limit: None,
+        },
     ];
     for law in laws {
         for time_step in [1e-3, 1e-4] {
-            let input = ImpactInput { gap: 0.02, ..falling(law, time_step) };
+            let input = ImpactInput {
+                gap: 0.02,
+                ..falling(law, time_step)
+            };
             let mut specimen = Elastic { stiffness: K };
             let run = run_while(&input, &mut specimen, |state| state.time < 0.3);
             let fallen = run.last().striker_displacement - run.states[0].striker_displacement;
-            assert!((run.last().energies.weight - 10.0 * G * fallen).abs() < 1e-12, "{law:?}");
-            assert!(run.worst_error < 2e-11, "{law:?} at {time_step} s: {} J", run.worst_error);
+            assert!(
+                (run.last().energies.weight - 10.0 * G * fallen).abs() < 1e-12,
+                "{law:?}"
+            );
+            assert!(
+                run.worst_error < 2e-11,
+                "{law:?} at {time_step} s: {} J",
+                run.worst_error
+            );
         }
     }
 }
@@ -49,7 +66,10 @@ fn a_weight_that_sticks_swings_about_its_rest() {
     for time_step in [1e-3, 2.5e-4, 6.25e-5] {
         let error = (at(time_step) - exact).abs();
         let most = 0.2 * (omega * time_step).powi(2) * (exact - rest);
-        assert!(error < most, "{error} m off {exact} m at {time_step} s, {most} m at most");
+        assert!(
+            error < most,
+            "{error} m off {exact} m at {time_step} s, {most} m at most"
+        );
     }
     // Without its weight it would stop 26 % earlier: the test sees the difference.
     assert!((common * (11.0 / K).sqrt()) < 0.9 * exact);
@@ -69,7 +89,7 @@ fn a_weight_falls_back_and_strikes_again() {
         gravity: G,
         ..impact(1.0, 1.0, law, time_step)
     };
-    let mut solver = psd::mechanics::impact::ImpactSolver::new(&input, 0.0, 0.0);
+    let mut solver = psd::physics::impact::ImpactSolver::new(&input, 0.0, 0.0).expect("an impact");
     let mut blows = Vec::new();
     let mut before = StepState::Free;
     while solver.state().time < 0.45 {
@@ -84,7 +104,10 @@ fn a_weight_falls_back_and_strikes_again() {
     let mut time = landing / G;
     let mut speed = landing;
     for (index, blow) in blows.iter().take(4).enumerate() {
-        assert!((blow - time).abs() < 2.0 * time_step, "blow {index} at {blow} s, not {time} s");
+        assert!(
+            (blow - time).abs() < 2.0 * time_step,
+            "blow {index} at {blow} s, not {time} s"
+        );
         speed *= e;
         time += 2.0 * speed / G;
     }
@@ -95,5 +118,10 @@ fn a_weight_falls_back_and_strikes_again() {
 #[test]
 fn nothing_is_added_where_nothing_falls() {
     let input = impact(1.0, K, ContactLaw::Rigid, 1e-3);
-    assert!(run(&input).states.iter().all(|state| state.energies.weight == 0.0));
+    assert!(
+        run(&input)
+            .states
+            .iter()
+            .all(|state| state.energies.weight == 0.0)
+    );
 }

@@ -1,9 +1,9 @@
 //! Every integrator against the same closed forms: free vibration, the paper's examples as the step shrinks, energy.
 
-use psd::mechanics::contact::ContactLaw;
-use psd::mechanics::impact::{ImpactInput, ImpactSolver};
-use psd::mechanics::specimen::{RestoringForce, SpecimenModel};
-use psd::mechanics::stability::{Met, longest_stable_step};
+use psd::physics::contact::state::ContactLaw;
+use psd::physics::impact::{ImpactInput, ImpactSolver};
+use psd::physics::integrator::stability::{Met, longest_stable_step};
+use psd::physics::specimen::{RestoringForce, SpecimenModel};
 use psd::plan::{Behaviour, Integrator};
 
 use super::support::{impact, run};
@@ -17,12 +17,26 @@ const ALL: [Integrator; 5] = [
 ];
 
 fn by(integrator: Integrator, input: ImpactInput) -> ImpactInput {
-    ImpactInput { integrator, ..input }
+    ImpactInput {
+        integrator,
+        ..input
+    }
 }
 
 /// A structure let go at 1 m, with the striker out of reach.
-pub fn vibration(integrator: Integrator, mass: f64, damping: f64, stiffness: f64, time_step: f64) -> ImpactInput {
-    let far = ImpactInput { gap: 1e9, striker_velocity: 0.0, damping, ..impact(mass, stiffness, ContactLaw::Rigid, time_step) };
+pub fn vibration(
+    integrator: Integrator,
+    mass: f64,
+    damping: f64,
+    stiffness: f64,
+    time_step: f64,
+) -> ImpactInput {
+    let far = ImpactInput {
+        gap: 1e9,
+        striker_velocity: 0.0,
+        damping,
+        ..impact(mass, stiffness, ContactLaw::Rigid, time_step)
+    };
     by(integrator, far)
 }
 
@@ -30,7 +44,7 @@ pub fn vibration(integrator: Integrator, mass: f64, damping: f64, stiffness: f64
 fn error(integrator: Integrator, damping: f64, steps: u32) -> f64 {
     let (mass, stiffness, end): (f64, f64, f64) = (1.0, 400.0, 0.37);
     let input = vibration(integrator, mass, damping, stiffness, end / f64::from(steps));
-    let mut solver = ImpactSolver::new(&input, 1.0, stiffness);
+    let mut solver = ImpactSolver::new(&input, 1.0, stiffness).expect("an impact");
     for _ in 0..steps {
         let target = solver.predict();
         solver.complete(target, stiffness * target);
@@ -46,15 +60,30 @@ fn free_vibration_is_of_second_order_under_every_integrator() {
     for integrator in ALL {
         for damping in [0.0, 6.0] {
             let order = (error(integrator, damping, 400) / error(integrator, damping, 800)).log2();
-            assert!((order - 2.0).abs() < 0.04, "{integrator:?}, C {damping}: order {order}");
-            assert!(error(integrator, damping, 800).abs() < 2e-4, "{integrator:?}: {}", error(integrator, damping, 800));
+            assert!(
+                (order - 2.0).abs() < 0.04,
+                "{integrator:?}, C {damping}: order {order}"
+            );
+            assert!(
+                error(integrator, damping, 800).abs() < 2e-4,
+                "{integrator:?}: {}",
+                error(integrator, damping, 800)
+            );
         }
     }
 }
 
 /// Largest X of a run: mass, K, law, Δt.
-fn largest(integrator: Integrator, mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> f64 {
-    run(&by(integrator, impact(mass, stiffness, law, time_step))).summary.max_displacement
+fn largest(
+    integrator: Integrator,
+    mass: f64,
+    stiffness: f64,
+    law: ContactLaw,
+    time_step: f64,
+) -> f64 {
+    run(&by(integrator, impact(mass, stiffness, law, time_step)))
+        .summary
+        .max_displacement
 }
 
 /// The exact collisions (reference table): 0.157698, 0.168185 and 0.174078 m. The error shrinks with the step, and is
@@ -70,7 +99,10 @@ fn the_papers_examples_converge_to_the_exact_collisions_under_every_integrator()
         for (mass, stiffness, law, exact) in cases {
             let error = |time_step| largest(integrator, mass, stiffness, law, time_step) - exact;
             let (coarse, fine) = (error(1e-4), error(1e-5));
-            assert!(fine.abs() < 8e-5, "{integrator:?}, {mass} kg, {law:?}: {fine} m at 10 µs, {coarse} m at 0.1 ms");
+            assert!(
+                fine.abs() < 8e-5,
+                "{integrator:?}, {mass} kg, {law:?}: {fine} m at 10 µs, {coarse} m at 0.1 ms"
+            );
         }
     }
 }
@@ -78,9 +110,19 @@ fn the_papers_examples_converge_to_the_exact_collisions_under_every_integrator()
 /// Without α, and split with the specimen's own stiffness, α-OS is the tangent form: the same numbers at any step.
 #[test]
 fn splitting_without_alpha_is_the_tangent_form_of_a_linear_specimen() {
-    for (law, time_step) in [(ContactLaw::Rigid, 0.01), (ContactLaw::Limit { force: 1500.0 }, 1e-3)] {
-        let input = ImpactInput { damping: 2.0, gap: 0.003, ..impact(1.0, 327.65, law, time_step) };
-        let (tangent, split) = (run(&input), run(&by(Integrator::AlphaOs { alpha: 0.0 }, input)));
+    for (law, time_step) in [
+        (ContactLaw::Rigid, 0.01),
+        (ContactLaw::Limit { force: 1500.0 }, 1e-3),
+    ] {
+        let input = ImpactInput {
+            damping: 2.0,
+            gap: 0.003,
+            ..impact(1.0, 327.65, law, time_step)
+        };
+        let (tangent, split) = (
+            run(&input),
+            run(&by(Integrator::AlphaOs { alpha: 0.0 }, input)),
+        );
         assert_eq!(tangent.states.len(), split.states.len());
         for (one, other) in tangent.states.iter().zip(&split.states) {
             assert!((one.displacement - other.displacement).abs() < 1e-12);
@@ -94,12 +136,22 @@ fn splitting_without_alpha_is_the_tangent_form_of_a_linear_specimen() {
 #[test]
 fn energy_closes_under_every_integrator() {
     for integrator in ALL {
-        let worst = |time_step| run(&by(integrator, impact(1.0, 327.65, ContactLaw::Rigid, time_step))).worst_error / 5.0;
+        let worst = |time_step| {
+            run(&by(
+                integrator,
+                impact(1.0, 327.65, ContactLaw::Rigid, time_step),
+            ))
+            .worst_error
+                / 5.0
+        };
         let (coarse, fine) = (worst(1e-3), worst(1e-4));
         match integrator {
             Integrator::Tangent => assert!(coarse < 1e-12),
             Integrator::AlphaOs { alpha: 0.0 } => assert!(coarse < 1e-12, "{coarse}"),
-            _ => assert!(coarse < 0.02 && fine < 0.15 * coarse, "{integrator:?}: {coarse} at 1 ms, {fine} at 0.1 ms"),
+            _ => assert!(
+                coarse < 0.02 && fine < 0.15 * coarse,
+                "{integrator:?}: {coarse} at 1 ms, {fine} at 0.1 ms"
+            ),
         }
     }
 }
@@ -108,8 +160,17 @@ fn energy_closes_under_every_integrator() {
 #[test]
 fn numerical_damping_does_not_soften_the_blow() {
     for integrator in ALL {
-        let found = run(&by(integrator, impact(1.0, 327.65, ContactLaw::Rigid, 1e-5))).summary.restitution.unwrap();
-        assert!((found - 10.0 / 12.0).abs() < 2e-3, "{integrator:?}: {found}");
+        let found = run(&by(
+            integrator,
+            impact(1.0, 327.65, ContactLaw::Rigid, 1e-5),
+        ))
+        .summary
+        .restitution
+        .unwrap();
+        assert!(
+            (found - 10.0 / 12.0).abs() < 2e-3,
+            "{integrator:?}: {found}"
+        );
     }
 }
 
@@ -118,8 +179,11 @@ fn numerical_damping_does_not_soften_the_blow() {
 fn the_stability_limits_are_where_they_are_said_to_be() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
     let farthest = |integrator, operator, time_step| {
-        let input = ImpactInput { operator_stiffness: operator, ..vibration(integrator, mass, 0.0, stiffness, time_step) };
-        let mut solver = ImpactSolver::new(&input, 1.0, stiffness);
+        let input = ImpactInput {
+            operator_stiffness: operator,
+            ..vibration(integrator, mass, 0.0, stiffness, time_step)
+        };
+        let mut solver = ImpactSolver::new(&input, 1.0, stiffness).expect("an impact");
         (0..1000).fold(0.0_f64, |farthest, _| {
             let target = solver.predict();
             solver.complete(target, stiffness * target);
@@ -127,7 +191,10 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
         })
     };
     let explicit = longest_stable_step(Integrator::Explicit, &Met::one(mass, 0.0, stiffness, 0.0));
-    assert!((explicit - 2.0 * std::f64::consts::PI / 20.0 / std::f64::consts::PI).abs() < 1e-15, "T/π");
+    assert!(
+        (explicit - 2.0 * std::f64::consts::PI / 20.0 / std::f64::consts::PI).abs() < 1e-15,
+        "T/π"
+    );
     assert!(farthest(Integrator::Explicit, 0.0, 0.99 * explicit) < 20.0);
     assert!(farthest(Integrator::Explicit, 0.0, 1.01 * explicit) > 1e20);
 
@@ -137,8 +204,18 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
     assert!(farthest(split, soft, 0.99 * limit) < 20.0);
     assert!(farthest(split, soft, 1.01 * limit) > 1e20);
     for alpha in [0.0, -0.05, -0.3] {
-        assert!(farthest(Integrator::AlphaOs { alpha }, stiffness, 10.0) < 1.001, "as stiff as the specimen: no limit");
-        assert!(farthest(Integrator::AlphaOs { alpha }, 2.0 * stiffness, 2.0 * explicit) < 5.0, "stiffer: none either");
+        assert!(
+            farthest(Integrator::AlphaOs { alpha }, stiffness, 10.0) < 1.001,
+            "as stiff as the specimen: no limit"
+        );
+        assert!(
+            farthest(
+                Integrator::AlphaOs { alpha },
+                2.0 * stiffness,
+                2.0 * explicit
+            ) < 5.0,
+            "stiffer: none either"
+        );
     }
 }
 
@@ -148,19 +225,29 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
 fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
     let omega = (stiffness / mass).sqrt();
-    for (alpha, share, ratio) in
-        [(-0.05, 0.5, 0.0), (-0.1, 0.25, 0.02), (-0.2, 0.5, 0.0), (-0.3, 0.5, 0.0), (-0.3, 0.5, 0.02), (-1.0 / 3.0, 0.9, 0.05)]
-    {
+    for (alpha, share, ratio) in [
+        (-0.05, 0.5, 0.0),
+        (-0.1, 0.25, 0.02),
+        (-0.2, 0.5, 0.0),
+        (-0.3, 0.5, 0.0),
+        (-0.3, 0.5, 0.02),
+        (-1.0 / 3.0, 0.9, 0.05),
+    ] {
         let integrator = Integrator::AlphaOs { alpha };
         let (damping, soft) = (2.0 * ratio * omega * mass, (1.0 - share) * stiffness);
         let limit = longest_stable_step(integrator, &Met::one(mass, damping, stiffness, soft));
         // ln|z| of the fastest of its motions, by the size of the state over many steps.
         let growth = |time_step: f64| {
-            let input = ImpactInput { operator_stiffness: soft, ..vibration(integrator, mass, damping, stiffness, time_step) };
-            let mut solver = ImpactSolver::new(&input, 1.0, stiffness);
+            let input = ImpactInput {
+                operator_stiffness: soft,
+                ..vibration(integrator, mass, damping, stiffness, time_step)
+            };
+            let mut solver = ImpactSolver::new(&input, 1.0, stiffness).expect("an impact");
             let size = |solver: &ImpactSolver| {
                 let state = solver.state();
-                (state.displacement * omega).hypot(state.velocity).hypot(state.acceleration / omega)
+                (state.displacement * omega)
+                    .hypot(state.velocity)
+                    .hypot(state.acceleration / omega)
             };
             let mut step = |count: u32| {
                 let mut largest = 0.0_f64;
@@ -174,13 +261,24 @@ fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
                 }
                 largest
             };
-            let before = if step(2000).is_finite() { step(300) } else { 1.0 };
+            let before = if step(2000).is_finite() {
+                step(300)
+            } else {
+                1.0
+            };
             step(3700);
             (step(300) / before).ln() / 4000.0
         };
-        let trifle = if ratio == 0.0 { 1e-4 * omega * limit } else { 0.0 };
+        let trifle = if ratio == 0.0 {
+            1e-4 * omega * limit
+        } else {
+            0.0
+        };
         let (inside, beyond) = (growth(0.97 * limit), growth(1.03 * limit));
-        assert!(inside < trifle && beyond > trifle, "α {alpha}, {share}, ζ {ratio}: {limit} s, {inside} {beyond} {trifle}");
+        assert!(
+            inside < trifle && beyond > trifle,
+            "α {alpha}, {share}, ζ {ratio}: {limit} s, {inside} {beyond} {trifle}"
+        );
     }
 }
 
@@ -191,12 +289,19 @@ fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
 #[test]
 fn the_tangent_form_errs_by_what_its_slope_is_late() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
-    let behaviour = Behaviour::Bilinear { stiffness, yield_force: 20.0, hardening: 0.05 };
+    let behaviour = Behaviour::Bilinear {
+        stiffness,
+        yield_force: 20.0,
+        hardening: 0.05,
+    };
     let off = |time_step: f64| {
-        let input = ImpactInput { max_tangent_ratio: 10.0, ..vibration(Integrator::Tangent, mass, 0.0, stiffness, time_step) };
+        let input = ImpactInput {
+            max_tangent_ratio: 10.0,
+            ..vibration(Integrator::Tangent, mass, 0.0, stiffness, time_step)
+        };
         let mut specimen = SpecimenModel::new(&behaviour);
         let (mut place, mut force) = (0.15, specimen.move_to(0.15));
-        let mut solver = ImpactSolver::new(&input, place, force);
+        let mut solver = ImpactSolver::new(&input, place, force).expect("an impact");
         let began = force * force / (2.0 * stiffness);
         let (mut slope, mut late, mut reckoned, mut largest) = (stiffness, 0.0, 0.0, 0.0_f64);
         let mut time = 0.0;
@@ -211,13 +316,23 @@ fn the_tangent_form_errs_by_what_its_slope_is_late() {
             slope = ((read - force) / moved).clamp(0.0, 10.0 * stiffness);
             (place, force, late) = (target, read, erred);
             let error = solver.state().energies.error;
-            assert!((error - reckoned).abs() < 1e-9 * (1.0 + reckoned.abs()), "{error} {reckoned}");
+            assert!(
+                (error - reckoned).abs() < 1e-9 * (1.0 + reckoned.abs()),
+                "{error} {reckoned}"
+            );
             largest = largest.max(error.abs() / began);
         }
         largest
     };
     let critical = 0.2 * std::f64::consts::PI * (mass / stiffness).sqrt();
-    let (tenth, default, coarse) = (off(critical / 200.0), off(critical / 20.0), off(2.0 * critical));
-    assert!(tenth < 0.01 && tenth < 0.2 * default && default < 0.05, "{tenth} {default}");
+    let (tenth, default, coarse) = (
+        off(critical / 200.0),
+        off(critical / 20.0),
+        off(2.0 * critical),
+    );
+    assert!(
+        tenth < 0.01 && tenth < 0.2 * default && default < 0.05,
+        "{tenth} {default}"
+    );
     assert!(coarse > 1.0, "{coarse}");
 }

@@ -11,25 +11,50 @@ const MOMENT: f64 = 20e3;
 const BENDING: f64 = 1.6e6;
 
 fn portal(loads: Loads) -> Portal {
-    Portal::of_sections(SPAN, HEIGHT, Sections::same(MOMENT), Sections::same(BENDING), loads)
+    Portal::of_sections(
+        SPAN,
+        HEIGHT,
+        Sections::same(MOMENT),
+        Sections::same(BENDING),
+        loads,
+    )
 }
 
 fn combined(beam_load: f64, sway_load: f64) -> Portal {
-    portal(Loads::Combined { beam_load, sway_load })
+    portal(Loads::Combined {
+        beam_load,
+        sway_load,
+    })
 }
 
 /// Beam 8Mp/L, sway 4Mp/h; combined λ(W₀L/2 + H₀h) = 6Mp.
 #[test]
 fn collapse_loads_in_closed_form() {
-    let near = |found: f64, by_hand: f64| assert!((found / by_hand - 1.0).abs() < 1e-12, "{found} N is not {by_hand} N");
+    let near = |found: f64, by_hand: f64| {
+        assert!(
+            (found / by_hand - 1.0).abs() < 1e-12,
+            "{found} N is not {by_hand} N"
+        );
+    };
     near(portal(Loads::Beam).capacity(), 8.0 * MOMENT / SPAN);
     near(portal(Loads::Sway).capacity(), 4.0 * MOMENT / HEIGHT);
     assert_eq!(portal(Loads::Beam).mechanism(), Mechanism::Beam);
     assert_eq!(portal(Loads::Sway).mechanism(), Mechanism::Sway);
-    assert!(portal(Loads::Sway).collapse_load(Mechanism::Beam).is_infinite());
-    assert!(portal(Loads::Beam).collapse_load(Mechanism::Sway).is_infinite());
+    assert!(
+        portal(Loads::Sway)
+            .collapse_load(Mechanism::Beam)
+            .is_infinite()
+    );
+    assert!(
+        portal(Loads::Beam)
+            .collapse_load(Mechanism::Sway)
+            .is_infinite()
+    );
     let frame = combined(10e3, 10e3);
-    near(frame.capacity() / 20e3, 6.0 * MOMENT / (10e3 * SPAN / 2.0 + 10e3 * HEIGHT));
+    near(
+        frame.capacity() / 20e3,
+        6.0 * MOMENT / (10e3 * SPAN / 2.0 + 10e3 * HEIGHT),
+    );
     assert_eq!(frame.mechanism(), Mechanism::Combined);
 }
 
@@ -39,10 +64,14 @@ fn collapse_loads_in_closed_form() {
 fn the_mechanism_changes_where_two_loads_are_equal() {
     let beam_load = 10e3;
     let work = beam_load * SPAN / 2.0;
-    for (switch, below, above) in
-        [(0.5 * work / HEIGHT, Mechanism::Beam, Mechanism::Combined), (2.0 * work / HEIGHT, Mechanism::Combined, Mechanism::Sway)]
-    {
-        let (under, over) = (combined(beam_load, switch * 0.999), combined(beam_load, switch * 1.001));
+    for (switch, below, above) in [
+        (0.5 * work / HEIGHT, Mechanism::Beam, Mechanism::Combined),
+        (2.0 * work / HEIGHT, Mechanism::Combined, Mechanism::Sway),
+    ] {
+        let (under, over) = (
+            combined(beam_load, switch * 0.999),
+            combined(beam_load, switch * 1.001),
+        );
         assert_eq!((under.mechanism(), over.mechanism()), (below, above));
         let at = combined(beam_load, switch);
         assert!((at.collapse_load(below) / at.collapse_load(above) - 1.0).abs() < 1e-12);
@@ -51,8 +80,18 @@ fn the_mechanism_changes_where_two_loads_are_equal() {
 
 /// Plastic moment at feet A, E, corners B, D and midspan C: a corner yields in the weaker of both.
 fn strengths(sections: Sections) -> [f64; 5] {
-    let corner = if sections.beam < sections.column { sections.beam } else { sections.column };
-    [sections.column, corner, sections.beam, corner, sections.column]
+    let corner = if sections.beam < sections.column {
+        sections.beam
+    } else {
+        sections.column
+    };
+    [
+        sections.column,
+        corner,
+        sections.beam,
+        corner,
+        sections.column,
+    ]
 }
 
 /// With `M_b` and `M_c` and m the less: beam W·L/2 = 2(m + M_b), sway H·h = 2(M_c + m), combined W·L/2 + H·h = 2(M_c + M_b + m). So beam
@@ -66,16 +105,36 @@ fn different_sections_in_closed_form_on_both_sides_of_each_switch() {
         let corner = f64::min(beam, column);
         let moment = Sections { beam, column };
         let frame = |sway_load| {
-            Portal::of_sections(SPAN, HEIGHT, moment, Sections::same(BENDING), Loads::Combined { beam_load, sway_load })
+            Portal::of_sections(
+                SPAN,
+                HEIGHT,
+                moment,
+                Sections::same(BENDING),
+                Loads::Combined {
+                    beam_load,
+                    sway_load,
+                },
+            )
         };
         // λ of either: (m + M_b)/w = (M_c + M_b + m)/(w + s), s = w·M_c/(m + M_b); (M_c + m)/s = (M_c + M_b + m)/(w + s), s = w (M_c + m)/M_b.
         let switches = [
-            (work * column / (corner + beam) / HEIGHT, Mechanism::Beam, Mechanism::Combined),
-            (work * (column + corner) / beam / HEIGHT, Mechanism::Combined, Mechanism::Sway),
+            (
+                work * column / (corner + beam) / HEIGHT,
+                Mechanism::Beam,
+                Mechanism::Combined,
+            ),
+            (
+                work * (column + corner) / beam / HEIGHT,
+                Mechanism::Combined,
+                Mechanism::Sway,
+            ),
         ];
         for (switch, below, above) in switches {
             assert_eq!(
-                (frame(switch * 0.999).mechanism(), frame(switch * 1.001).mechanism()),
+                (
+                    frame(switch * 0.999).mechanism(),
+                    frame(switch * 1.001).mechanism()
+                ),
                 (below, above),
                 "{beam}, {column}"
             );
@@ -90,7 +149,10 @@ fn different_sections_in_closed_form_on_both_sides_of_each_switch() {
             };
             for (sway_load, mechanism) in [(switch * 0.999, below), (switch * 1.001, above)] {
                 let (found, by_hand) = (frame(sway_load).capacity(), by_hand(mechanism, sway_load));
-                assert!((found / by_hand - 1.0).abs() < 1e-12, "{mechanism:?}: {found} N is not {by_hand} N");
+                assert!(
+                    (found / by_hand - 1.0).abs() < 1e-12,
+                    "{mechanism:?}: {found} N is not {by_hand} N"
+                );
             }
         }
     }
@@ -108,9 +170,18 @@ fn by_lower_bound(sections: Sections, beam_load: f64, sway_load: f64) -> f64 {
         for signs in 0..16_u32 {
             let mut moments = [0.0; 5];
             for (bit, section) in (0..5).filter(|section| *section != free).enumerate() {
-                moments[section] = if signs >> bit & 1 == 1 { strong[section] } else { -strong[section] };
+                moments[section] = if signs >> bit & 1 == 1 {
+                    strong[section]
+                } else {
+                    -strong[section]
+                };
             }
-            let known = |row: [f64; 5]| row.iter().zip(moments).map(|(factor, moment)| factor * moment).sum::<f64>();
+            let known = |row: [f64; 5]| {
+                row.iter()
+                    .zip(moments)
+                    .map(|(factor, moment)| factor * moment)
+                    .sum::<f64>()
+            };
             // row·M_free − work·λ = −known, two equations.
             let determinant = beam[free] * -works[1] + works[0] * sway[free];
             if determinant.abs() < 1e-9 {
@@ -135,8 +206,12 @@ struct Frame {
 }
 
 /// Members as near node, far node, along x or y, length.
-const MEMBERS: [(usize, usize, bool, f64); 4] =
-    [(0, 1, false, HEIGHT), (1, 2, true, SPAN / 2.0), (2, 3, true, SPAN / 2.0), (4, 3, false, HEIGHT)];
+const MEMBERS: [(usize, usize, bool, f64); 4] = [
+    (0, 1, false, HEIGHT),
+    (1, 2, true, SPAN / 2.0),
+    (2, 3, true, SPAN / 2.0),
+    (4, 3, false, HEIGHT),
+];
 /// Member and end that stand for each section A to E.
 const SECTIONS: [(usize, usize); 5] = [(0, 0), (0, 1), (1, 1), (2, 1), (3, 0)];
 /// EA over EI: no axial strain that shows.
@@ -146,8 +221,16 @@ impl Frame {
     /// Stiffness of a member in the plane: (along, across, turn) at near and far end, released by condensation.
     fn member(&self, index: usize) -> DMatrix<f64> {
         let (_, _, level, length) = MEMBERS[index];
-        let bending = if level { self.bending.beam } else { self.bending.column };
-        let (shear, couple, turn) = (12.0 * bending / length.powi(3), 6.0 * bending / length.powi(2), bending / length);
+        let bending = if level {
+            self.bending.beam
+        } else {
+            self.bending.column
+        };
+        let (shear, couple, turn) = (
+            12.0 * bending / length.powi(3),
+            6.0 * bending / length.powi(2),
+            bending / length,
+        );
         let axial = STRETCH * BENDING / length;
         #[rustfmt::skip]
         let mut local = DMatrix::from_row_slice(6, 6, &[
@@ -177,7 +260,11 @@ impl Frame {
             let (near, far, level, _) = MEMBERS[index];
             // Local (along, across) in global (x, y): a beam (x, y), a column (y, −x).
             let of = |node: usize| {
-                if level { [(3 * node, 1.0), (3 * node + 1, 1.0)] } else { [(3 * node + 1, 1.0), (3 * node, -1.0)] }
+                if level {
+                    [(3 * node, 1.0), (3 * node + 1, 1.0)]
+                } else {
+                    [(3 * node + 1, 1.0), (3 * node, -1.0)]
+                }
             };
             let [a, b] = of(near);
             let [c, d] = of(far);
@@ -187,7 +274,8 @@ impl Frame {
             let (local, places) = (self.member(index), places(index));
             for (row, (global_row, row_sign)) in places.iter().enumerate() {
                 for (column, (global_column, column_sign)) in places.iter().enumerate() {
-                    whole[(*global_row, *global_column)] += row_sign * column_sign * local[(row, column)];
+                    whole[(*global_row, *global_column)] +=
+                        row_sign * column_sign * local[(row, column)];
                 }
             }
         }
@@ -198,13 +286,25 @@ impl Frame {
         let reduced = DMatrix::from_fn(9, 9, |row, column| whole[(free[row], free[column])]);
         // A node whose every member is hinged turns freely: hold it, it carries nothing.
         let reduced = DMatrix::from_fn(9, 9, |row, column| {
-            reduced[(row, column)] + if row == column && reduced[(row, row)].abs() < 1e-3 { 1.0 } else { 0.0 }
+            reduced[(row, column)]
+                + if row == column && reduced[(row, row)].abs() < 1e-3 {
+                    1.0
+                } else {
+                    0.0
+                }
         });
         let found = reduced.lu().solve(&loads)?;
         let mut all = DVector::<f64>::zeros(15);
-        free.iter().enumerate().for_each(|(place, global)| all[*global] = found[place]);
+        free.iter()
+            .enumerate()
+            .for_each(|(place, global)| all[*global] = found[place]);
         let moments = SECTIONS.map(|(member, end)| {
-            let moved = DVector::from_iterator(6, places(member).iter().map(|(global, sign)| sign * all[*global]));
+            let moved = DVector::from_iterator(
+                6,
+                places(member)
+                    .iter()
+                    .map(|(global, sign)| sign * all[*global]),
+            );
             (self.member(member) * moved)[if end == 0 { 2 } else { 5 }]
         });
         Some((all, moments))
@@ -212,13 +312,23 @@ impl Frame {
 }
 
 /// Load factor at which the frame becomes a mechanism, one hinge after the other; and W·δ + H·Δ of the elastic frame.
-fn hinge_by_hinge(moment: Sections, bending: Sections, beam_load: f64, sway_load: f64) -> (f64, f64) {
+fn hinge_by_hinge(
+    moment: Sections,
+    bending: Sections,
+    beam_load: f64,
+    sway_load: f64,
+) -> (f64, f64) {
     let strong = strengths(moment);
-    let mut frame = Frame { hinged: [[false; 2]; 4], bending };
+    let mut frame = Frame {
+        hinged: [[false; 2]; 4],
+        bending,
+    };
     let (mut factor, mut moments) = (0.0, [0.0; 5]);
     let mut elastic: Option<f64> = None;
     loop {
-        let Some((moved, gained)) = frame.solve(beam_load, sway_load) else { return (factor, elastic.unwrap_or(0.0)) };
+        let Some((moved, gained)) = frame.solve(beam_load, sway_load) else {
+            return (factor, elastic.unwrap_or(0.0));
+        };
         let work = sway_load * moved[3] - beam_load * moved[7];
         let first = *elastic.get_or_insert(work);
         if work.abs() > 1e4 * first {
@@ -232,7 +342,9 @@ fn hinge_by_hinge(moment: Sections, bending: Sections, beam_load: f64, sway_load
             }
             (strong[section] * rate.signum() - moments[section]) / rate
         };
-        let next = (0..5).min_by(|a, b| room(*a).total_cmp(&room(*b))).expect("five sections");
+        let next = (0..5)
+            .min_by(|a, b| room(*a).total_cmp(&room(*b)))
+            .expect("five sections");
         let step = room(next);
         factor += step;
         for (moment, rate) in moments.iter_mut().zip(gained) {
@@ -247,20 +359,57 @@ fn hinge_by_hinge(moment: Sections, bending: Sections, beam_load: f64, sway_load
 #[test]
 fn two_other_methods_find_the_same_collapse_and_the_same_stiffness() {
     let (one, other) = (Sections::same(MOMENT), Sections::same(BENDING));
-    let stout_columns = Sections { beam: MOMENT, column: 1.7 * MOMENT };
-    let weak_columns = Sections { beam: MOMENT, column: 0.6 * MOMENT };
-    let stiff_beam = Sections { beam: 2.5 * BENDING, column: BENDING };
-    let soft_beam = Sections { beam: 0.4 * BENDING, column: BENDING };
-    let frames = [(one, other), (stout_columns, soft_beam), (weak_columns, stiff_beam), (weak_columns, other)];
-    let shares = [0.02, 0.1, 0.2, 0.24, 0.26, 0.3, 0.4, 0.5, 0.55, 0.57, 0.6, 0.75, 0.9, 0.99];
-    for ((moment, bending), share) in frames.into_iter().flat_map(|frame| shares.map(|share| (frame, share))) {
+    let stout_columns = Sections {
+        beam: MOMENT,
+        column: 1.7 * MOMENT,
+    };
+    let weak_columns = Sections {
+        beam: MOMENT,
+        column: 0.6 * MOMENT,
+    };
+    let stiff_beam = Sections {
+        beam: 2.5 * BENDING,
+        column: BENDING,
+    };
+    let soft_beam = Sections {
+        beam: 0.4 * BENDING,
+        column: BENDING,
+    };
+    let frames = [
+        (one, other),
+        (stout_columns, soft_beam),
+        (weak_columns, stiff_beam),
+        (weak_columns, other),
+    ];
+    let shares = [
+        0.02, 0.1, 0.2, 0.24, 0.26, 0.3, 0.4, 0.5, 0.55, 0.57, 0.6, 0.75, 0.9, 0.99,
+    ];
+    for ((moment, bending), share) in frames
+        .into_iter()
+        .flat_map(|frame| shares.map(|share| (frame, share)))
+    {
         let (beam_load, sway_load) = (10e3 * (1.0 - share), 10e3 * share);
-        let frame = Portal::of_sections(SPAN, HEIGHT, moment, bending, Loads::Combined { beam_load, sway_load });
+        let frame = Portal::of_sections(
+            SPAN,
+            HEIGHT,
+            moment,
+            bending,
+            Loads::Combined {
+                beam_load,
+                sway_load,
+            },
+        );
         let lower = by_lower_bound(moment, beam_load, sway_load);
         let (hinges, work) = hinge_by_hinge(moment, bending, beam_load, sway_load);
         let factor = frame.capacity() / 10e3;
-        assert!((lower / factor - 1.0).abs() < 1e-9, "share {share}: {lower} by the lower bound, {factor}");
-        assert!((hinges / factor - 1.0).abs() < 1e-6, "share {share}: {hinges} hinge by hinge, {factor}");
+        assert!(
+            (lower / factor - 1.0).abs() < 1e-9,
+            "share {share}: {lower} by the lower bound, {factor}"
+        );
+        assert!(
+            (hinges / factor - 1.0).abs() < 1e-6,
+            "share {share}: {hinges} hinge by hinge, {factor}"
+        );
         // P = W + H, X = (W δ + H Δ)/P, so that K = P²/(W δ + H Δ).
         let stiffness = 1e8 / work;
         assert!(
@@ -276,8 +425,12 @@ fn two_other_methods_find_the_same_collapse_and_the_same_stiffness() {
 #[test]
 fn slope_deflection_has_its_limits() {
     let (moment, bending) = (Sections::same(MOMENT), Sections::same(BENDING));
-    let sway = |span| Portal::of_sections(span, 3.0, moment, bending, Loads::Sway).stiffness * 27.0 / BENDING;
+    let sway = |span| {
+        Portal::of_sections(span, 3.0, moment, bending, Loads::Sway).stiffness * 27.0 / BENDING
+    };
     assert!((sway(1e-6) - 24.0).abs() < 1e-4 && (sway(1e7) - 6.0).abs() < 1e-4);
-    let beam = |height| Portal::of_sections(4.0, height, moment, bending, Loads::Beam).stiffness * 64.0 / BENDING;
+    let beam = |height| {
+        Portal::of_sections(4.0, height, moment, bending, Loads::Beam).stiffness * 64.0 / BENDING
+    };
     assert!((beam(1e-6) - 192.0).abs() < 1e-3 && (beam(1e8) - 48.0).abs() < 1e-4);
 }

@@ -1,7 +1,7 @@
 //! How high a load a portal's mechanism follows: in closed form where it is one, and by the moments along its members, which are summed
 //! here from the inertia point by point. The sums share nothing with the product.
 
-use psd::mechanics::portal_limit::mechanism_limit;
+use psd::physics::structure::portal_limit::mechanism_limit;
 use psd::plan::{FrameMasses, Loads, Portal, Sections};
 
 const SPAN: f64 = 4.0;
@@ -15,7 +15,11 @@ fn limit(portal: &Portal) -> f64 {
     mechanism_limit(portal).expect("it is under one load and says what it weighs")
 }
 
-const BARE: FrameMasses = FrameMasses { per_length: Sections::same(12.0), midspan: 0.0, corner: 0.0 };
+const BARE: FrameMasses = FrameMasses {
+    per_length: Sections::same(12.0),
+    midspan: 0.0,
+    corner: 0.0,
+};
 
 /// One section and nothing carried: three times the collapse load at midspan; sideways three times and 12 Mp L/h² of the beam's inertia.
 #[test]
@@ -32,13 +36,23 @@ fn a_bare_frame_follows_three_times_its_collapse_load() {
 #[test]
 fn lumped_frames_follow_any_load() {
     let strong = Sections::same(20e3);
-    let lumped = FrameMasses { per_length: Sections::same(0.0), midspan: 20.0, corner: 10.0 };
+    let lumped = FrameMasses {
+        per_length: Sections::same(0.0),
+        midspan: 20.0,
+        corner: 10.0,
+    };
     for loads in [Loads::Sway, Loads::Beam] {
         assert!(limit(&portal(strong, lumped, loads)).is_infinite());
     }
-    let both = Loads::Combined { beam_load: 1.0, sway_load: 1.0 };
+    let both = Loads::Combined {
+        beam_load: 1.0,
+        sway_load: 1.0,
+    };
     assert_eq!(mechanism_limit(&portal(strong, BARE, both)), None);
-    assert_eq!(mechanism_limit(&portal(strong, BARE, Loads::Beam).weighing(None)), None);
+    assert_eq!(
+        mechanism_limit(&portal(strong, BARE, Loads::Beam).weighing(None)),
+        None
+    );
 }
 
 /// Largest moment over what the section carries, between the hinges of the member that turns under `load` (N), by sums over points: the acceleration
@@ -51,16 +65,33 @@ fn worst(frame: &Portal, load: f64) -> f64 {
     // The member that turns: its length, mass a metre, moments at its pivot and at its end, and what else goes with that end.
     let (length, per_length, pivot, end, strong, carried) = if sways {
         let level = masses.per_length.beam * SPAN + masses.midspan + 2.0 * masses.corner;
-        (HEIGHT, masses.per_length.column, frame.plastic_moment.column, corner, frame.plastic_moment.column, level / 2.0)
+        (
+            HEIGHT,
+            masses.per_length.column,
+            frame.plastic_moment.column,
+            corner,
+            frame.plastic_moment.column,
+            level / 2.0,
+        )
     } else {
         let beam = frame.plastic_moment.beam;
-        (SPAN / 2.0, masses.per_length.beam, corner, beam, beam, masses.midspan / 2.0)
+        (
+            SPAN / 2.0,
+            masses.per_length.beam,
+            corner,
+            beam,
+            beam,
+            masses.midspan / 2.0,
+        )
     };
     #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
     let step = length / POINTS as f64;
     #[expect(clippy::cast_precision_loss, reason = "a few thousand")]
     let at = |point: usize| (point as f64 + 0.5) * step;
-    let inertia = (0..POINTS).map(|point| per_length * step * at(point) * at(point)).sum::<f64>() + carried * length * length;
+    let inertia = (0..POINTS)
+        .map(|point| per_length * step * at(point) * at(point))
+        .sum::<f64>()
+        + carried * length * length;
     // Two such members share the load and turn alike.
     let acceleration = (load / 2.0 * length - pivot - end) / inertia;
     // Force across the end of the member, what is carried there taken off.
@@ -68,8 +99,9 @@ fn worst(frame: &Portal, load: f64) -> f64 {
     let mut worst: f64 = 0.0;
     for place in 0..POINTS {
         let here = at(place);
-        let beyond =
-            (place + 1..POINTS).map(|point| per_length * step * at(point) * acceleration * (at(point) - here)).sum::<f64>();
+        let beyond = (place + 1..POINTS)
+            .map(|point| per_length * step * at(point) * acceleration * (at(point) - here))
+            .sum::<f64>();
         let moment = end - across * (length - here) + beyond;
         worst = worst.max(moment.abs() / strong);
     }
@@ -79,7 +111,14 @@ fn worst(frame: &Portal, load: f64) -> f64 {
 /// Just below the limit no section is overdone, just above it one is: of stout columns and of weak ones, with lumps and without.
 #[test]
 fn the_moments_along_the_members_say_the_same() {
-    let lumps = FrameMasses { per_length: Sections { beam: 9.0, column: 31.0 }, midspan: 7.0, corner: 4.0 };
+    let lumps = FrameMasses {
+        per_length: Sections {
+            beam: 9.0,
+            column: 31.0,
+        },
+        midspan: 7.0,
+        corner: 4.0,
+    };
     for (beam, column) in [(20e3, 20e3), (20e3, 34e3), (20e3, 12e3)] {
         for masses in [BARE, lumps] {
             for loads in [Loads::Sway, Loads::Beam] {
@@ -87,7 +126,10 @@ fn the_moments_along_the_members_say_the_same() {
                 let limit = limit(&frame);
                 assert!(limit > frame.capacity());
                 let (below, above) = (worst(&frame, 0.97 * limit), worst(&frame, 1.03 * limit));
-                assert!(below <= 1.0 + 1e-6 && above > 1.0 + 1e-6, "{loads:?}, {beam} and {column}: {below}, {above}");
+                assert!(
+                    below <= 1.0 + 1e-6 && above > 1.0 + 1e-6,
+                    "{loads:?}, {beam} and {column}: {below}, {above}"
+                );
             }
         }
     }

@@ -3,7 +3,7 @@
 //! factors are published. The finite elements and the rigid bodies share nothing with the product.
 
 use nalgebra::{DMatrix, DVector};
-use psd::mechanics::portal_mass::{EquivalentMasses, equivalent_masses};
+use psd::physics::structure::portal_mass::{EquivalentMasses, equivalent_masses};
 use psd::plan::{FrameMasses, Loads, Mechanism, Portal, Sections};
 
 const SPAN: f64 = 4.0;
@@ -20,7 +20,8 @@ struct Given {
 
 impl Given {
     fn portal(self) -> Portal {
-        Portal::of_sections(SPAN, HEIGHT, STRONG, self.bending, self.loads).weighing(Some(self.masses))
+        Portal::of_sections(SPAN, HEIGHT, STRONG, self.bending, self.loads)
+            .weighing(Some(self.masses))
     }
 
     fn reduced(self) -> EquivalentMasses {
@@ -32,23 +33,69 @@ impl Given {
         match self.loads {
             Loads::Beam => (1.0, 0.0),
             Loads::Sway => (0.0, 1.0),
-            Loads::Combined { beam_load, sway_load } => {
-                (beam_load / (beam_load + sway_load), sway_load / (beam_load + sway_load))
-            }
+            Loads::Combined {
+                beam_load,
+                sway_load,
+            } => (
+                beam_load / (beam_load + sway_load),
+                sway_load / (beam_load + sway_load),
+            ),
         }
     }
 }
 
 fn givens() -> Vec<Given> {
-    let one = FrameMasses { per_length: Sections::same(12.0), midspan: 0.0, corner: 0.0 };
-    let loaded = FrameMasses { per_length: Sections { beam: 9.0, column: 31.0 }, midspan: 7.0, corner: 4.0 };
+    let one = FrameMasses {
+        per_length: Sections::same(12.0),
+        midspan: 0.0,
+        corner: 0.0,
+    };
+    let loaded = FrameMasses {
+        per_length: Sections {
+            beam: 9.0,
+            column: 31.0,
+        },
+        midspan: 7.0,
+        corner: 4.0,
+    };
     let frames = [
         (Sections::same(1.6e6), one),
-        (Sections { beam: 4.0e6, column: 1.6e6 }, loaded),
-        (Sections { beam: 0.3e6, column: 1.6e6 }, FrameMasses { midspan: 0.0, ..loaded }),
+        (
+            Sections {
+                beam: 4.0e6,
+                column: 1.6e6,
+            },
+            loaded,
+        ),
+        (
+            Sections {
+                beam: 0.3e6,
+                column: 1.6e6,
+            },
+            FrameMasses {
+                midspan: 0.0,
+                ..loaded
+            },
+        ),
     ];
-    let loads = [Loads::Sway, Loads::Beam, Loads::Combined { beam_load: 10e3, sway_load: 2.5e3 }];
-    frames.into_iter().flat_map(|(bending, masses)| loads.map(|loads| Given { bending, masses, loads })).collect()
+    let loads = [
+        Loads::Sway,
+        Loads::Beam,
+        Loads::Combined {
+            beam_load: 10e3,
+            sway_load: 2.5e3,
+        },
+    ];
+    frames
+        .into_iter()
+        .flat_map(|(bending, masses)| {
+            loads.map(|loads| Given {
+                bending,
+                masses,
+                loads,
+            })
+        })
+        .collect()
 }
 
 /// A plane frame of Bernoulli beams that hardly stretch, `n` to each column and each half of the beam: foot, corner, midspan, corner,
@@ -70,9 +117,27 @@ impl Mesh {
         for element in 0..4 * n {
             // Up, along, along, down: (cosine, sine) of the way, and what it is made of.
             let (cosine, sine, length, bending, per_length) = match element / n {
-                0 => (0.0, 1.0, HEIGHT / parts, given.bending.column, given.masses.per_length.column),
-                3 => (0.0, -1.0, HEIGHT / parts, given.bending.column, given.masses.per_length.column),
-                _ => (1.0, 0.0, SPAN / 2.0 / parts, given.bending.beam, given.masses.per_length.beam),
+                0 => (
+                    0.0,
+                    1.0,
+                    HEIGHT / parts,
+                    given.bending.column,
+                    given.masses.per_length.column,
+                ),
+                3 => (
+                    0.0,
+                    -1.0,
+                    HEIGHT / parts,
+                    given.bending.column,
+                    given.masses.per_length.column,
+                ),
+                _ => (
+                    1.0,
+                    0.0,
+                    SPAN / 2.0 / parts,
+                    given.bending.beam,
+                    given.masses.per_length.beam,
+                ),
             };
             let (stretch, shear) = (1e7 * bending / length, 12.0 * bending / length.powi(3));
             let (couple, turn) = (6.0 * bending / length.powi(2), bending / length);
@@ -102,7 +167,11 @@ impl Mesh {
                 }
             }
         }
-        let mesh_masses = [(n, given.masses.corner), (2 * n, given.masses.midspan), (3 * n, given.masses.corner)];
+        let mesh_masses = [
+            (n, given.masses.corner),
+            (2 * n, given.masses.midspan),
+            (3 * n, given.masses.corner),
+        ];
         for (node, mass) in mesh_masses {
             masses[3 * node] += mass;
             masses[3 * node + 1] += mass;
@@ -117,7 +186,11 @@ impl Mesh {
                 masses[place] = 0.0;
             }
         }
-        Self { stiffness, masses, n }
+        Self {
+            stiffness,
+            masses,
+            n,
+        }
     }
 
     /// Where H, at the near corner, and W, at midspan, push.
@@ -138,14 +211,23 @@ impl Mesh {
     }
 
     fn energy(&self, shape: &DVector<f64>) -> f64 {
-        shape.iter().zip(self.masses.iter()).map(|(moved, mass)| mass * moved * moved).sum()
+        shape
+            .iter()
+            .zip(self.masses.iter())
+            .map(|(moved, mass)| mass * moved * moved)
+            .sum()
     }
 
     /// ω² of the first mode of the kind that the load pushes, by inverse iteration; rounding would let in those of the other kind.
     fn first_mode(&self, given: Given) -> f64 {
         let parts = self.stiffness.clone().lu();
-        let kind = if matches!(given.loads, Loads::Beam) { 1.0 } else { -1.0 };
-        let solved = |load: &DVector<f64>| self.of_kind(kind, &parts.solve(load).expect("it stands"));
+        let kind = if matches!(given.loads, Loads::Beam) {
+            1.0
+        } else {
+            -1.0
+        };
+        let solved =
+            |load: &DVector<f64>| self.of_kind(kind, &parts.solve(load).expect("it stands"));
         let mut shape = solved(&self.load(given));
         for _ in 0..20 {
             let next = solved(&shape.component_mul(&self.masses));
@@ -161,7 +243,9 @@ impl Mesh {
             let sign = if direction == 1 { kind } else { -kind };
             sign * shape[3 * node + direction]
         };
-        DVector::from_fn(shape.len(), |place, _| 0.5 * (shape[place] + mirrored(place)))
+        DVector::from_fn(shape.len(), |place, _| {
+            0.5 * (shape[place] + mirrored(place))
+        })
     }
 }
 
@@ -173,7 +257,12 @@ fn the_elastic_mass_is_that_of_finite_elements_as_they_grow_small() {
         let found = given.reduced().elastic;
         let errors = [4, 8, 16].map(|n| Mesh::of(given, n).equivalent_mass(given) / found - 1.0);
         let told = format!("{:?}, EI {:?}: {errors:?}", given.loads, given.bending);
-        assert!(errors.windows(2).all(|pair| pair[0] / pair[1] > 3.8 || pair[1].abs() < 2e-7), "{told}");
+        assert!(
+            errors
+                .windows(2)
+                .all(|pair| pair[0] / pair[1] > 3.8 || pair[1].abs() < 2e-7),
+            "{told}"
+        );
         // Without the errors of second and of fourth order (Romberg).
         let [coarse, fine] = [0, 1].map(|at| (4.0 * errors[at + 1] - errors[at]) / 3.0);
         assert!(((16.0 * fine - coarse) / 15.0).abs() < 2e-6, "{told}");
@@ -184,7 +273,10 @@ fn the_elastic_mass_is_that_of_finite_elements_as_they_grow_small() {
 /// where that mode is the frame's; slender columns that weigh three times as much a metre as the beam have one of their own below.
 #[test]
 fn stiffness_over_elastic_mass_is_just_above_the_first_frequency() {
-    for given in givens().into_iter().filter(|given| !matches!(given.loads, Loads::Combined { .. })) {
+    for given in givens()
+        .into_iter()
+        .filter(|given| !matches!(given.loads, Loads::Combined { .. }))
+    {
         let [coarse, fine] = [8, 16].map(|n| Mesh::of(given, n).first_mode(given));
         let exact = (4.0 * fine - coarse) / 3.0;
         let above = given.portal().stiffness / given.reduced().elastic / exact - 1.0;
@@ -207,10 +299,12 @@ fn of_turning_links(given: Given, mechanism: Mechanism) -> f64 {
         energy += 2.0 * masses.per_length.column * HEIGHT / f64::from(POINTS) * column * column;
         let from_corner = (along * SPAN).min(SPAN - along * SPAN);
         let down = if deflects { from_corner } else { 0.0 };
-        energy += masses.per_length.beam * SPAN / f64::from(POINTS) * (down * down + sideways * sideways);
+        energy +=
+            masses.per_length.beam * SPAN / f64::from(POINTS) * (down * down + sideways * sideways);
     }
     let down = if deflects { SPAN / 2.0 } else { 0.0 };
-    energy += masses.midspan * (down * down + sideways * sideways) + 2.0 * masses.corner * sideways * sideways;
+    energy += masses.midspan * (down * down + sideways * sideways)
+        + 2.0 * masses.corner * sideways * sideways;
     let (on_beam, on_sway) = given.shares();
     let velocity = on_beam * down + on_sway * sideways;
     energy / (velocity * velocity)
@@ -224,20 +318,40 @@ fn the_plastic_mass_is_that_of_links_that_turn() {
         let governs = given.portal().mechanism();
         let found = given.reduced().plastic.expect("a portal has a mechanism");
         let by_points = of_turning_links(given, governs);
-        assert!((found / by_points - 1.0).abs() < 1e-7, "{governs:?}: {found} kg is not {by_points} kg");
-        let FrameMasses { midspan, corner, .. } = given.masses;
+        assert!(
+            (found / by_points - 1.0).abs() < 1e-7,
+            "{governs:?}: {found} kg is not {by_points} kg"
+        );
+        let FrameMasses {
+            midspan, corner, ..
+        } = given.masses;
         let by_hand = match governs {
             Mechanism::Beam if given.shares().1 == 0.0 => beam * SPAN / 3.0 + midspan,
             Mechanism::Sway => beam * SPAN + 2.0 * column * HEIGHT / 3.0 + midspan + 2.0 * corner,
             _ => continue,
         };
-        assert!((found / by_hand - 1.0).abs() < 1e-12, "{governs:?}: {found} kg is not {by_hand} kg");
+        assert!(
+            (found / by_hand - 1.0).abs() < 1e-12,
+            "{governs:?}: {found} kg is not {by_hand} kg"
+        );
     }
     // H·h between half and twice W·L/2: both give way.
-    let both = Given { loads: Loads::Combined { beam_load: 10e3, sway_load: 10e3 }, ..givens()[4] };
+    let both = Given {
+        loads: Loads::Combined {
+            beam_load: 10e3,
+            sway_load: 10e3,
+        },
+        ..givens()[4]
+    };
     assert_eq!(both.portal().mechanism(), Mechanism::Combined);
-    let (found, by_points) = (both.reduced().plastic.unwrap_or_default(), of_turning_links(both, Mechanism::Combined));
-    assert!((found / by_points - 1.0).abs() < 1e-7, "{found} kg is not {by_points} kg");
+    let (found, by_points) = (
+        both.reduced().plastic.unwrap_or_default(),
+        of_turning_links(both, Mechanism::Combined),
+    );
+    assert!(
+        (found / by_points - 1.0).abs() < 1e-7,
+        "{found} kg is not {by_points} kg"
+    );
 }
 
 /// A beam between columns that cannot turn its ends is simply supported: a point force on a distributed mass has `K_M` = 0.49 while elastic
@@ -245,22 +359,57 @@ fn the_plastic_mass_is_that_of_links_that_turn() {
 /// Between stout columns it is built in: 13/35. A swaying column without a beam that holds its head is a cantilever: 33/140.
 #[test]
 fn frames_that_are_beams_have_the_factors_of_beams() {
-    let light = FrameMasses { per_length: Sections { beam: 10.0, column: 1e-9 }, midspan: 0.0, corner: 0.0 };
-    let beam = |column: f64| {
-        let given = Given { bending: Sections { beam: 1e6, column }, masses: light, loads: Loads::Beam };
-        let masses = given.reduced();
-        [masses.elastic, masses.plastic.unwrap_or_default(), masses.lumped].map(|mass| mass / (10.0 * SPAN))
+    let light = FrameMasses {
+        per_length: Sections {
+            beam: 10.0,
+            column: 1e-9,
+        },
+        midspan: 0.0,
+        corner: 0.0,
     };
-    let near = |found: f64, factor: f64| assert!((found / factor - 1.0).abs() < 1e-5, "{found} is not {factor}");
+    let beam = |column: f64| {
+        let given = Given {
+            bending: Sections { beam: 1e6, column },
+            masses: light,
+            loads: Loads::Beam,
+        };
+        let masses = given.reduced();
+        [
+            masses.elastic,
+            masses.plastic.unwrap_or_default(),
+            masses.lumped,
+        ]
+        .map(|mass| mass / (10.0 * SPAN))
+    };
+    let near = |found: f64, factor: f64| {
+        assert!(
+            (found / factor - 1.0).abs() < 1e-5,
+            "{found} is not {factor}"
+        );
+    };
     let [elastic, plastic, lumped] = beam(1.0);
-    assert_eq!((format!("{elastic:.2}"), format!("{plastic:.2}")), ("0.49".to_owned(), "0.33".to_owned()));
+    assert_eq!(
+        (format!("{elastic:.2}"), format!("{plastic:.2}")),
+        ("0.49".to_owned(), "0.33".to_owned())
+    );
     near(elastic, 17.0 / 35.0);
     near(plastic, 1.0 / 3.0);
     near(lumped, 0.5);
     near(beam(1e12)[0], 13.0 / 35.0);
-    let heavy = FrameMasses { per_length: Sections { beam: 1e-9, column: 10.0 }, midspan: 0.0, corner: 0.0 };
+    let heavy = FrameMasses {
+        per_length: Sections {
+            beam: 1e-9,
+            column: 10.0,
+        },
+        midspan: 0.0,
+        corner: 0.0,
+    };
     let sway = |beam: f64| {
-        let given = Given { bending: Sections { beam, column: 1e6 }, masses: heavy, loads: Loads::Sway };
+        let given = Given {
+            bending: Sections { beam, column: 1e6 },
+            masses: heavy,
+            loads: Loads::Sway,
+        };
         given.reduced().elastic / (2.0 * 10.0 * HEIGHT)
     };
     near(sway(1.0), 33.0 / 140.0);
@@ -270,8 +419,22 @@ fn frames_that_are_beams_have_the_factors_of_beams() {
 /// Fig. 5 of the paper: a frame pushed sideways has the mass of its beam and of one column, a frame struck at midspan half that of its beam.
 #[test]
 fn lumped_masses_are_those_of_fig_5() {
-    let masses = FrameMasses { per_length: Sections { beam: 9.0, column: 31.0 }, midspan: 0.0, corner: 0.0 };
-    let of = |loads| Given { bending: Sections::same(1e6), masses, loads }.reduced();
+    let masses = FrameMasses {
+        per_length: Sections {
+            beam: 9.0,
+            column: 31.0,
+        },
+        midspan: 0.0,
+        corner: 0.0,
+    };
+    let of = |loads| {
+        Given {
+            bending: Sections::same(1e6),
+            masses,
+            loads,
+        }
+        .reduced()
+    };
     assert!((of(Loads::Sway).lumped - (9.0 * SPAN + 31.0 * HEIGHT)).abs() < 1e-10);
     assert!((of(Loads::Beam).lumped - 9.0 * SPAN / 2.0).abs() < 1e-10);
     assert!((of(Loads::Beam).whole - (9.0 * SPAN + 2.0 * 31.0 * HEIGHT)).abs() < 1e-10);
@@ -280,11 +443,35 @@ fn lumped_masses_are_those_of_fig_5() {
 /// A frame whose stiffness was measured has one section throughout, and the shape of it.
 #[test]
 fn a_stated_stiffness_has_the_shape_of_one_section() {
-    for loads in [Loads::Sway, Loads::Beam, Loads::Combined { beam_load: 1.0, sway_load: 2.0 }] {
-        let masses = FrameMasses { per_length: Sections::same(12.0), midspan: 3.0, corner: 1.0 };
-        let known = Given { bending: Sections::same(7e6), masses, loads }.portal();
-        let measured = Portal { bending_stiffness: None, stiffness: 1.0, ..known };
-        let [known, measured] = [known, measured].map(|portal| equivalent_masses(&portal).map_or(0.0, |masses| masses.elastic));
-        assert!((measured / known - 1.0).abs() < 1e-12, "{measured} kg is not {known} kg");
+    for loads in [
+        Loads::Sway,
+        Loads::Beam,
+        Loads::Combined {
+            beam_load: 1.0,
+            sway_load: 2.0,
+        },
+    ] {
+        let masses = FrameMasses {
+            per_length: Sections::same(12.0),
+            midspan: 3.0,
+            corner: 1.0,
+        };
+        let known = Given {
+            bending: Sections::same(7e6),
+            masses,
+            loads,
+        }
+        .portal();
+        let measured = Portal {
+            bending_stiffness: None,
+            stiffness: 1.0,
+            ..known
+        };
+        let [known, measured] = [known, measured]
+            .map(|portal| equivalent_masses(&portal).map_or(0.0, |masses| masses.elastic));
+        assert!(
+            (measured / known - 1.0).abs() < 1e-12,
+            "{measured} kg is not {known} kg"
+        );
     }
 }

@@ -1,11 +1,11 @@
 //! Force that relaxes, on the virtual rig: the standard linear solid in closed form, whatever the rig does, and the energy of its
 //! cycles.
 
-use psd::mechanics::maxwell::{MaxwellBranch, Travel};
-use psd::mechanics::path::Path;
-use psd::mechanics::relaxation_law::RelaxationLaw;
-use psd::mechanics::relaxing::Relaxing;
-use psd::mechanics::specimen::SpecimenModel;
+use psd::physics::relaxation::law::RelaxationLaw;
+use psd::physics::relaxation::maxwell::{MaxwellBranch, Travel};
+use psd::physics::relaxation::state::Relaxing;
+use psd::physics::specimen::SpecimenModel;
+use psd::physics::tracking::trajectory::Path;
 use psd::plan::{Behaviour, Settle, Specimen, VirtualLink};
 use psd::rig::{Rig, VirtualRig};
 
@@ -16,12 +16,21 @@ const TAU: f64 = 1.5;
 
 fn rig(link: VirtualLink, settle: Settle) -> VirtualRig {
     let of = Box::new(Behaviour::Elastic { stiffness: K });
-    let behaviour = Some(Behaviour::Maxwell { of, stiffness: K1, time_constant: TAU });
+    let behaviour = Some(Behaviour::Maxwell {
+        of,
+        stiffness: K1,
+        time_constant: TAU,
+    });
     let specimen = Specimen::new("pad", 1.0, behaviour);
     VirtualRig::new(link, settle, Some(&specimen), -1.0)
 }
 
-const AT_ONCE: Settle = Settle { band: 0.0, force_rate: 0.0, dwell: 0.0, timeout: 60.0 };
+const AT_ONCE: Settle = Settle {
+    band: 0.0,
+    force_rate: 0.0,
+    dwell: 0.0,
+    timeout: 60.0,
+};
 
 fn go(rig: &mut VirtualRig, target: f64, speed: f64) -> (f64, f64) {
     rig.propose(&[target], Some(speed)).expect("a target");
@@ -42,20 +51,29 @@ fn ramps_and_holds_are_those_of_the_standard_linear_solid() {
     let (v, seconds, pause) = (2e-3, 0.5, 0.8);
     let gained = K1 * v * TAU * (1.0 - f64::exp(-seconds / TAU));
     let (time, force) = go(&mut rig, v * seconds, v);
-    assert!((time - seconds).abs() < 1e-15 && (force - (K * 1e-3 + gained)).abs() < 1e-9, "{force} N");
+    assert!(
+        (time - seconds).abs() < 1e-15 && (force - (K * 1e-3 + gained)).abs() < 1e-9,
+        "{force} N"
+    );
     rig.pause(pause).expect("a pause");
     assert!((read(&mut rig).1 - (K * 1e-3 + gained * f64::exp(-pause / TAU))).abs() < 1e-9);
     let (_, force) = go(&mut rig, 2.0 * v * seconds, v);
     let twice = gained * f64::exp(-(pause + seconds) / TAU) + gained;
     assert!((force - (K * 2e-3 + twice)).abs() < 1e-9, "{force} N");
     rig.pause(1e5).expect("a long pause");
-    assert!((read(&mut rig).1 - K * 2e-3).abs() < 1e-9, "the slow spring is left");
+    assert!(
+        (read(&mut rig).1 - K * 2e-3).abs() < 1e-9,
+        "the slow spring is left"
+    );
 }
 
 /// ẋ = (reference − x)/lag and q̇ = K₁ẋ − q/τ by the trapezoid, through a ramp and a hold; and along a smooth path.
 #[test]
 fn a_lagging_piston_is_followed_in_closed_form() {
-    let link = VirtualLink { lag: 0.2, ..VirtualLink::default() };
+    let link = VirtualLink {
+        lag: 0.2,
+        ..VirtualLink::default()
+    };
     let (mut x, mut q, parts) = (0.0, 0.0, 200_000);
     let mut stepped = |reference: &dyn Fn(f64) -> f64, seconds: f64| {
         let step = seconds / f64::from(parts);
@@ -70,10 +88,19 @@ fn a_lagging_piston_is_followed_in_closed_form() {
     };
     let mut stopping = rig(link, AT_ONCE);
     let (_, force) = go(&mut stopping, 1e-3, 2e-3);
-    assert!((force - stepped(&|time| 2e-3 * time, 0.5)).abs() < 1e-4, "{force} N");
+    assert!(
+        (force - stepped(&|time| 2e-3 * time, 0.5)).abs() < 1e-4,
+        "{force} N"
+    );
     stopping.pause(0.3).expect("a pause");
     assert!((read(&mut stopping).1 - stepped(&|_| 1e-3, 0.3)).abs() < 1e-4);
-    let path = Path { from: 1e-3, to: 4e-3, start_velocity: 0.0, end_velocity: 0.01, seconds: 0.6 };
+    let path = Path {
+        from: 1e-3,
+        to: 4e-3,
+        start_velocity: 0.0,
+        end_velocity: 0.01,
+        seconds: 0.6,
+    };
     let mut forces = Vec::new();
     let mut take = |reading: psd::rig::Reading| {
         forces.push(reading.force[0]);
@@ -81,20 +108,41 @@ fn a_lagging_piston_is_followed_in_closed_form() {
     };
     stopping.glide(&[path], 3, &mut take).expect("a path");
     let by_steps = stepped(&|time| path.place(time), 0.6);
-    assert!((forces[2] - by_steps).abs() < 1e-3, "{} N, by steps {by_steps} N", forces[2]);
+    assert!(
+        (forces[2] - by_steps).abs() < 1e-3,
+        "{} N, by steps {by_steps} N",
+        forces[2]
+    );
 }
 
 /// Settling by the force rate waits for the relaxation: after it the force falls no faster than asked.
 #[test]
 fn a_rig_settles_when_the_force_has_nearly_relaxed() {
-    let settle = Settle { band: 1e-5, force_rate: 4.0, dwell: 0.5, timeout: 60.0 };
-    let mut slow = rig(VirtualLink { lag: 0.05, ..VirtualLink::default() }, settle);
+    let settle = Settle {
+        band: 1e-5,
+        force_rate: 4.0,
+        dwell: 0.5,
+        timeout: 60.0,
+    };
+    let mut slow = rig(
+        VirtualLink {
+            lag: 0.05,
+            ..VirtualLink::default()
+        },
+        settle,
+    );
     let (time, force) = go(&mut slow, 1e-3, 2e-3);
     slow.pause(0.01).expect("a pause");
     let rate = (force - read(&mut slow).1) / 0.01;
     // Half of it is the lag's; the dwell has made less of the other half.
     assert!(rate > 0.8 && rate < 2.0, "{rate} N/s after {time} s");
-    let mut never = rig(VirtualLink::default(), Settle { timeout: 3.0, ..settle });
+    let mut never = rig(
+        VirtualLink::default(),
+        Settle {
+            timeout: 3.0,
+            ..settle
+        },
+    );
     never.propose(&[1e-3], Some(2e-3)).expect("a target");
     assert!(never.execute().is_err(), "1.5 s · ln(…) is longer than 3 s");
     assert!((never.time() - 3.5).abs() < 1e-12);
@@ -124,7 +172,10 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
         }
         let at_the_ends = K1 * velocity * TAU * (0.5 * seconds / TAU).tanh();
         let by_hand = 4.0 * velocity * TAU * (K1 * amplitude - at_the_ends);
-        assert!((energy / by_hand - 1.0).abs() < 1e-5, "{energy} J at {velocity} m/s, by hand {by_hand} J");
+        assert!(
+            (energy / by_hand - 1.0).abs() < 1e-5,
+            "{energy} J at {velocity} m/s, by hand {by_hand} J"
+        );
         energy
     };
     let [slow, middle, fast] = [1e-4, 1e-3, 1e-2].map(energy);
@@ -132,21 +183,41 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
 }
 
 fn logarithmic(of: Behaviour, share: f64) -> Behaviour {
-    Behaviour::Logarithmic { of: Box::new(of), share, reference_time: 0.4, longest: 1e12 }
+    Behaviour::Logarithmic {
+        of: Box::new(of),
+        share,
+        reference_time: 0.4,
+        longest: 1e12,
+    }
 }
 
 fn rig_of(behaviour: Behaviour, link: VirtualLink, settle: Settle) -> VirtualRig {
-    VirtualRig::new(link, settle, Some(&Specimen::new("plate", 1.0, Some(behaviour))), -1.0)
+    VirtualRig::new(
+        link,
+        settle,
+        Some(&Specimen::new("plate", 1.0, Some(behaviour))),
+        -1.0,
+    )
 }
 
 /// 1 kN/mm to 3 kN: out elastically in three steps, flowing in the fourth and back in the fifth, a pause after each. What is felt is the
 /// reached force less `a` times the sum of every increment's own logarithm, whatever came after it.
 #[test]
 fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
-    let of = Behaviour::Bilinear { stiffness: 1e6, yield_force: 3000.0, hardening: 0.0 };
+    let of = Behaviour::Bilinear {
+        stiffness: 1e6,
+        yield_force: 3000.0,
+        hardening: 0.0,
+    };
     let (share, pause, v) = (0.01, 7.0, 2e-3);
     let mut rig = rig_of(logarithmic(of, share), VirtualLink::default(), AT_ONCE);
-    let steps = [(1e-3, 1000.0), (2e-3, 2000.0), (3e-3, 3000.0), (5e-3, 3000.0), (4e-3, 2000.0)];
+    let steps = [
+        (1e-3, 1000.0),
+        (2e-3, 2000.0),
+        (3e-3, 3000.0),
+        (5e-3, 3000.0),
+        (4e-3, 2000.0),
+    ];
     let (mut time, mut from, mut before) = (0.0, 0.0, 0.0);
     let mut increments: Vec<(f64, f64, f64)> = Vec::new();
     for (place, reached) in steps {
@@ -154,16 +225,26 @@ fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
         time += took;
         increments.push((reached - before, time, took));
         let felt = |now: f64| {
-            let lost = |(force, ended, took): &(f64, f64, f64)| force * RelaxationLaw::Logarithmic.lost(now - ended, *took, 0.4);
+            let lost = |(force, ended, took): &(f64, f64, f64)| {
+                force * RelaxationLaw::Logarithmic.lost(now - ended, *took, 0.4)
+            };
             reached - share * increments.iter().map(lost).sum::<f64>()
         };
         let (_, force) = go(&mut rig, place, v);
-        assert!((force - felt(time)).abs() < 1e-6, "{force} N is not {} N", felt(time));
+        assert!(
+            (force - felt(time)).abs() < 1e-6,
+            "{force} N is not {} N",
+            felt(time)
+        );
         rig.pause(0.3 * pause).expect("a pause");
         rig.pause(0.7 * pause).expect("its rest");
         time += pause;
         let (_, force) = read(&mut rig);
-        assert!((force - felt(time)).abs() < 1e-6, "after a pause {force} N is not {} N", felt(time));
+        assert!(
+            (force - felt(time)).abs() < 1e-6,
+            "after a pause {force} N is not {} N",
+            felt(time)
+        );
         (from, before) = (place, reached);
     }
 }
@@ -171,14 +252,26 @@ fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
 /// 300 N at 2 % lose 6 N/(0.4 s + t) a second: 0.5 N/s come after 11.6 s, and the dwell makes less of it.
 #[test]
 fn a_rig_settles_when_the_logarithm_is_slow() {
-    let settle = Settle { band: 1e-5, force_rate: 0.5, dwell: 0.0, timeout: 60.0 };
-    let mut rig = rig_of(logarithmic(Behaviour::Elastic { stiffness: 3e5 }, 0.02), VirtualLink::default(), settle);
+    let settle = Settle {
+        band: 1e-5,
+        force_rate: 0.5,
+        dwell: 0.0,
+        timeout: 60.0,
+    };
+    let mut rig = rig_of(
+        logarithmic(Behaviour::Elastic { stiffness: 3e5 }, 0.02),
+        VirtualLink::default(),
+        settle,
+    );
     let (time, _) = go(&mut rig, 1e-3, 1.0);
     assert!((time - 11.6).abs() < 2e-3, "{time} s");
     let mut never = rig_of(
         logarithmic(Behaviour::Elastic { stiffness: 3e5 }, 0.02),
         VirtualLink::default(),
-        Settle { timeout: 10.0, ..settle },
+        Settle {
+            timeout: 10.0,
+            ..settle
+        },
     );
     never.propose(&[1e-3], Some(1.0)).expect("a target");
     assert!(never.execute().is_err(), "0.5 N/s do not come within 10 s");
@@ -189,13 +282,30 @@ fn a_rig_settles_when_the_logarithm_is_slow() {
 fn what_relaxes_gives_back_no_more_than_it_took() {
     let bases = [
         Behaviour::Elastic { stiffness: 1e6 },
-        Behaviour::Bilinear { stiffness: 1e6, yield_force: 1500.0, hardening: 0.05 },
-        Behaviour::BoucWen { stiffness: 1e6, yield_force: 1500.0, hardening: 0.0, sharpness: 2.0, beta: 0.5 },
+        Behaviour::Bilinear {
+            stiffness: 1e6,
+            yield_force: 1500.0,
+            hardening: 0.05,
+        },
+        Behaviour::BoucWen {
+            stiffness: 1e6,
+            yield_force: 1500.0,
+            hardening: 0.0,
+            sharpness: 2.0,
+            beta: 0.5,
+        },
     ];
-    let turns = [3e-3, -2e-3, 4e-3, 1e-3, 3.5e-3, -4e-3, 0.5e-3, -3e-3, 2e-3, 0.0];
+    let turns = [
+        3e-3, -2e-3, 4e-3, 1e-3, 3.5e-3, -4e-3, 0.5e-3, -3e-3, 2e-3, 0.0,
+    ];
     for base in bases {
         for rest in [0.0, 0.3, 50.0, 1e5] {
-            let behaviour = Behaviour::Logarithmic { of: Box::new(base.clone()), share: 0.03, reference_time: 0.4, longest: 4e6 };
+            let behaviour = Behaviour::Logarithmic {
+                of: Box::new(base.clone()),
+                share: 0.03,
+                reference_time: 0.4,
+                longest: 4e6,
+            };
             let (mut model, mut relaxing) = (SpecimenModel::new(&base), Relaxing::of(&behaviour));
             let (mut at, mut own, mut force, mut work) = (0.0, 0.0, 0.0, 0.0);
             for turn in turns {
@@ -203,11 +313,19 @@ fn what_relaxes_gives_back_no_more_than_it_took() {
                 let part = (turn - at) / f64::from(parts);
                 for _ in 0..parts {
                     at += part;
-                    own = relaxing.bend(&mut model, &Travel::even(part / 1e-3, 1e-3), (at - part, at), own);
+                    own = relaxing.bend(
+                        &mut model,
+                        &Travel::even(part / 1e-3, 1e-3),
+                        (at - part, at),
+                        own,
+                    );
                     let felt = own + relaxing.force();
                     work += 0.5 * (force + felt) * part;
                     force = felt;
-                    assert!(work >= -1e-9, "{base:?} gave back {work} J after rests of {rest} s");
+                    assert!(
+                        work >= -1e-9,
+                        "{base:?} gave back {work} J after rests of {rest} s"
+                    );
                 }
                 own = relaxing.bend(&mut model, &Travel::rest(rest), (at, at), own);
                 force = own + relaxing.force();
@@ -219,9 +337,17 @@ fn what_relaxes_gives_back_no_more_than_it_took() {
 /// A move in which it begins to yield loses the same in one look and in many.
 #[test]
 fn a_kink_within_a_move_is_followed_however_many_looks_there_are() {
-    let of = Behaviour::Bilinear { stiffness: 1e6, yield_force: 1000.0, hardening: 0.0 };
+    let of = Behaviour::Bilinear {
+        stiffness: 1e6,
+        yield_force: 1000.0,
+        hardening: 0.0,
+    };
     let lost = |looks: u32| {
-        let mut rig = rig_of(logarithmic(of.clone(), 0.01), VirtualLink::default(), AT_ONCE);
+        let mut rig = rig_of(
+            logarithmic(of.clone(), 0.01),
+            VirtualLink::default(),
+            AT_ONCE,
+        );
         let mut last = 0.0;
         for look in 1..=looks {
             last = go(&mut rig, 3e-3 * f64::from(look) / f64::from(looks), 3e-3).1;
@@ -230,6 +356,10 @@ fn a_kink_within_a_move_is_followed_however_many_looks_there_are() {
     };
     let exact = 10.0 * RelaxationLaw::Logarithmic.lost(2.0 / 3.0, 1.0 / 3.0, 0.4);
     for looks in [1, 4, 10, 1000] {
-        assert!((lost(looks) - exact).abs() < 2e-5 * exact, "in {looks} looks {} N of {exact} N", lost(looks));
+        assert!(
+            (lost(looks) - exact).abs() < 2e-5 * exact,
+            "in {looks} looks {} N of {exact} N",
+            lost(looks)
+        );
     }
 }

@@ -2,7 +2,7 @@
 //! carries, nothing gives back more energy than it took, and large moves end where small ones do.
 
 use proptest::prelude::*;
-use psd::mechanics::specimen::{RestoringForce, SpecimenModel};
+use psd::physics::specimen::{RestoringForce, SpecimenModel};
 use psd::plan::{Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading};
 
 /// Stiffness 1 N/m to 3 N/m and yield near 1 m: the models know no scale but their own.
@@ -11,36 +11,56 @@ fn simple() -> impl Strategy<Value = Behaviour> {
     let force = || 0.5..2.0_f64;
     let hardening = || prop_oneof![Just(0.0), 0.0..0.5_f64];
     let capacity = || prop_oneof![Just(f64::INFINITY), 1.0..60.0_f64];
-    let tires = (prop::array::uniform4(capacity()), 0.5..2.0_f64, 0.01..0.5_f64).prop_map(
-        |([strength, capping, unloading, reloading], exponent, residual)| Deterioration {
-            strength,
-            capping,
-            unloading,
-            reloading,
-            exponent,
-            residual,
-        },
-    );
+    let tires = (
+        prop::array::uniform4(capacity()),
+        0.5..2.0_f64,
+        0.01..0.5_f64,
+    )
+        .prop_map(
+            |([strength, capping, unloading, reloading], exponent, residual)| Deterioration {
+                strength,
+                capping,
+                unloading,
+                reloading,
+                exponent,
+                residual,
+            },
+        );
     // Boxed, as all that is nested deep: its tree lies on the stack of a test else.
     let tires = tires.boxed();
     // Past any yield, which comes at 2 m at the latest.
-    let capped = (2.0..6.0_f64, 0.01..0.5_f64, 0.01..0.5_f64).prop_map(|(displacement, slope, residual)| Capping {
-        displacement,
-        slope,
-        residual,
-    });
+    let capped =
+        (2.0..6.0_f64, 0.01..0.5_f64, 0.01..0.5_f64).prop_map(|(displacement, slope, residual)| {
+            Capping {
+                displacement,
+                slope,
+                residual,
+            }
+        });
     let capped = capped.boxed();
     let falls = (prop::option::of(tires.clone()), prop::option::of(capped));
     let shape = (0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64);
-    let wearing =
-        (stiffness(), force(), hardening(), tires.clone()).prop_map(|(stiffness, yield_force, hardening, deterioration)| {
-            Behaviour::WearingBilinear { stiffness, yield_force, hardening, deterioration }
-        });
+    let wearing = (stiffness(), force(), hardening(), tires.clone()).prop_map(
+        |(stiffness, yield_force, hardening, deterioration)| Behaviour::WearingBilinear {
+            stiffness,
+            yield_force,
+            hardening,
+            deterioration,
+        },
+    );
     let pinching = (stiffness(), force(), hardening(), shape, falls).prop_map(
-        |(stiffness, yield_force, hardening, (force_factor, displacement_factor, unloading_exponent), (tires, capping))| {
+        |(
+            stiffness,
+            yield_force,
+            hardening,
+            (force_factor, displacement_factor, unloading_exponent),
+            (tires, capping),
+        )| {
             // One strength is never lost, whatever takes the rest.
-            let residual =
-                |capping: Capping| Capping { residual: tires.map_or(capping.residual, |rule| rule.residual), ..capping };
+            let residual = |capping: Capping| Capping {
+                residual: tires.map_or(capping.residual, |rule| rule.residual),
+                ..capping
+            };
             Behaviour::Pinching(Pinching {
                 stiffness,
                 yield_force,
@@ -56,37 +76,61 @@ fn simple() -> impl Strategy<Value = Behaviour> {
     let pinching = pinching.boxed();
     prop_oneof![
         stiffness().prop_map(|stiffness| Behaviour::Elastic { stiffness }),
-        (stiffness(), force(), hardening()).prop_map(|(stiffness, yield_force, hardening)| Behaviour::Bilinear {
-            stiffness,
-            yield_force,
-            hardening
-        }),
-        (0.2..1.0_f64, 0.1..2.0_f64, 0.0..0.9_f64, 0.0..0.9_f64).prop_map(|(x, more, soft, softer)| {
-            let corners = vec![[x, 2.0 * x], [x + more, 2.0 * x + 2.0 * soft * more]];
-            let last = [x + more + 1.0, corners[1][1] + 2.0 * soft * softer];
-            Behaviour::Multilinear { corners: [corners, vec![last]].concat() }
-        }),
-        (stiffness(), force(), hardening(), 1.0..12.0_f64, 0.5..=1.0_f64).prop_map(
-            |(stiffness, yield_force, hardening, sharpness, beta)| Behaviour::BoucWen {
+        (stiffness(), force(), hardening()).prop_map(|(stiffness, yield_force, hardening)| {
+            Behaviour::Bilinear {
                 stiffness,
                 yield_force,
                 hardening,
-                sharpness,
-                beta
+            }
+        }),
+        (0.2..1.0_f64, 0.1..2.0_f64, 0.0..0.9_f64, 0.0..0.9_f64).prop_map(
+            |(x, more, soft, softer)| {
+                let corners = vec![[x, 2.0 * x], [x + more, 2.0 * x + 2.0 * soft * more]];
+                let last = [x + more + 1.0, corners[1][1] + 2.0 * soft * softer];
+                Behaviour::Multilinear {
+                    corners: [corners, vec![last]].concat(),
+                }
             }
         ),
+        (
+            stiffness(),
+            force(),
+            hardening(),
+            1.0..12.0_f64,
+            0.5..=1.0_f64
+        )
+            .prop_map(|(stiffness, yield_force, hardening, sharpness, beta)| {
+                Behaviour::BoucWen {
+                    stiffness,
+                    yield_force,
+                    hardening,
+                    sharpness,
+                    beta,
+                }
+            }),
         pinching,
         wearing,
-        (stiffness(), force(), hardening()).prop_map(|(stiffness, half_displacement, residual)| Behaviour::Degrading {
-            stiffness,
-            half_displacement,
-            residual
-        }),
-        (stiffness(), force(), 0.0..1.0_f64, prop_oneof![Just(0.0), 0.1..0.5_f64]).prop_map(
-            |(stiffness, bearing_force, clearance, slip_force)| {
-                Behaviour::Bolted(Bolted { stiffness, bearing_force, clearance, slip_force })
+        (stiffness(), force(), hardening()).prop_map(|(stiffness, half_displacement, residual)| {
+            Behaviour::Degrading {
+                stiffness,
+                half_displacement,
+                residual,
             }
-        ),
+        }),
+        (
+            stiffness(),
+            force(),
+            0.0..1.0_f64,
+            prop_oneof![Just(0.0), 0.1..0.5_f64]
+        )
+            .prop_map(|(stiffness, bearing_force, clearance, slip_force)| {
+                Behaviour::Bolted(Bolted {
+                    stiffness,
+                    bearing_force,
+                    clearance,
+                    slip_force,
+                })
+            }),
         table(),
     ]
 }
@@ -94,24 +138,35 @@ fn simple() -> impl Strategy<Value = Behaviour> {
 /// Measured points of any shape: toes, knees, falls.
 fn table() -> impl Strategy<Value = Behaviour> {
     let side = || prop::collection::vec((0.1..1.0_f64, 0.0..2.0_f64), 1..5);
-    let unloading = prop_oneof![Just(Unloading::InitialStiffness), Just(Unloading::AlongTheCurve)];
-    (side(), side(), unloading, 0.5..1.5_f64).prop_filter_map("a table has a force", |(ahead, behind, unloading, last)| {
-        let rising = |side: Vec<(f64, f64)>, way: f64| {
-            let mut at = 0.0;
-            let mut points: Vec<[f64; 2]> = Vec::new();
-            for (step, force) in side {
-                at += step;
-                points.push([way * at, way * force]);
-            }
-            points.push([way * (at + 1.0), way * last]);
-            points
-        };
-        let mut points = rising(behind, -1.0);
-        points.reverse();
-        points.push([0.0, 0.0]);
-        points.extend(rising(ahead, 1.0));
-        Some(Behaviour::Table(Table { file: "points.csv".to_owned(), points, unloading, scale: 1.0 }))
-    })
+    let unloading = prop_oneof![
+        Just(Unloading::InitialStiffness),
+        Just(Unloading::AlongTheCurve)
+    ];
+    (side(), side(), unloading, 0.5..1.5_f64).prop_filter_map(
+        "a table has a force",
+        |(ahead, behind, unloading, last)| {
+            let rising = |side: Vec<(f64, f64)>, way: f64| {
+                let mut at = 0.0;
+                let mut points: Vec<[f64; 2]> = Vec::new();
+                for (step, force) in side {
+                    at += step;
+                    points.push([way * at, way * force]);
+                }
+                points.push([way * (at + 1.0), way * last]);
+                points
+            };
+            let mut points = rising(behind, -1.0);
+            points.reverse();
+            points.push([0.0, 0.0]);
+            points.extend(rising(ahead, 1.0));
+            Some(Behaviour::Table(Table {
+                file: "points.csv".to_owned(),
+                points,
+                unloading,
+                scale: 1.0,
+            }))
+        },
+    )
 }
 
 fn any() -> impl Strategy<Value = Behaviour> {
@@ -149,10 +204,13 @@ fn places(turns: &[f64], pieces: u32) -> Vec<f64> {
     let mut from = 0.0;
     let mut all = Vec::new();
     for to in turns {
-        all.extend(
-            (1..=pieces)
-                .map(|piece| if piece == pieces { *to } else { from + (to - from) * f64::from(piece) / f64::from(pieces) }),
-        );
+        all.extend((1..=pieces).map(|piece| {
+            if piece == pieces {
+                *to
+            } else {
+                from + (to - from) * f64::from(piece) / f64::from(pieces)
+            }
+        }));
         from = *to;
     }
     all
@@ -233,9 +291,21 @@ proptest! {
 /// that small moves take. Without force, a table between its toes and a spring that has pinched; at the yield force, two alike.
 #[test]
 fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
-    let toes = vec![[-1.1, -0.5], [-0.1, -0.0], [0.0, 0.0], [0.1, 0.0], [1.1, 0.5]];
-    let table =
-        |unloading| Behaviour::Table(Table { file: "points.csv".to_owned(), points: toes.clone(), unloading, scale: 1.0 });
+    let toes = vec![
+        [-1.1, -0.5],
+        [-0.1, -0.0],
+        [0.0, 0.0],
+        [0.1, 0.0],
+        [1.1, 0.5],
+    ];
+    let table = |unloading| {
+        Behaviour::Table(Table {
+            file: "points.csv".to_owned(),
+            points: toes.clone(),
+            unloading,
+            scale: 1.0,
+        })
+    };
     let pinching = Behaviour::Pinching(Pinching {
         stiffness: 1.948_780_769_769_375_6,
         yield_force: 0.5,
@@ -246,7 +316,11 @@ fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
         capping: None,
         deterioration: None,
     });
-    let yields = || Behaviour::Bilinear { stiffness: 2.0, yield_force: 0.5, hardening: 0.0 };
+    let yields = || Behaviour::Bilinear {
+        stiffness: 2.0,
+        yield_force: 0.5,
+        hardening: 0.0,
+    };
     let turns = [-3.988_847_520_979_166_3, 0.0, -0.633_495_342_963_283];
     for (first, second) in [
         (table(Unloading::InitialStiffness), pinching.clone()),
@@ -255,12 +329,23 @@ fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
     ] {
         for parts in [vec![first.clone(), second.clone()], vec![second, first]] {
             let behaviour = Behaviour::Series(parts);
-            let (mut large, mut small) = (SpecimenModel::new(&behaviour), SpecimenModel::new(&behaviour));
+            let (mut large, mut small) = (
+                SpecimenModel::new(&behaviour),
+                SpecimenModel::new(&behaviour),
+            );
             let mut small_places = places(&turns, 37).into_iter();
             for to in turns {
-                let by_small = small_places.by_ref().take(37).map(|place| small.move_to(place)).last().unwrap();
+                let by_small = small_places
+                    .by_ref()
+                    .take(37)
+                    .map(|place| small.move_to(place))
+                    .last()
+                    .unwrap();
                 let by_large = large.move_to(to);
-                assert!((by_large - by_small).abs() < 1e-12, "{behaviour:?}: {by_large} N is not {by_small} N at {to} m");
+                assert!(
+                    (by_large - by_small).abs() < 1e-12,
+                    "{behaviour:?}: {by_large} N is not {by_small} N at {to} m"
+                );
             }
         }
     }
@@ -269,13 +354,27 @@ fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
 /// A joint bears before its faces slip, and a Bouc–Wen spring with β = 1 unloads: twice as stiff as at first, both.
 #[test]
 fn a_stiffest_slope_is_reached() {
-    let bolted = Behaviour::Bolted(Bolted { stiffness: 1e6, bearing_force: 1e4, clearance: 1e-4, slip_force: 1e3 });
-    let bouc_wen = Behaviour::BoucWen { stiffness: 1e6, yield_force: 1e3, hardening: 0.0, sharpness: 1.0, beta: 1.0 };
+    let bolted = Behaviour::Bolted(Bolted {
+        stiffness: 1e6,
+        bearing_force: 1e4,
+        clearance: 1e-4,
+        slip_force: 1e3,
+    });
+    let bouc_wen = Behaviour::BoucWen {
+        stiffness: 1e6,
+        yield_force: 1e3,
+        hardening: 0.0,
+        sharpness: 1.0,
+        beta: 1.0,
+    };
     for (behaviour, from, to) in [(bolted, 1.5e-4, 1.6e-4), (bouc_wen, 1e-2, 1e-2 - 1e-6)] {
         let mut model = SpecimenModel::new(&behaviour);
         let before = model.move_to(from);
         let slope = (model.move_to(to) - before) / (to - from);
         assert!((slope / 2e6 - 1.0).abs() < 1e-3, "{slope}");
-        assert_eq!((behaviour.initial_stiffness(), behaviour.largest_stiffness()), (1e6, 2e6));
+        assert_eq!(
+            (behaviour.initial_stiffness(), behaviour.largest_stiffness()),
+            (1e6, 2e6)
+        );
     }
 }

@@ -1,9 +1,9 @@
 //! Runs of an impact, and an exact solution of hard collisions that shares nothing with the product.
 
-use psd::mechanics::contact::ContactLaw;
-use psd::mechanics::impact::{ImpactInput, ImpactSolver, ImpactState};
-use psd::mechanics::specimen::{Elastic, RestoringForce};
-use psd::mechanics::summary::{ImpactSummary, SummaryBuilder};
+use psd::physics::contact::state::ContactLaw;
+use psd::physics::impact::summary::{ImpactSummary, SummaryBuilder};
+use psd::physics::impact::{ImpactInput, ImpactSolver, ImpactState};
+use psd::physics::specimen::{Elastic, RestoringForce};
 use psd::plan::Integrator;
 
 /// A striker of 10 kg at 1 m/s that touches an undamped structure at t = 0.
@@ -47,7 +47,12 @@ impl Run {
 
 /// The run on a linear specimen of the input's stiffness.
 pub fn run(input: &ImpactInput) -> Run {
-    run_on(input, &mut Elastic { stiffness: input.stiffness })
+    run_on(
+        input,
+        &mut Elastic {
+            stiffness: input.stiffness,
+        },
+    )
 }
 
 pub fn run_on(input: &ImpactInput, specimen: &mut impl RestoringForce) -> Run {
@@ -55,8 +60,12 @@ pub fn run_on(input: &ImpactInput, specimen: &mut impl RestoringForce) -> Run {
 }
 
 /// The run until it is finished or `go_on` says no.
-pub fn run_while(input: &ImpactInput, specimen: &mut impl RestoringForce, go_on: impl Fn(&ImpactState) -> bool) -> Run {
-    let mut solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0));
+pub fn run_while(
+    input: &ImpactInput,
+    specimen: &mut impl RestoringForce,
+    go_on: impl Fn(&ImpactState) -> bool,
+) -> Run {
+    let mut solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0)).expect("an impact");
     let mut builder = SummaryBuilder::new(input);
     let mut states = vec![*solver.state()];
     builder.push(solver.state());
@@ -68,7 +77,11 @@ pub fn run_while(input: &ImpactInput, specimen: &mut impl RestoringForce, go_on:
         worst_error = worst_error.max(state.energies.error.abs());
         states.push(state);
     }
-    Run { states, summary: builder.finish(), worst_error }
+    Run {
+        states,
+        summary: builder.finish(),
+        worst_error,
+    }
 }
 
 /// One body on a spring: x cos ωt + v/ω sin ωt and its rate.
@@ -93,7 +106,13 @@ fn bisect(mut low: f64, mut high: f64, reached: impl Fn(f64) -> bool) -> f64 {
 /// Hard collisions with restitution `e` of a striker with a body on a spring, both touching at t = 0: exact arcs between
 /// collisions found by stepping and bisection. Below a separation speed of 1e-10 m/s the two are one body until it is
 /// back at X = 0. Largest X, and the time at which the striker's velocity is no longer positive.
-pub fn event_driven(mass: f64, striker_mass: f64, speed: f64, stiffness: f64, e: f64) -> (f64, f64) {
+pub fn event_driven(
+    mass: f64,
+    striker_mass: f64,
+    speed: f64,
+    stiffness: f64,
+    e: f64,
+) -> (f64, f64) {
     const STEP: f64 = 1e-4;
     let omega = (stiffness / mass).sqrt();
     let joint = (stiffness / (mass + striker_mass)).sqrt();
@@ -106,8 +125,16 @@ pub fn event_driven(mass: f64, striker_mass: f64, speed: f64, stiffness: f64, e:
         if e * closing < 1e-10 {
             // One body: it turns where x and v, seen as an amplitude and a phase, say.
             let amplitude = x.hypot(common / joint);
-            let stop = if common > 0.0 { (common / joint).atan2(x) / joint } else { 0.0 };
-            return if common > 0.0 { (peak.max(amplitude), time + stop) } else { (peak.max(x), time) };
+            let stop = if common > 0.0 {
+                (common / joint).atan2(x) / joint
+            } else {
+                0.0
+            };
+            return if common > 0.0 {
+                (peak.max(amplitude), time + stop)
+            } else {
+                (peak.max(x), time)
+            };
         }
         if vs <= 0.0 {
             // It bounced back: the structure's own peak may still come.

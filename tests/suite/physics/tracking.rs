@@ -1,8 +1,8 @@
 //! What an actuator that misses its target does to a run, through the solver: the amplitudes of the physics reference
 //! (section 11), the I-modification, and the energy that the monitor sees.
 
-use psd::mechanics::impact::{ImpactInput, ImpactSolver};
-use psd::mechanics::monitor::{Monitor, Tracking};
+use psd::physics::impact::{ImpactInput, ImpactSolver};
+use psd::physics::tracking::monitor::{Monitor, Tracking};
 use psd::plan::Integrator;
 
 use super::methods::vibration;
@@ -27,8 +27,11 @@ const BEYOND_FROM_PLACE: Actuator = |target, _, place| place + 1.1 * (target - p
 /// Largest |d| over the last of ten cycles, its first instant included, from 1 m at rest; and what the monitor shows at the end.
 fn amplitude(integrator: Integrator, i_modification: bool, actuator: Actuator) -> (f64, Tracking) {
     let stiffness = (2.0 * std::f64::consts::PI / PERIOD).powi(2);
-    let input = ImpactInput { i_modification, ..vibration(integrator, 1.0, 0.0, stiffness, TIME_STEP) };
-    let mut solver = ImpactSolver::new(&input, 1.0, stiffness);
+    let input = ImpactInput {
+        i_modification,
+        ..vibration(integrator, 1.0, 0.0, stiffness, TIME_STEP)
+    };
+    let mut solver = ImpactSolver::new(&input, 1.0, stiffness).expect("an impact");
     let mut monitor = Monitor::new(1.0, 1.0, stiffness);
     let (mut last_target, mut place, mut largest) = (1.0, 1.0, 0.0_f64);
     for step in 1..=CYCLES * STEPS_A_CYCLE {
@@ -59,7 +62,10 @@ fn ten_cycles_of_tracking_error_grow_or_shrink_as_printed() {
     ];
     for (integrator, corrected, actuator, printed, digits) in cases {
         let (found, _) = amplitude(integrator, corrected, actuator);
-        assert!((found - printed).abs() <= digits, "{integrator:?}, corrected {corrected}: {found}, printed {printed}");
+        assert!(
+            (found - printed).abs() <= digits,
+            "{integrator:?}, corrected {corrected}: {found}, printed {printed}"
+        );
     }
 }
 
@@ -70,9 +76,19 @@ fn the_monitor_sees_the_energy_that_tracking_puts_in() {
     for actuator in [SHORT, BEYOND, BEHIND] {
         let (grown, tracking) = amplitude(SPLITTING, false, actuator);
         let gained = 0.5 * stiffness * (grown * grown - 1.0);
-        assert!((tracking.energy_error + gained).abs() < 0.15 * gained.abs(), "{tracking:?}, gained {gained} J");
-        assert_eq!(tracking.indicator < 0.0, gained > 0.0, "a lag encloses its area the other way round");
+        assert!(
+            (tracking.energy_error + gained).abs() < 0.15 * gained.abs(),
+            "{tracking:?}, gained {gained} J"
+        );
+        assert_eq!(
+            tracking.indicator < 0.0,
+            gained > 0.0,
+            "a lag encloses its area the other way round"
+        );
     }
     let (kept, corrected) = amplitude(SPLITTING, true, BEHIND);
-    assert!((kept - 1.0).abs() < 2e-3 && corrected.indicator < 0.0, "corrected, not followed better");
+    assert!(
+        (kept - 1.0).abs() < 2e-3 && corrected.indicator < 0.0,
+        "corrected, not followed better"
+    );
 }

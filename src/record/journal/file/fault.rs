@@ -13,11 +13,19 @@ pub enum FileFault {
     #[error("the journal {} has more than {most} bytes", path.display())]
     TooLarge { path: PathBuf, most: u64 },
     #[error("the journal {} cannot be {doing}: {error}", path.display())]
-    System { doing: &'static str, path: PathBuf, error: io::Error },
+    System {
+        doing: &'static str,
+        path: PathBuf,
+        error: io::Error,
+    },
 }
 
 impl FileFault {
     pub(super) fn of(doing: &'static str, path: &Path) -> impl Fn(io::Error) -> Self {
-        move |error| Self::System { doing, path: path.to_owned(), error }
+        move |error| Self::System {
+            doing,
+            path: path.to_owned(),
+            error,
+        }
     }
 }

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::super::{Durability, EntryKind, Journal, Storage, recover};
 use super::{FileFault, FileStorage, ballast, write_whole};
-use crate::rig::failpoint::{Guarding, without};
+use crate::rig::safety::failpoint::{Guarding, without};
 
 fn place() -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
@@ -27,7 +27,9 @@ fn begun(path: &Path) -> Journal {
 
 fn names(folder: &TempDir) -> Vec<String> {
     let entries = fs::read_dir(folder.path()).unwrap();
-    let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
     names.sort();
     names
 }
@@ -40,7 +42,14 @@ fn a_run_leaves_one_private_file() {
     assert_eq!(names(&folder), ["journal", "journal.reserve"]);
     assert_eq!(fs::metadata(ballast::path(&path)).unwrap().len(), 1 << 20);
     for name in names(&folder) {
-        assert_eq!(fs::metadata(folder.path().join(name)).unwrap().permissions().mode() & 0o777, 0o600);
+        assert_eq!(
+            fs::metadata(folder.path().join(name))
+                .unwrap()
+                .permissions()
+                .mode()
+                & 0o777,
+            0o600
+        );
     }
     journal.end(&json!({})).unwrap();
     assert_eq!(names(&folder), ["journal"]);
@@ -52,11 +61,20 @@ fn the_second_on_one_path_is_refused() {
     let (_folder, path) = place();
     let first = FileStorage::create(&path).unwrap();
     let refused = FileStorage::open_existing(&path).unwrap_err();
-    assert_eq!(refused.to_string(), format!("the journal {} is in use by another psd", path.display()));
-    assert!(without(Guarding::Lock, || FileStorage::open_existing(&path)).is_ok(), "it is the lock that refuses");
+    assert_eq!(
+        refused.to_string(),
+        format!("the journal {} is in use by another psd", path.display())
+    );
+    assert!(
+        without(Guarding::Lock, || FileStorage::open_existing(&path)).is_ok(),
+        "it is the lock that refuses"
+    );
     drop(first);
     let second = FileStorage::open_existing(&path).unwrap();
-    assert!(matches!(FileStorage::open_existing(&path), Err(FileFault::InUse { .. })));
+    assert!(matches!(
+        FileStorage::open_existing(&path),
+        Err(FileFault::InUse { .. })
+    ));
     drop(second);
 }
 
@@ -67,13 +85,28 @@ fn nothing_is_written_over_and_nothing_but_a_file_is_opened() {
     assert!(
         matches!(FileStorage::create(&path), Err(FileFault::System { error, .. }) if error.kind() == ErrorKind::AlreadyExists)
     );
-    assert_eq!((fs::read_to_string(&path).unwrap().as_str(), names(&folder).len()), ("a letter", 1));
+    assert_eq!(
+        (
+            fs::read_to_string(&path).unwrap().as_str(),
+            names(&folder).len()
+        ),
+        ("a letter", 1)
+    );
 
     let link = folder.path().join("link");
     symlink(&path, &link).unwrap();
-    assert!(matches!(FileStorage::open_existing(&link), Err(FileFault::System { .. })), "not through a link");
+    assert!(
+        matches!(
+            FileStorage::open_existing(&link),
+            Err(FileFault::System { .. })
+        ),
+        "not through a link"
+    );
     assert!(FileStorage::create(&link).is_err());
-    assert!(matches!(FileStorage::open_existing(Path::new("/dev/full")), Err(FileFault::NotAFile { .. })));
+    assert!(matches!(
+        FileStorage::open_existing(Path::new("/dev/full")),
+        Err(FileFault::NotAFile { .. })
+    ));
     assert!(FileStorage::open_existing(folder.path()).is_err());
     assert!(FileStorage::open_existing(&folder.path().join("none")).is_err());
 }
@@ -88,13 +121,22 @@ fn a_torn_end_is_put_aside_and_the_journal_goes_on() {
         let mut storage = FileStorage::open_existing(&path).unwrap();
         let found = recover(&storage.contents().unwrap()).unwrap();
         assert_eq!(found.whole, whole.len() as u64);
-        let aside = storage.truncate_to(found.whole).unwrap().expect("something is torn");
+        let aside = storage
+            .truncate_to(found.whole)
+            .unwrap()
+            .expect("something is torn");
         assert_eq!(aside, folder.path().join(format!("journal.torn-{round}")));
         assert_eq!(fs::read(&aside).unwrap(), b"2 SAMP\0\0");
         assert_eq!(storage.contents().unwrap(), whole);
-        assert_eq!(storage.truncate_to(found.whole).unwrap(), None, "nothing more to cut");
+        assert_eq!(
+            storage.truncate_to(found.whole).unwrap(),
+            None,
+            "nothing more to cut"
+        );
         let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &found);
-        journal.append(EntryKind::Recover, &json!({"aside": "journal.torn"})).unwrap();
+        journal
+            .append(EntryKind::Recover, &json!({"aside": "journal.torn"}))
+            .unwrap();
     }
     let found = recover(&fs::read(&path).unwrap()).unwrap();
     assert_eq!((found.lines.len(), found.torn), (3, None));
@@ -113,7 +155,10 @@ fn the_reserve_is_there_while_the_journal_is_open_whatever_a_killed_run_left() {
         let mut storage = FileStorage::open_existing(&path).unwrap();
         assert_eq!(fs::metadata(&reserve).unwrap().len(), 1 << 20);
         assert!(FileStorage::open_existing(&path).is_err());
-        assert!(reserve.exists(), "one that is refused does not take it away");
+        assert!(
+            reserve.exists(),
+            "one that is refused does not take it away"
+        );
         storage.release_reserve();
         assert_eq!(names(&folder), ["journal"]);
         storage.release_reserve();
@@ -125,7 +170,10 @@ fn a_create_without_room_for_the_reserve_leaves_nothing() {
     let (folder, path) = place();
     // A folder in the place of the reserve, which is not removed as a file would be.
     fs::create_dir(ballast::path(&path)).unwrap();
-    assert!(matches!(FileStorage::create(&path), Err(FileFault::System { .. })));
+    assert!(matches!(
+        FileStorage::create(&path),
+        Err(FileFault::System { .. })
+    ));
     assert_eq!(names(&folder), ["journal.reserve"]);
 }
 
@@ -135,9 +183,16 @@ fn reading_back_is_bounded() {
     let mut storage = FileStorage::create(&path).unwrap();
     storage.append(b"0123456789").unwrap();
     assert_eq!(storage.contents_up_to(10).unwrap(), b"0123456789");
-    assert!(matches!(storage.contents_up_to(9), Err(FileFault::TooLarge { most: 9, .. })));
+    assert!(matches!(
+        storage.contents_up_to(9),
+        Err(FileFault::TooLarge { most: 9, .. })
+    ));
     storage.append(b"!").unwrap();
-    assert_eq!(storage.contents().unwrap(), b"0123456789!", "reading does not move where it writes");
+    assert_eq!(
+        storage.contents().unwrap(),
+        b"0123456789!",
+        "reading does not move where it writes"
+    );
     assert!(storage.room().unwrap() > 0);
 }
 
@@ -166,7 +221,10 @@ impl Write for Reluctant {
         if !self.calls.is_multiple_of(3) {
             return Err(ErrorKind::Interrupted.into());
         }
-        let taken = bytes.len().min(1 + self.calls % 5).min(self.most - self.taken.len());
+        let taken = bytes
+            .len()
+            .min(1 + self.calls % 5)
+            .min(self.most - self.taken.len());
         self.taken.extend_from_slice(&bytes[..taken]);
         Ok(taken)
     }
@@ -179,10 +237,21 @@ impl Write for Reluctant {
 #[test]
 fn short_and_interrupted_writes_lose_and_double_nothing() {
     let bytes: Vec<u8> = (0..=255).cycle().take(1000).collect();
-    let mut out = Reluctant { taken: Vec::new(), calls: 0, most: usize::MAX };
+    let mut out = Reluctant {
+        taken: Vec::new(),
+        calls: 0,
+        most: usize::MAX,
+    };
     write_whole(&mut out, &bytes).unwrap();
     assert_eq!(out.taken, bytes);
-    let mut full = Reluctant { taken: Vec::new(), calls: 0, most: 500 };
-    assert_eq!(write_whole(&mut full, &bytes).unwrap_err().kind(), ErrorKind::WriteZero);
+    let mut full = Reluctant {
+        taken: Vec::new(),
+        calls: 0,
+        most: 500,
+    };
+    assert_eq!(
+        write_whole(&mut full, &bytes).unwrap_err().kind(),
+        ErrorKind::WriteZero
+    );
     assert_eq!(full.taken, bytes[..500]);
 }

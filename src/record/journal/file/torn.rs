@@ -32,5 +32,8 @@ fn first_free(journal: &Path) -> io::Result<(File, PathBuf)> {
             created => return Ok((created?, path)),
         }
     }
-    Err(io::Error::new(io::ErrorKind::AlreadyExists, "too many torn ends lie beside it"))
+    Err(io::Error::new(
+        io::ErrorKind::AlreadyExists,
+        "too many torn ends lie beside it",
+    ))
 }

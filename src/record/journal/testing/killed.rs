@@ -17,10 +17,18 @@ pub struct Killed {
 impl Killed {
     /// Over `disk`, dead at call number `left`, counted from 0; `after`: its bytes are there, else not.
     pub fn at(disk: &PowerLoss, left: usize, after: bool) -> Self {
-        Self { disk: disk.clone(), left, after, dead: false }
+        Self {
+            disk: disk.clone(),
+            left,
+            after,
+            dead: false,
+        }
     }
 
-    fn call(&mut self, call: impl FnOnce(&mut PowerLoss) -> std::io::Result<()>) -> std::io::Result<()> {
+    fn call(
+        &mut self,
+        call: impl FnOnce(&mut PowerLoss) -> std::io::Result<()>,
+    ) -> std::io::Result<()> {
         // What is dropped on the way out writes nothing more.
         if self.dead {
             return Ok(());

@@ -1,5 +1,6 @@
-//! Storages for tests: a disk that forgets what was not synced, one that fails when it is told to; a forger and a vandal. In: the
-//! bytes of a journal. Out: the bytes that are there afterwards. Not part of the program.
+//! Storages for tests: a disk that loses unsynced data, one that fails on demand, forged and
+//! damaged run logs. In: the bytes of a run log. Out: the bytes that remain. The program does not
+//! contain it.
 
 mod forger;
 mod killed;

@@ -28,7 +28,11 @@ impl PowerLoss {
 
     /// A disk with safe bytes on it.
     pub(crate) fn holding(bytes: &[u8]) -> Self {
-        let disk = Disk { written: bytes.to_vec(), synced: bytes.len(), syncs: 0 };
+        let disk = Disk {
+            written: bytes.to_vec(),
+            synced: bytes.len(),
+            syncs: 0,
+        };
         Self(Arc::new(Mutex::new(disk)))
     }
 
@@ -64,7 +68,9 @@ impl PowerLoss {
     }
 
     fn disk(&self) -> MutexGuard<'_, Disk> {
-        self.0.lock().expect("no test panics while it holds the disk")
+        self.0
+            .lock()
+            .expect("no test panics while it holds the disk")
     }
 }
 

@@ -33,7 +33,12 @@ struct Disk {
 
 impl SickDisk {
     pub(crate) fn new(sickness: Sickness) -> Self {
-        Self(Arc::new(Mutex::new(Disk { sickness, written: Vec::new(), appends: 0, syncs: 0 })))
+        Self(Arc::new(Mutex::new(Disk {
+            sickness,
+            written: Vec::new(),
+            appends: 0,
+            syncs: 0,
+        })))
     }
 
     pub(crate) fn written(&self) -> Vec<u8> {
@@ -51,7 +56,9 @@ impl SickDisk {
     }
 
     fn disk(&self) -> MutexGuard<'_, Disk> {
-        self.0.lock().expect("no test panics while it holds the disk")
+        self.0
+            .lock()
+            .expect("no test panics while it holds the disk")
     }
 }
 
@@ -59,16 +66,27 @@ impl Storage for SickDisk {
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
         let mut disk = self.disk();
         disk.appends += 1;
-        let room = disk.sickness.room.map_or(bytes.len(), |room| room.saturating_sub(disk.written.len()));
+        let room = disk
+            .sickness
+            .room
+            .map_or(bytes.len(), |room| room.saturating_sub(disk.written.len()));
         let taken = room.min(bytes.len());
         disk.written.extend_from_slice(&bytes[..taken]);
-        if taken < bytes.len() { Err(io::ErrorKind::StorageFull.into()) } else { Ok(()) }
+        if taken < bytes.len() {
+            Err(io::ErrorKind::StorageFull.into())
+        } else {
+            Ok(())
+        }
     }
 
     fn sync(&mut self) -> io::Result<()> {
         let mut disk = self.disk();
         disk.syncs += 1;
-        if disk.sickness.failed_sync == Some(disk.syncs) { Err(io::Error::other("Input/output error")) } else { Ok(()) }
+        if disk.sickness.failed_sync == Some(disk.syncs) {
+            Err(io::Error::other("Input/output error"))
+        } else {
+            Ok(())
+        }
     }
 
     fn cut(&mut self, length: u64) -> io::Result<()> {
@@ -76,7 +94,8 @@ impl Storage for SickDisk {
         if disk.sickness.uncuttable {
             return Err(io::ErrorKind::ReadOnlyFilesystem.into());
         }
-        disk.written.truncate(usize::try_from(length).expect("it fits into memory"));
+        disk.written
+            .truncate(usize::try_from(length).expect("it fits into memory"));
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::super::EntryKind;
 use super::{records, written};
-use crate::digest::sha256;
+use crate::text::digest::sha256;
 
 type Records = Vec<(EntryKind, Value)>;
 
@@ -66,15 +66,30 @@ impl Vandal {
 
     /// Another digit somewhere in a text of the plan, and the digest of that text.
     fn replan(&mut self, records: &mut Records) {
-        let Some(place) = records.iter().position(|(kind, _)| *kind == EntryKind::Plan) else { return };
-        let Some(text) = records[place].1["text"].as_str() else { return };
-        let digits: Vec<usize> = text.bytes().enumerate().filter(|(_, byte)| byte.is_ascii_digit()).map(|(at, _)| at).collect();
+        let Some(place) = records
+            .iter()
+            .position(|(kind, _)| *kind == EntryKind::Plan)
+        else {
+            return;
+        };
+        let Some(text) = records[place].1["text"].as_str() else {
+            return;
+        };
+        let digits: Vec<usize> = text
+            .bytes()
+            .enumerate()
+            .filter(|(_, byte)| byte.is_ascii_digit())
+            .map(|(at, _)| at)
+            .collect();
         if digits.is_empty() {
             return;
         }
         let at = digits[self.below(digits.len())];
         let text = format!("{}{}{}", &text[..at], self.below(10), &text[at + 1..]);
-        let file = records[place].1["file"].as_u64().and_then(|file| usize::try_from(file).ok()).unwrap_or(0);
+        let file = records[place].1["file"]
+            .as_u64()
+            .and_then(|file| usize::try_from(file).ok())
+            .unwrap_or(0);
         if let Some(told) = records[0].1.pointer_mut(&format!("/files/{file}/sha256")) {
             *told = json!(sha256(text.as_bytes()));
         }
@@ -143,9 +158,20 @@ impl Vandal {
 
 /// A resumption that nobody made.
 fn resume(records: &mut Records, at: usize) {
-    let Some((_, rig)) = records.iter().find(|(kind, _)| *kind == EntryKind::Rig).cloned() else { return };
-    let reading = records[..at].iter().rfind(|(kind, _)| *kind == EntryKind::Sample);
-    let found = reading.map_or_else(|| json!([[0.0], [0.0]]), |(_, said)| json!([said["x"], said["r"]]));
+    let Some((_, rig)) = records
+        .iter()
+        .find(|(kind, _)| *kind == EntryKind::Rig)
+        .cloned()
+    else {
+        return;
+    };
+    let reading = records[..at]
+        .iter()
+        .rfind(|(kind, _)| *kind == EntryKind::Sample);
+    let found = reading.map_or_else(
+        || json!([[0.0], [0.0]]),
+        |(_, said)| json!([said["x"], said["r"]]),
+    );
     let told = json!({
         "from": at + 1, "by": "R. T", "reason": "no power", "doubt": {"target": "none"}, "found": found, "recorded": found, "t": rig["t"],
     });

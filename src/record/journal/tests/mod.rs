@@ -1,4 +1,4 @@
-//! What the journal promises, shown on small journals. In: journals written here, whole, cut and altered. Out: nothing.
+//! Tests of the run log: written here, then read back whole, cut or altered.
 
 mod altered;
 mod power;
@@ -15,7 +15,9 @@ use super::{Durability, EntryKind, Journal, Recovered, recover};
 fn begun(durability: Durability) -> (PowerLoss, Journal) {
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), durability);
-    journal.append(EntryKind::Header, &json!({"plan": "é", "@": "J"})).unwrap();
+    journal
+        .append(EntryKind::Header, &json!({"plan": "é", "@": "J"}))
+        .unwrap();
     (disk, journal)
 }
 
@@ -23,9 +25,18 @@ fn begun(durability: Durability) -> (PowerLoss, Journal) {
 fn small() -> Vec<u8> {
     let (disk, mut journal) = begun(Durability::EveryPromise);
     for step in 1..3 {
-        journal.append(EntryKind::Intent, &json!({"step": step, "target": 1e-3})).unwrap();
-        journal.append(EntryKind::Sample, &json!({"step": step, "force": -0.1})).unwrap();
-        journal.append(EntryKind::Step, &json!({"step": step, "x": [0.1, 5e-324], "text": "J @ *"})).unwrap();
+        journal
+            .append(EntryKind::Intent, &json!({"step": step, "target": 1e-3}))
+            .unwrap();
+        journal
+            .append(EntryKind::Sample, &json!({"step": step, "force": -0.1}))
+            .unwrap();
+        journal
+            .append(
+                EntryKind::Step,
+                &json!({"step": step, "x": [0.1, 5e-324], "text": "J @ *"}),
+            )
+            .unwrap();
     }
     journal.end(&json!({"outcome": "completed"})).unwrap();
     drop(journal);
@@ -34,12 +45,19 @@ fn small() -> Vec<u8> {
 
 /// The lines of a journal, each with its LF.
 fn lines(journal: &[u8]) -> Vec<Vec<u8>> {
-    journal.split_inclusive(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect()
+    journal
+        .split_inclusive(|byte| *byte == b'\n')
+        .map(<[u8]>::to_vec)
+        .collect()
 }
 
 /// Kinds and bodies read back.
 fn records(recovered: &Recovered) -> Vec<(EntryKind, Value)> {
-    recovered.lines.iter().map(|line| (line.kind, line.body())).collect()
+    recovered
+        .lines
+        .iter()
+        .map(|line| (line.kind, line.body()))
+        .collect()
 }
 
 /// Whether a journal says that it is whole, from HEADER to END.

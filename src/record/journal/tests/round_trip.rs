@@ -8,7 +8,9 @@ use super::{begun, lines, records, small};
 
 /// JSON of every shape, with text of any characters and floats of any bits that are numbers.
 fn json() -> impl Strategy<Value = Value> {
-    let float = any::<u64>().prop_map(f64::from_bits).prop_filter("JSON has no such number", |float| float.is_finite());
+    let float = any::<u64>()
+        .prop_map(f64::from_bits)
+        .prop_filter("JSON has no such number", |float| float.is_finite());
     let edge = prop::sample::select(vec![
         0.0,
         -0.0,

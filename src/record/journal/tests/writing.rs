@@ -3,9 +3,11 @@
 use serde_json::json;
 
 use super::super::testing::{PowerLoss, SickDisk, Sickness};
-use super::super::{Doing, Durability, EntryKind, Journal, JournalFault, LINE_BYTES, Refusal, Storage, recover};
+use super::super::{
+    Doing, Durability, EntryKind, Journal, JournalFault, LINE_BYTES, Refusal, Storage, recover,
+};
 use super::{begun, records};
-use crate::rig::failpoint::{Guarding, without};
+use crate::rig::safety::failpoint::{Guarding, without};
 
 fn on(disk: &(impl Storage + Clone + 'static)) -> Journal {
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
@@ -18,27 +20,56 @@ fn header_is_first_and_only_and_nothing_follows_end() {
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
     let misplaced = |kind| Err(JournalFault::Refused(Refusal::OutOfPlace(kind)));
-    assert_eq!(journal.append(EntryKind::Event, &json!({})), misplaced(EntryKind::Event));
+    assert_eq!(
+        journal.append(EntryKind::Event, &json!({})),
+        misplaced(EntryKind::Event)
+    );
     assert_eq!(journal.end(&json!({})), misplaced(EntryKind::End));
     let reserved = Err(JournalFault::Refused(Refusal::Reserved("format")));
-    assert_eq!(journal.append(EntryKind::Header, &json!({"format": 1})), reserved);
+    assert_eq!(
+        journal.append(EntryKind::Header, &json!({"format": 1})),
+        reserved
+    );
     journal.append(EntryKind::Header, &json!({})).unwrap();
-    assert_eq!(journal.append(EntryKind::Header, &json!({})), misplaced(EntryKind::Header));
-    assert_eq!(journal.append(EntryKind::End, &json!({})), misplaced(EntryKind::End));
-    assert_eq!(journal.last_words(EntryKind::End, &json!({})), misplaced(EntryKind::End));
+    assert_eq!(
+        journal.append(EntryKind::Header, &json!({})),
+        misplaced(EntryKind::Header)
+    );
+    assert_eq!(
+        journal.append(EntryKind::End, &json!({})),
+        misplaced(EntryKind::End)
+    );
+    assert_eq!(
+        journal.last_words(EntryKind::End, &json!({})),
+        misplaced(EntryKind::End)
+    );
     let head = journal.head().to_owned();
     journal.end(&json!({"why": "done"})).unwrap();
-    assert_eq!(journal.append(EntryKind::Event, &json!({})), misplaced(EntryKind::Event));
+    assert_eq!(
+        journal.append(EntryKind::Event, &json!({})),
+        misplaced(EntryKind::Event)
+    );
     assert_eq!(journal.end(&json!({})), misplaced(EntryKind::End));
-    assert_eq!(journal.last_words(EntryKind::Fault, &json!({})), misplaced(EntryKind::Fault));
+    assert_eq!(
+        journal.last_words(EntryKind::Fault, &json!({})),
+        misplaced(EntryKind::Fault)
+    );
 
     let found = recover(&disk.written()).unwrap();
-    let expected =
-        [(EntryKind::Header, json!({"format": 2})), (EntryKind::End, json!({"count": 1, "head": head, "why": "done"}))];
+    let expected = [
+        (EntryKind::Header, json!({"format": 2})),
+        (
+            EntryKind::End,
+            json!({"count": 1, "head": head, "why": "done"}),
+        ),
+    ];
     assert_eq!(records(&found), expected);
     assert!(found.ended && found.torn.is_none());
     let mut ended = Journal::go_on(Box::new(disk), Durability::EveryPromise, &found);
-    assert_eq!(ended.append(EntryKind::Resume, &json!({})), misplaced(EntryKind::Resume));
+    assert_eq!(
+        ended.append(EntryKind::Resume, &json!({})),
+        misplaced(EntryKind::Resume)
+    );
 }
 
 #[test]
@@ -46,14 +77,31 @@ fn a_refused_record_leaves_no_trace_and_the_journal_goes_on() {
     let (disk, mut journal) = begun(Durability::EveryPromise);
     let before = (disk.written(), journal.len(), journal.head().to_owned());
     let refused = |refusal| Err(JournalFault::Refused(refusal));
-    assert_eq!(journal.append(EntryKind::Sample, &json!([1])), refused(Refusal::NotAnObject));
+    assert_eq!(
+        journal.append(EntryKind::Sample, &json!([1])),
+        refused(Refusal::NotAnObject)
+    );
     let nan = std::collections::BTreeMap::from([("force", f64::NAN)]);
-    assert_eq!(journal.append(EntryKind::Sample, &nan), refused(Refusal::NotFinite));
-    assert_eq!(journal.last_words(EntryKind::Fault, &nan), refused(Refusal::NotFinite));
-    assert_eq!(journal.end(&json!({"count": 3})), refused(Refusal::Reserved("count")));
-    assert_eq!((disk.written(), journal.len(), journal.head().to_owned()), before);
+    assert_eq!(
+        journal.append(EntryKind::Sample, &nan),
+        refused(Refusal::NotFinite)
+    );
+    assert_eq!(
+        journal.last_words(EntryKind::Fault, &nan),
+        refused(Refusal::NotFinite)
+    );
+    assert_eq!(
+        journal.end(&json!({"count": 3})),
+        refused(Refusal::Reserved("count"))
+    );
+    assert_eq!(
+        (disk.written(), journal.len(), journal.head().to_owned()),
+        before
+    );
     assert_eq!(journal.fault(), None);
-    journal.append(EntryKind::Sample, &json!({"force": 1.0})).unwrap();
+    journal
+        .append(EntryKind::Sample, &json!({"force": 1.0}))
+        .unwrap();
     assert_eq!(recover(&disk.written()).unwrap().lines.len(), 2);
 }
 
@@ -63,8 +111,13 @@ fn a_line_of_the_limit_is_written_and_one_byte_more_is_not() {
     let begins = disk.written().len();
     let frame = r#"2 EVENT {"text":""}"#.len() + 1 + 64 + 1 + 8 + 1;
     let text = |bytes: usize| json!({"text": "x".repeat(bytes - frame)});
-    let too_long = Refusal::TooLong { bytes: LINE_BYTES + 1 };
-    assert_eq!(journal.append(EntryKind::Event, &text(LINE_BYTES + 1)), Err(JournalFault::Refused(too_long)));
+    let too_long = Refusal::TooLong {
+        bytes: LINE_BYTES + 1,
+    };
+    assert_eq!(
+        journal.append(EntryKind::Event, &text(LINE_BYTES + 1)),
+        Err(JournalFault::Refused(too_long))
+    );
     assert_eq!(disk.written().len(), begins);
     journal.append(EntryKind::Event, &text(LINE_BYTES)).unwrap();
     assert_eq!(disk.written().len() - begins, LINE_BYTES);
@@ -85,18 +138,29 @@ fn a_promise_is_a_sync_on_a_real_rig_only() {
     assert_eq!((disk.synced(), disk.syncs()), (disk.written(), 1));
     assert_eq!(recover(&disk.synced()).unwrap().lines.len(), 1);
     for step in 0..1000 {
-        journal.append(EntryKind::Step, &json!({ "step": step })).unwrap();
+        journal
+            .append(EntryKind::Step, &json!({ "step": step }))
+            .unwrap();
     }
-    assert!(disk.written().len() > LINE_BYTES, "it does not keep back for ever");
+    assert!(
+        disk.written().len() > LINE_BYTES,
+        "it does not keep back for ever"
+    );
     drop(journal);
-    assert_eq!(recover(&disk.written()).unwrap().lines.len(), 1001, "a journal that is left gives what it kept back");
+    assert_eq!(
+        recover(&disk.written()).unwrap().lines.len(),
+        1001,
+        "a journal that is left gives what it kept back"
+    );
 }
 
 #[test]
 fn the_bytes_are_the_same_buffered_or_not() {
     let written = [Durability::Buffered, Durability::EveryPromise].map(|durability| {
         let (disk, mut journal) = begun(durability);
-        journal.append(EntryKind::Event, &json!({"text": "\u{2028}"})).unwrap();
+        journal
+            .append(EntryKind::Event, &json!({"text": "\u{2028}"}))
+            .unwrap();
         journal.end(&json!({})).unwrap();
         disk.synced()
     });
@@ -105,44 +169,101 @@ fn the_bytes_are_the_same_buffered_or_not() {
 
 #[test]
 fn a_failed_sync_is_final() {
-    let disk = SickDisk::new(Sickness { failed_sync: Some(2), ..Sickness::default() });
+    let disk = SickDisk::new(Sickness {
+        failed_sync: Some(2),
+        ..Sickness::default()
+    });
     let mut journal = on(&disk);
     journal.promise().unwrap();
     journal.append(EntryKind::Intent, &json!({})).unwrap();
     let fault = journal.promise().unwrap_err();
-    assert!(matches!(fault, JournalFault::Storage { doing: Doing::Sync, .. }), "{fault}");
+    assert!(
+        matches!(
+            fault,
+            JournalFault::Storage {
+                doing: Doing::Sync,
+                ..
+            }
+        ),
+        "{fault}"
+    );
     let asked = (disk.appends(), disk.syncs());
     assert_eq!(journal.promise(), Err(fault.clone()));
     assert_eq!(journal.sync(), Err(fault.clone()));
-    assert_eq!(journal.append(EntryKind::Sample, &json!({})), Err(fault.clone()));
+    assert_eq!(
+        journal.append(EntryKind::Sample, &json!({})),
+        Err(fault.clone())
+    );
     assert_eq!(journal.end(&json!({})), Err(fault.clone()));
-    assert_eq!((disk.appends(), disk.syncs()), asked, "the disk is not asked again");
-    assert_eq!(without(Guarding::FailedSync, || journal.promise()), Ok(()), "without the guard the disk lies: all is well");
+    assert_eq!(
+        (disk.appends(), disk.syncs()),
+        asked,
+        "the disk is not asked again"
+    );
+    assert_eq!(
+        without(Guarding::FailedSync, || journal.promise()),
+        Ok(()),
+        "without the guard the disk lies: all is well"
+    );
 
     let syncs = disk.syncs();
-    journal.last_words(EntryKind::Fault, &json!({"text": "sync"})).unwrap();
+    journal
+        .last_words(EntryKind::Fault, &json!({"text": "sync"}))
+        .unwrap();
     assert_eq!(disk.syncs(), syncs, "no sync is tried again");
-    assert_eq!(recover(&disk.written()).unwrap().lines.last().unwrap().kind, EntryKind::Fault);
+    assert_eq!(
+        recover(&disk.written()).unwrap().lines.last().unwrap().kind,
+        EntryKind::Fault
+    );
     assert_eq!(journal.promise(), Err(fault), "last words heal nothing");
 }
 
 #[test]
 fn last_words_fit_on_a_full_disk_thanks_to_the_reserve() {
     for room in 200..600 {
-        let disk = SickDisk::new(Sickness { room: Some(room), reserve: 4096, ..Sickness::default() });
+        let disk = SickDisk::new(Sickness {
+            room: Some(room),
+            reserve: 4096,
+            ..Sickness::default()
+        });
         let mut journal = on(&disk);
-        let filled = (1..).find_map(|step| journal.append(EntryKind::Step, &json!({ "step": step })).err());
+        let filled = (1..).find_map(|step| {
+            journal
+                .append(EntryKind::Step, &json!({ "step": step }))
+                .err()
+        });
         let fault = filled.expect("the disk is small");
-        assert!(matches!(fault, JournalFault::Storage { doing: Doing::Append, .. }), "{fault}");
+        assert!(
+            matches!(
+                fault,
+                JournalFault::Storage {
+                    doing: Doing::Append,
+                    ..
+                }
+            ),
+            "{fault}"
+        );
         let asked = disk.appends();
-        assert_eq!(journal.append(EntryKind::Step, &json!({})), Err(fault.clone()));
+        assert_eq!(
+            journal.append(EntryKind::Step, &json!({})),
+            Err(fault.clone())
+        );
         assert_eq!(disk.appends(), asked, "a full disk is not asked again");
 
-        journal.last_words(EntryKind::Fault, &json!({"text": "disk full"})).unwrap();
+        journal
+            .last_words(EntryKind::Fault, &json!({"text": "disk full"}))
+            .unwrap();
         let found = recover(&disk.written()).unwrap();
         assert_eq!(found.torn, None);
-        assert_eq!(found.lines.len() as u64, journal.len(), "the record that did not fit is there too");
-        assert_eq!(found.lines.last().unwrap().body(), json!({"text": "disk full"}));
+        assert_eq!(
+            found.lines.len() as u64,
+            journal.len(),
+            "the record that did not fit is there too"
+        );
+        assert_eq!(
+            found.lines.last().unwrap().body(),
+            json!({"text": "disk full"})
+        );
         assert_eq!(found.head(), journal.head());
         assert_eq!(journal.fault(), Some(&fault));
     }
@@ -150,11 +271,18 @@ fn last_words_fit_on_a_full_disk_thanks_to_the_reserve() {
 
 #[test]
 fn a_disk_that_fills_in_a_resumed_run_loses_nothing_of_the_first() {
-    let disk = SickDisk::new(Sickness { room: Some(700), reserve: 4096, ..Sickness::default() });
+    let disk = SickDisk::new(Sickness {
+        room: Some(700),
+        reserve: 4096,
+        ..Sickness::default()
+    });
     drop(on(&disk));
     let found = recover(&disk.written()).unwrap();
     let mut resumed = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &found);
-    while resumed.append(EntryKind::Resume, &json!({"who": "J. Doe"})).is_ok() {}
+    while resumed
+        .append(EntryKind::Resume, &json!({"who": "J. Doe"}))
+        .is_ok()
+    {}
     resumed.last_words(EntryKind::Fault, &json!({})).unwrap();
     let found = recover(&disk.written()).unwrap();
     assert_eq!(found.lines.len() as u64, resumed.len());
@@ -164,7 +292,11 @@ fn a_disk_that_fills_in_a_resumed_run_loses_nothing_of_the_first() {
 #[test]
 fn without_a_reserve_last_words_fail_and_harm_nothing() {
     for uncuttable in [false, true] {
-        let disk = SickDisk::new(Sickness { room: Some(300), uncuttable, ..Sickness::default() });
+        let disk = SickDisk::new(Sickness {
+            room: Some(300),
+            uncuttable,
+            ..Sickness::default()
+        });
         let mut journal = on(&disk);
         while journal.append(EntryKind::Event, &json!({})).is_ok() {}
         for _ in 0..3 {
@@ -172,13 +304,21 @@ fn without_a_reserve_last_words_fail_and_harm_nothing() {
         }
         let left = disk.written();
         let found = recover(&left).expect("what is left is at worst torn");
-        assert!(found.torn.is_some() && found.lines.len() >= 2, "{}", String::from_utf8_lossy(&left));
+        assert!(
+            found.torn.is_some() && found.lines.len() >= 2,
+            "{}",
+            String::from_utf8_lossy(&left)
+        );
     }
 }
 
 #[test]
 fn an_end_that_found_no_room_leaves_room_for_last_words() {
-    let disk = SickDisk::new(Sickness { room: Some(150), reserve: 4096, ..Sickness::default() });
+    let disk = SickDisk::new(Sickness {
+        room: Some(150),
+        reserve: 4096,
+        ..Sickness::default()
+    });
     let mut journal = on(&disk);
     assert!(journal.end(&json!({})).is_err());
     assert_eq!(journal.len(), 1);

@@ -1,9 +1,9 @@
 //! A blow on one of two floors against closed forms: the joined chain of a plastic blow, free masses under Hertz's contact,
 //! momentum and energy.
 
-use psd::mechanics::contact::ContactLaw;
-use psd::mechanics::frame::impact::{FrameImpactInput, FrameImpactSolver};
-use psd::mechanics::frame::{FrameMatrices, SymmetricBand, storey_stiffness};
+use psd::physics::contact::state::ContactLaw;
+use psd::physics::frame::{FrameMatrices, SymmetricBand, storey_stiffness};
+use psd::physics::impact::{FrameImpactSolver, Striking};
 use psd::plan::Integrator;
 
 use super::support::{at, number};
@@ -17,19 +17,35 @@ fn frame(damping: f64) -> FrameMatrices {
     let stiffness = storey_stiffness(&STOREYS);
     let mut matrix = stiffness.clone();
     matrix.scale(damping);
-    FrameMatrices { mass: SymmetricBand::diagonal(&MASSES), damping: matrix, stiffness }
+    FrameMatrices {
+        mass: SymmetricBand::diagonal(&MASSES),
+        damping: matrix,
+        stiffness,
+    }
 }
 
-fn solver(frame: &FrameMatrices, struck: usize, law: ContactLaw, integrator: Integrator, time_step: f64) -> FrameImpactSolver {
+fn solver(
+    frame: &FrameMatrices,
+    struck: usize,
+    law: ContactLaw,
+    integrator: Integrator,
+    time_step: f64,
+) -> FrameImpactSolver {
     let input = at(frame, integrator, time_step, &[0.0; 2]);
-    let input =
-        FrameImpactInput { frame: input, struck, striker_mass: STRIKER, striker_velocity: SPEED, gap: 0.0, gravity: 0.0, law };
-    FrameImpactSolver::new(&input).expect("an impact")
+    let striking = Striking {
+        struck,
+        mass: STRIKER,
+        velocity: SPEED,
+        gap: 0.0,
+        gravity: 0.0,
+        law,
+    };
+    FrameImpactSolver::on(&input, &striking).expect("an impact")
 }
 
 /// One step on the linear frame that the matrices say.
 fn step(solver: &mut FrameImpactSolver, frame: &FrameMatrices) {
-    let target = solver.predict(&[0.0; 2]).to_vec();
+    let target = solver.predict().to_vec();
     let mut force = [0.0; 2];
     frame.stiffness.mul_into(&target, &mut force);
     solver.complete(&target, &force);
@@ -40,7 +56,11 @@ fn step(solver: &mut FrameImpactSolver, frame: &FrameMatrices) {
 fn modal(masses: [f64; 2], v: [f64; 2], time: f64) -> [f64; 2] {
     let (k11, k12, k22) = (STOREYS[0] + STOREYS[1], -STOREYS[1], STOREYS[1]);
     // det(K − λM) = m₁m₂λ² − (k₁₁m₂ + k₂₂m₁)λ + k₁₁k₂₂ − k₁₂².
-    let (a, b, c) = (masses[0] * masses[1], k11 * masses[1] + k22 * masses[0], k11 * k22 - k12 * k12);
+    let (a, b, c) = (
+        masses[0] * masses[1],
+        k11 * masses[1] + k22 * masses[0],
+        k11 * k22 - k12 * k12,
+    );
     let root = (b * b - 4.0 * a * c).sqrt();
     let mut x = [0.0; 2];
     for squared in [(b - root) / (2.0 * a), (b + root) / (2.0 * a)] {
@@ -59,11 +79,21 @@ fn error(struck: usize, coefficient: f64, steps: u32) -> f64 {
     const END: f64 = 0.012;
     let frame = frame(0.0);
     let law = ContactLaw::Restitution { coefficient };
-    let mut solver = solver(&frame, struck, law, Integrator::Tangent, END / f64::from(steps));
+    let mut solver = solver(
+        &frame,
+        struck,
+        law,
+        Integrator::Tangent,
+        END / f64::from(steps),
+    );
     for _ in 0..steps {
         step(&mut solver, &frame);
     }
-    assert!(solver.striker().energies.error.abs() < 1e-12, "{} J", solver.striker().energies.error);
+    assert!(
+        solver.state().energies.error.abs() < 1e-12,
+        "{} J",
+        solver.state().energies.error
+    );
     // e = 0: the striker is part of that floor from the first instant on. Else floor and striker part.
     let (mut masses, mut velocity) = (MASSES, [0.0; 2]);
     if coefficient == 0.0 {
@@ -74,8 +104,12 @@ fn error(struck: usize, coefficient: f64, steps: u32) -> f64 {
     }
     let exact = modal(masses, velocity, END);
     let size = exact[0].abs().max(exact[1].abs());
-    let found = &solver.frame().displacement;
-    found.iter().zip(exact).map(|(found, exact)| (found - exact).abs() / size).fold(0.0, f64::max)
+    let found = &solver.structure().displacement;
+    found
+        .iter()
+        .zip(exact)
+        .map(|(found, exact)| (found - exact).abs() / size)
+        .fold(0.0, f64::max)
 }
 
 /// The two-mass chain, struck below or above, joined by a plastic blow or left behind by an elastic one: the modal solution,
@@ -83,9 +117,15 @@ fn error(struck: usize, coefficient: f64, steps: u32) -> f64 {
 #[test]
 fn a_struck_chain_is_its_modal_solution_to_second_order() {
     for (struck, coefficient) in [(0, 0.0), (1, 0.0), (0, 1.0), (1, 1.0)] {
-        let (coarse, fine) = (error(struck, coefficient, 40), error(struck, coefficient, 80));
+        let (coarse, fine) = (
+            error(struck, coefficient, 40),
+            error(struck, coefficient, 80),
+        );
         let order = (coarse / fine).log2();
-        assert!((order - 2.0).abs() < 0.05, "floor {struck}, e = {coefficient}: {coarse}, {fine}, order {order}");
+        assert!(
+            (order - 2.0).abs() < 0.05,
+            "floor {struck}, e = {coefficient}: {coarse}, {fine}, order {order}"
+        );
         assert!(fine < 1e-3, "floor {struck}, e = {coefficient}: {fine}");
     }
 }
@@ -100,20 +140,34 @@ fn a_hertz_blow_on_a_floor_is_that_of_free_masses() {
         let reduced = STRIKER * MASSES[struck] / (STRIKER + MASSES[struck]);
         let deepest = (1.25 * reduced * SPEED * SPEED / STIFFNESS).powf(0.4);
         let (peak, blow) = (STIFFNESS * deepest.powf(1.5), 2.943 * deepest / SPEED);
-        let law = ContactLaw::Hertz { stiffness: STIFFNESS, loss: 0.0, force_limit: None };
+        let law = ContactLaw::Hertz {
+            stiffness: STIFFNESS,
+            loss: 0.0,
+            force_limit: None,
+        };
         let time_step = blow / 50.0;
         let mut solver = solver(&frame, struck, law, Integrator::Tangent, time_step);
         let (mut largest, mut touching) = (0.0_f64, 0);
         for _ in 0..100 {
             step(&mut solver, &frame);
-            largest = largest.max(solver.striker().contact_force);
-            touching += usize::from(solver.striker().contact_force > 0.0);
+            largest = largest.max(solver.state().contact_force);
+            touching += usize::from(solver.state().contact_force > 0.0);
         }
         // The mean over a fiftieth of the blow at its top, and the frame's own give.
-        assert!((largest / peak - 1.0).abs() < 2e-3, "{largest} is not {peak}");
-        assert!((number(touching) * time_step / blow - 1.0).abs() < 0.03, "{touching} steps of {time_step}, not {blow}");
-        let energies = solver.striker().energies;
-        assert!(energies.contact_loss.abs() < 2e-4 * 5.0, "{} J", energies.contact_loss);
+        assert!(
+            (largest / peak - 1.0).abs() < 2e-3,
+            "{largest} is not {peak}"
+        );
+        assert!(
+            (number(touching) * time_step / blow - 1.0).abs() < 0.03,
+            "{touching} steps of {time_step}, not {blow}"
+        );
+        let energies = solver.state().energies;
+        assert!(
+            energies.contact_loss.abs() < 2e-4 * 5.0,
+            "{} J",
+            energies.contact_loss
+        );
         assert!(energies.error.abs() < 1e-9, "{} J", energies.error);
     }
 }
@@ -130,18 +184,30 @@ fn momentum_and_energy_close_under_the_laws_of_impulses() {
             let mut checked = 0;
             for _ in 0..2000 {
                 step(&mut solver, &frame);
-                let state = solver.frame();
+                let state = solver.structure();
                 let mut braked = [0.0; 2];
                 frame.damping.mul_into(&state.velocity, &mut braked);
                 let shear: f64 = state.restoring_force.iter().chain(&braked).sum();
                 ground += 0.5e-4 * (before + shear);
                 before = shear;
-                let carried: f64 = state.velocity.iter().zip(MASSES).map(|(velocity, mass)| mass * velocity).sum();
+                let carried: f64 = state
+                    .velocity
+                    .iter()
+                    .zip(MASSES)
+                    .map(|(velocity, mass)| mass * velocity)
+                    .sum();
                 // A force acts at both ends of its step; half of it is still to come.
-                let pending = 0.5e-4 * solver.striker().contact_force;
-                let whole = carried + pending + STRIKER * solver.striker().velocity + ground;
-                assert!((whole - STRIKER * SPEED).abs() < 1e-11, "{law:?}, {damping} s: {whole} N·s");
-                assert!(solver.striker().energies.error.abs() < 1e-11, "{} J", solver.striker().energies.error);
+                let pending = 0.5e-4 * solver.state().contact_force;
+                let whole = carried + pending + STRIKER * solver.state().striker_velocity + ground;
+                assert!(
+                    (whole - STRIKER * SPEED).abs() < 1e-11,
+                    "{law:?}, {damping} s: {whole} N·s"
+                );
+                assert!(
+                    solver.state().energies.error.abs() < 1e-11,
+                    "{} J",
+                    solver.state().energies.error
+                );
                 checked += 1;
             }
             assert_eq!(checked, 2000);

@@ -1,6 +1,9 @@
 //! What the field has published of these integrators: HHT-α, and what an actuator that misses its target does to a run.
 
-use psd::mechanics::frame::{Damping, FrameInput, FrameMatrices, FrameSolver, FrameState, SymmetricBand, damping_matrix, modes};
+use psd::physics::frame::{
+    Damping, FrameInput, FrameMatrices, FrameSolver, FrameState, SymmetricBand, damping_matrix,
+    modes,
+};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform};
@@ -33,14 +36,30 @@ fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
 fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
     let mut frame = uniform(3, 1500.0, 2e6);
     let found = modes(&frame.mass, &frame.stiffness).expect("modes");
-    frame.damping = damping_matrix(&Damping::rayleigh(0.05), &frame.mass, &frame.stiffness, &found).expect("ratios");
-    let dense = |band: &psd::mechanics::frame::SymmetricBand| {
+    frame.damping = damping_matrix(
+        &Damping::rayleigh(0.05),
+        &frame.mass,
+        &frame.stiffness,
+        &found,
+    )
+    .expect("ratios");
+    let dense = |band: &psd::physics::frame::SymmetricBand| {
         std::array::from_fn::<[f64; 3], 3, _>(|i| std::array::from_fn(|j| band.entry(i, j)))
     };
-    let (m, c, k) = (dense(&frame.mass), dense(&frame.damping), dense(&frame.stiffness));
-    let times = |a: &[[f64; 3]; 3], x: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|i| (0..3).map(|j| a[i][j] * x[j]).sum()) };
+    let (m, c, k) = (
+        dense(&frame.mass),
+        dense(&frame.damping),
+        dense(&frame.stiffness),
+    );
+    let times = |a: &[[f64; 3]; 3], x: &[f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|i| (0..3).map(|j| a[i][j] * x[j]).sum())
+    };
     let load = |time: f64, load: &mut [f64]| {
-        load.copy_from_slice(&[900.0 * (9.0 * time).cos(), -500.0 * (23.0 * time).sin(), 700.0]);
+        load.copy_from_slice(&[
+            900.0 * (9.0 * time).cos(),
+            -500.0 * (23.0 * time).sin(),
+            700.0,
+        ]);
     };
     let dt = 0.02;
     for alpha in [0.0, -0.05, -0.3] {
@@ -53,17 +72,29 @@ fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
         let r = times(&k, &d);
         let mut a = solve(m, std::array::from_fn(|i| f0[i] - r[i]));
         let effective: [[f64; 3]; 3] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| m[i][j] / (beta * dt * dt) + now * (gamma / (beta * dt) * c[i][j] + k[i][j]))
+            std::array::from_fn(|j| {
+                m[i][j] / (beta * dt * dt) + now * (gamma / (beta * dt) * c[i][j] + k[i][j])
+            })
         });
         let mut histories = Vec::new();
         for step in 1..=500_u32 {
             let mut f1 = [0.0; 3];
             load(f64::from(step) * dt, &mut f1);
             // a₁ = (d₁ − d − Δt v)/(βΔt²) − (½/β − 1)a, v₁ = v + Δt((1−γ)a + γa₁).
-            let known_a: [f64; 3] = std::array::from_fn(|i| -(d[i] + dt * v[i]) / (beta * dt * dt) - (0.5 / beta - 1.0) * a[i]);
-            let known_v: [f64; 3] = std::array::from_fn(|i| v[i] + dt * ((1.0 - gamma) * a[i] + gamma * known_a[i]));
-            let (ma, cv, cv0, kd0) = (times(&m, &known_a), times(&c, &known_v), times(&c, &v), times(&k, &d));
-            let right = |i: usize| now * f1[i] - alpha * f0[i] - ma[i] - now * cv[i] + alpha * (cv0[i] + kd0[i]);
+            let known_a: [f64; 3] = std::array::from_fn(|i| {
+                -(d[i] + dt * v[i]) / (beta * dt * dt) - (0.5 / beta - 1.0) * a[i]
+            });
+            let known_v: [f64; 3] =
+                std::array::from_fn(|i| v[i] + dt * ((1.0 - gamma) * a[i] + gamma * known_a[i]));
+            let (ma, cv, cv0, kd0) = (
+                times(&m, &known_a),
+                times(&c, &known_v),
+                times(&c, &v),
+                times(&k, &d),
+            );
+            let right = |i: usize| {
+                now * f1[i] - alpha * f0[i] - ma[i] - now * cv[i] + alpha * (cv0[i] + kd0[i])
+            };
             let d1 = solve(effective, std::array::from_fn(right));
             let a1: [f64; 3] = std::array::from_fn(|i| d1[i] / (beta * dt * dt) + known_a[i]);
             v = std::array::from_fn(|i| v[i] + dt * ((1.0 - gamma) * a[i] + gamma * a1[i]));
@@ -76,8 +107,16 @@ fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
         let tell = |state: &FrameState| {
             let (d, v) = histories[compared];
             for i in 0..3 {
-                assert!((state.displacement[i] - d[i]).abs() < 1e-13, "α {alpha}, step {}: {d:?}, {state:?}", state.step);
-                assert!((state.velocity[i] - v[i]).abs() < 1e-11, "α {alpha}, step {}: {v:?}, {state:?}", state.step);
+                assert!(
+                    (state.displacement[i] - d[i]).abs() < 1e-13,
+                    "α {alpha}, step {}: {d:?}, {state:?}",
+                    state.step
+                );
+                assert!(
+                    (state.velocity[i] - v[i]).abs() < 1e-11,
+                    "α {alpha}, step {}: {v:?}, {state:?}",
+                    state.step
+                );
             }
             compared += 1;
         };
@@ -107,7 +146,9 @@ fn amplitude(integrator: Integrator, i_modification: bool, miss: Miss) -> f64 {
         let target = solver.predict(&load)[0];
         place = miss(target_before, place, target);
         target_before = target;
-        let displacement = solver.complete(&[place], &[omega * omega * place]).displacement[0];
+        let displacement = solver
+            .complete(&[place], &[omega * omega * place])
+            .displacement[0];
         if step >= 450 {
             largest = largest.max(displacement.abs());
         }
@@ -127,20 +168,53 @@ fn a_missed_target_feeds_or_drains_a_run_as_published() {
     for (what, found, expected, digit) in [
         // Its steps no longer meet the very peak: the period has grown by 0.13 % in ten cycles.
         ("exact", amplitude(splitting, false, exact), 0.9989, 5e-5),
-        ("10 % short", amplitude(splitting, false, short), 1.4736, 5e-5),
-        ("10 % beyond", amplitude(splitting, false, beyond), 0.7005, 5e-5),
+        (
+            "10 % short",
+            amplitude(splitting, false, short),
+            1.4736,
+            5e-5,
+        ),
+        (
+            "10 % beyond",
+            amplitude(splitting, false, beyond),
+            0.7005,
+            5e-5,
+        ),
         ("2 % late", amplitude(splitting, false, late), 1.7856, 5e-5),
-        ("2 % late, with I-modification", amplitude(splitting, true, late), 0.9989, 5e-5),
-        ("explicit, 10 % short", amplitude(Integrator::Explicit, false, short_from_place), 1.5485, 5e-5),
-        ("explicit, 10 % beyond", amplitude(Integrator::Explicit, false, beyond_from_place), 0.7227, 5e-5),
+        (
+            "2 % late, with I-modification",
+            amplitude(splitting, true, late),
+            0.9989,
+            5e-5,
+        ),
+        (
+            "explicit, 10 % short",
+            amplitude(Integrator::Explicit, false, short_from_place),
+            1.5485,
+            5e-5,
+        ),
+        (
+            "explicit, 10 % beyond",
+            amplitude(Integrator::Explicit, false, beyond_from_place),
+            0.7227,
+            5e-5,
+        ),
     ] {
-        assert!((found - expected).abs() <= digit, "{what}: {found} is not {expected}");
+        assert!(
+            (found - expected).abs() <= digit,
+            "{what}: {found} is not {expected}"
+        );
     }
 }
 
 /// Ten cycles of 0.5 s in steps of 0.01 s by α-OS, from `start` (m) at rest: the largest |d| of each degree of freedom in the last
 /// cycle over its first. `miss` gives the place of an axis, from its number, the last target and the target.
-fn growth(frame: &FrameMatrices, start: &[f64], i_modification: bool, miss: impl Fn(usize, f64, f64) -> f64) -> Vec<f64> {
+fn growth(
+    frame: &FrameMatrices,
+    start: &[f64],
+    i_modification: bool,
+    miss: impl Fn(usize, f64, f64) -> f64,
+) -> Vec<f64> {
     let order = start.len();
     let (mut force, load) = (vec![0.0; order], vec![0.0; order]);
     frame.stiffness.mul_into(start, &mut force);
@@ -151,7 +225,8 @@ fn growth(frame: &FrameMatrices, start: &[f64], i_modification: bool, miss: impl
         ..at(frame, Integrator::AlphaOs { alpha: 0.0 }, 0.01, &load)
     };
     let mut solver = FrameSolver::new(&input).expect("a frame");
-    let (mut before, mut place, mut largest) = (start.to_vec(), start.to_vec(), vec![0.0_f64; order]);
+    let (mut before, mut place, mut largest) =
+        (start.to_vec(), start.to_vec(), vec![0.0_f64; order]);
     for step in 1..=500 {
         let target = solver.predict(&load).to_vec();
         for axis in 0..order {
@@ -161,7 +236,9 @@ fn growth(frame: &FrameMatrices, start: &[f64], i_modification: bool, miss: impl
         frame.stiffness.mul_into(&place, &mut force);
         let state = solver.complete(&place, &force);
         if step >= 450 {
-            for (largest, (now, first)) in largest.iter_mut().zip(state.displacement.iter().zip(start)) {
+            for (largest, (now, first)) in
+                largest.iter_mut().zip(state.displacement.iter().zip(start))
+            {
                 *largest = largest.max((now / first).abs());
             }
         }
@@ -181,7 +258,12 @@ fn a_diagonal_frame_grows_axis_by_axis_as_its_single_degrees_of_freedom() {
     let diagonal = |masses: &[f64]| FrameMatrices {
         mass: SymmetricBand::diagonal(masses),
         damping: SymmetricBand::zero(masses.len(), 0),
-        stiffness: SymmetricBand::diagonal(&masses.iter().map(|mass| omega * omega * mass).collect::<Vec<f64>>()),
+        stiffness: SymmetricBand::diagonal(
+            &masses
+                .iter()
+                .map(|mass| omega * omega * mass)
+                .collect::<Vec<f64>>(),
+        ),
     };
     let start = [1.0, 0.2, 3.0, 0.01];
     let errs = |axis: usize, before: f64, target: f64| match axis {
@@ -190,14 +272,27 @@ fn a_diagonal_frame_grows_axis_by_axis_as_its_single_degrees_of_freedom() {
         2 => BEYOND(before, target),
         _ => target - 0.02 * start[3] * (target - before).signum(),
     };
-    for (i_modification, printed) in [(false, [0.9989, 1.4736, 0.7005, 1.7856]), (true, [0.9989; 4])] {
+    for (i_modification, printed) in [
+        (false, [0.9989, 1.4736, 0.7005, 1.7856]),
+        (true, [0.9989; 4]),
+    ] {
         let found = growth(&diagonal(&masses), &start, i_modification, errs);
         for axis in 0..4 {
-            assert!((found[axis] - printed[axis]).abs() <= 5e-5, "{i_modification}: {found:?}");
-            let single = growth(&diagonal(&[masses[axis]]), &[start[axis]], i_modification, |_, before, target| {
-                errs(axis, before, target)
-            });
-            assert_eq!(found[axis].to_bits(), single[0].to_bits(), "axis {axis}: {found:?} and {single:?}");
+            assert!(
+                (found[axis] - printed[axis]).abs() <= 5e-5,
+                "{i_modification}: {found:?}"
+            );
+            let single = growth(
+                &diagonal(&[masses[axis]]),
+                &[start[axis]],
+                i_modification,
+                |_, before, target| errs(axis, before, target),
+            );
+            assert_eq!(
+                found[axis].to_bits(),
+                single[0].to_bits(),
+                "axis {axis}: {found:?} and {single:?}"
+            );
         }
     }
 }
@@ -211,18 +306,44 @@ fn a_coupled_frame_grows_mode_by_mode_and_is_corrected_by_its_whole_stiffness() 
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let frame = uniform(2, 1500.0, 1500.0 * omega * omega * golden * golden);
     let start = [0.01, 0.01 * golden];
-    let late = |axis: usize, before: f64, target: f64| target - 0.02 * start[axis] * (target - before).signum();
-    let of = |i_modification, errs: &dyn Fn(usize, f64, f64) -> f64| growth(&frame, &start, i_modification, errs);
+    let late = |axis: usize, before: f64, target: f64| {
+        target - 0.02 * start[axis] * (target - before).signum()
+    };
+    let of = |i_modification, errs: &dyn Fn(usize, f64, f64) -> f64| {
+        growth(&frame, &start, i_modification, errs)
+    };
     for (what, found, printed) in [
         ("exact", of(false, &|_, _, target| target), 0.9989),
-        ("10 % short", of(false, &|_, before, target| SHORT(before, target)), 1.4736),
-        ("10 % beyond", of(false, &|_, before, target| BEYOND(before, target)), 0.7005),
+        (
+            "10 % short",
+            of(false, &|_, before, target| SHORT(before, target)),
+            1.4736,
+        ),
+        (
+            "10 % beyond",
+            of(false, &|_, before, target| BEYOND(before, target)),
+            0.7005,
+        ),
         ("2 % late", of(false, &late), 1.7856),
         ("2 % late, with I-modification", of(true, &late), 0.9989),
     ] {
-        assert!(found.iter().all(|found| (found - printed).abs() <= 5e-5), "{what}: {found:?} is not {printed}");
+        assert!(
+            found.iter().all(|found| (found - printed).abs() <= 5e-5),
+            "{what}: {found:?} is not {printed}"
+        );
     }
     let exact = of(false, &|_, _, target| target);
-    let odd = of(true, &|axis, before, target| if axis == 0 { SHORT(before, target) } else { BEYOND(before, target) });
-    assert!(odd.iter().zip(&exact).all(|(odd, exact)| (odd / exact - 1.0).abs() < 1e-10), "{odd:?} and {exact:?}");
+    let odd = of(true, &|axis, before, target| {
+        if axis == 0 {
+            SHORT(before, target)
+        } else {
+            BEYOND(before, target)
+        }
+    });
+    assert!(
+        odd.iter()
+            .zip(&exact)
+            .all(|(odd, exact)| (odd / exact - 1.0).abs() < 1e-10),
+        "{odd:?} and {exact:?}"
+    );
 }

@@ -1,11 +1,11 @@
 //! Frames on ground that moves: a harmonic motion against its exact solution, and an elastic–plastic building under a record
 //! against exact arcs between yields and unloadings.
 
-use psd::mechanics::frame::{
-    Damping, FrameInput, FrameMatrices, FrameSolver, SymmetricBand, Tangents, damping_matrix, drifts, floor_forces, modes,
-    storey_stiffness,
+use psd::physics::frame::{
+    Damping, FrameInput, FrameMatrices, FrameSolver, SymmetricBand, Tangents, damping_matrix,
+    drifts, floor_forces, modes, storey_stiffness,
 };
-use psd::mechanics::specimen::{Bilinear, RestoringForce};
+use psd::physics::specimen::{Bilinear, RestoringForce};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform, uniform_frequency, uniform_shape};
@@ -17,7 +17,8 @@ fn shaken_frame(storeys: usize) -> FrameMatrices {
     let mut frame = uniform(storeys, 1500.0, 2e6);
     let found = modes(&frame.mass, &frame.stiffness).expect("modes");
     let damping = Damping::Modal(vec![RATIO; storeys]);
-    frame.damping = damping_matrix(&damping, &frame.mass, &frame.stiffness, &found).expect("ratios of modes");
+    frame.damping =
+        damping_matrix(&damping, &frame.mass, &frame.stiffness, &found).expect("ratios of modes");
     frame
 }
 
@@ -25,9 +26,16 @@ fn shaken_frame(storeys: usize) -> FrameMatrices {
 fn steady(storeys: usize, time: f64) -> Vec<f64> {
     let mut sum = vec![0.0; storeys];
     for mode in 1..=storeys {
-        let (shape, omega) = (uniform_shape(storeys, mode), uniform_frequency(storeys, mode, 1500.0, 2e6));
-        let share = shape.iter().sum::<f64>() / shape.iter().map(|entry| entry * entry).sum::<f64>();
-        let (real, imaginary) = (omega * omega - SHAKEN_AT * SHAKEN_AT, 2.0 * RATIO * omega * SHAKEN_AT);
+        let (shape, omega) = (
+            uniform_shape(storeys, mode),
+            uniform_frequency(storeys, mode, 1500.0, 2e6),
+        );
+        let share =
+            shape.iter().sum::<f64>() / shape.iter().map(|entry| entry * entry).sum::<f64>();
+        let (real, imaginary) = (
+            omega * omega - SHAKEN_AT * SHAKEN_AT,
+            2.0 * RATIO * omega * SHAKEN_AT,
+        );
         let size = real * real + imaginary * imaginary;
         let (sine, cosine) = (SHAKEN_AT * time).sin_cos();
         let answer = -2.0 * share * (real * sine - imaginary * cosine) / size;
@@ -43,17 +51,24 @@ fn steady(storeys: usize, time: f64) -> Vec<f64> {
 fn a_harmonic_ground_motion_ends_in_the_exact_steady_state() {
     for (storeys, end, steps) in [(2, 60.0, 12_000), (5, 60.0, 12_000), (20, 130.0, 72_000)] {
         let (frame, rest) = (shaken_frame(storeys), vec![0.0; storeys]);
-        for integrator in [Integrator::Tangent, Integrator::Explicit, Integrator::AlphaOs { alpha: -0.1 }] {
+        for integrator in [
+            Integrator::Tangent,
+            Integrator::Explicit,
+            Integrator::AlphaOs { alpha: -0.1 },
+        ] {
             let found = |steps: u32| {
                 let input = at(&frame, integrator, end / f64::from(steps), &rest);
-                let shaken = |time: f64, load: &mut [f64]| frame.ground_load(2.0 * (SHAKEN_AT * time).sin(), load);
+                let shaken = |time: f64, load: &mut [f64]| {
+                    frame.ground_load(2.0 * (SHAKEN_AT * time).sin(), load);
+                };
                 run_linear(&input, &rest, steps, shaken, |_| ()).displacement
             };
             let (coarse, fine, exact) = (found(steps), found(2 * steps), steady(storeys, end));
             let largest = exact.iter().copied().map(f64::abs).fold(0.0, f64::max);
             for floor in 0..storeys {
                 let (coarse, fine) = (coarse[floor] - exact[floor], fine[floor] - exact[floor]);
-                let said = format!("{storeys} storeys, {integrator:?}: {coarse}, {fine} of {largest} m");
+                let said =
+                    format!("{storeys} storeys, {integrator:?}: {coarse}, {fine} of {largest} m");
                 assert!((fine - coarse / 4.0).abs() < 1e-6 * largest, "{said}");
                 assert!(fine.abs() < 1e-3 * largest, "{said}");
             }
@@ -73,22 +88,37 @@ const SAMPLES: u32 = 300;
 fn sample(index: u32) -> f64 {
     let time = f64::from(index) * SAMPLE;
     let envelope = (time / 1.5).min(1.0) * (-(time - 1.5).max(0.0) / 2.5).exp();
-    envelope * (4.0 * (6.3 * time).sin() + 3.0 * (14.9 * time + 1.0).sin() + 2.0 * (31.0 * time + 2.0).sin())
+    envelope
+        * (4.0 * (6.3 * time).sin()
+            + 3.0 * (14.9 * time + 1.0).sin()
+            + 2.0 * (31.0 * time + 2.0).sin())
 }
 
 fn ground(time: f64) -> f64 {
     let place = (time / SAMPLE).clamp(0.0, f64::from(SAMPLES));
     let before = place.floor();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the record")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "within the record"
+    )]
     let index = before as u32;
     sample(index) + (place - before) * (sample(index + 1) - sample(index))
 }
 
 fn yielding_frame() -> FrameMatrices {
-    let (mass, stiffness) = (SymmetricBand::diagonal(&MASSES), storey_stiffness(&STIFFNESSES));
+    let (mass, stiffness) = (
+        SymmetricBand::diagonal(&MASSES),
+        storey_stiffness(&STIFFNESSES),
+    );
     let found = modes(&mass, &stiffness).expect("modes");
-    let damping = damping_matrix(&Damping::rayleigh(0.02), &mass, &stiffness, &found).expect("ratios of modes");
-    FrameMatrices { mass, damping, stiffness }
+    let damping = damping_matrix(&Damping::rayleigh(0.02), &mass, &stiffness, &found)
+        .expect("ratios of modes");
+    FrameMatrices {
+        mass,
+        damping,
+        stiffness,
+    }
 }
 
 /// The exact motion: while no storey changes its branch the frame is linear and the load a straight line, so that the state
@@ -110,38 +140,61 @@ impl Branch {
     /// Shear = slope · drift + constant.
     fn line(self, storey: usize) -> (f64, f64) {
         match self {
-            Self::Elastic { drift, shear } => (STIFFNESSES[storey], shear - STIFFNESSES[storey] * drift),
-            Self::Yielding(side) => (HARDENING[storey] * STIFFNESSES[storey], side * (1.0 - HARDENING[storey]) * YIELDS[storey]),
+            Self::Elastic { drift, shear } => {
+                (STIFFNESSES[storey], shear - STIFFNESSES[storey] * drift)
+            }
+            Self::Yielding(side) => (
+                HARDENING[storey] * STIFFNESSES[storey],
+                side * (1.0 - HARDENING[storey]) * YIELDS[storey],
+            ),
         }
     }
 }
 
 fn drift(state: &[f64; 6], storey: usize) -> f64 {
-    if storey == 0 { state[0] } else { state[1] - state[0] }
+    if storey == 0 {
+        state[0]
+    } else {
+        state[1] - state[0]
+    }
 }
 
 fn drift_rate(state: &[f64; 6], storey: usize) -> f64 {
-    if storey == 0 { state[2] } else { state[3] - state[2] }
+    if storey == 0 {
+        state[2]
+    } else {
+        state[3] - state[2]
+    }
 }
 
 impl Exact {
     /// d/dt of the state under ground acceleration a + b t.
     fn rate(&self, state: &[f64; 6], (a, b): (f64, f64)) -> [f64; 6] {
         let lines = [self.branches[0].line(0), self.branches[1].line(1)];
-        let shear = [0, 1].map(|storey| lines[storey].0 * drift(state, storey) + lines[storey].1 * state[4]);
+        let shear = [0, 1]
+            .map(|storey| lines[storey].0 * drift(state, storey) + lines[storey].1 * state[4]);
         let force = [shear[0] - shear[1], shear[1]];
         let push = a * state[4] + b * state[5];
         let acceleration = [0, 1].map(|i| {
             let damped = self.damping[i][0] * state[2] + self.damping[i][1] * state[3];
             -push - (force[i] + damped) / MASSES[i]
         });
-        [state[2], state[3], acceleration[0], acceleration[1], 0.0, state[4]]
+        [
+            state[2],
+            state[3],
+            acceleration[0],
+            acceleration[1],
+            0.0,
+            state[4],
+        ]
     }
 
     fn after(&self, duration: f64, load: (f64, f64)) -> [f64; 6] {
         let (mut sum, mut term) = (self.state, self.state);
         for power in 1..40 {
-            term = self.rate(&term, load).map(|entry| entry * duration / f64::from(power));
+            term = self
+                .rate(&term, load)
+                .map(|entry| entry * duration / f64::from(power));
             sum = std::array::from_fn(|i| sum[i] + term[i]);
         }
         sum
@@ -172,16 +225,24 @@ impl Exact {
             let (mut low, mut high) = (0.0, left);
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
-                if self.left(&self.after(middle, load)) == [false; 2] { low = middle } else { high = middle }
+                if self.left(&self.after(middle, load)) == [false; 2] {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
             }
             self.state = self.after(high, load);
             for (storey, gone) in self.left(&self.state).into_iter().enumerate() {
                 if gone {
-                    let (drift, rate) = (drift(&self.state, storey), drift_rate(&self.state, storey));
+                    let (drift, rate) =
+                        (drift(&self.state, storey), drift_rate(&self.state, storey));
                     let (slope, constant) = self.branches[storey].line(storey);
                     self.branches[storey] = match self.branches[storey] {
                         Branch::Elastic { .. } => Branch::Yielding(rate.signum()),
-                        Branch::Yielding(_) => Branch::Elastic { drift, shear: slope * drift + constant },
+                        Branch::Yielding(_) => Branch::Elastic {
+                            drift,
+                            shear: slope * drift + constant,
+                        },
                     };
                 }
             }
@@ -193,8 +254,15 @@ impl Exact {
     fn run() -> Vec<[f64; 2]> {
         let frame = yielding_frame();
         let damping = [0, 1].map(|i| [0, 1].map(|j| frame.damping.entry(i, j)));
-        let rest = Branch::Elastic { drift: 0.0, shear: 0.0 };
-        let mut exact = Self { damping, state: [0.0, 0.0, 0.0, 0.0, 1.0, 0.0], branches: [rest; 2] };
+        let rest = Branch::Elastic {
+            drift: 0.0,
+            shear: 0.0,
+        };
+        let mut exact = Self {
+            damping,
+            state: [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+            branches: [rest; 2],
+        };
         // Branches are looked at four times a millisecond: no event begins and ends between two looks.
         let looks = 80;
         (0..SAMPLES)
@@ -216,7 +284,11 @@ fn worst(integrator: Integrator, tangents: Tangents, steps: u32, exact: &[[f64; 
     let time_step = SAMPLE / f64::from(steps);
     let mut load = [0.0; 2];
     frame.ground_load(ground(0.0), &mut load);
-    let input = FrameInput { tangents, initial_load: &load.clone(), ..at(&frame, integrator, time_step, &[0.0; 2]) };
+    let input = FrameInput {
+        tangents,
+        initial_load: &load.clone(),
+        ..at(&frame, integrator, time_step, &[0.0; 2])
+    };
     let mut solver = FrameSolver::new(&input).expect("a frame");
     let mut storeys = [0, 1].map(|i| Bilinear::new(STIFFNESSES[i], YIELDS[i], HARDENING[i]));
     let (mut drift, mut force, mut shear) = ([0.0; 2], [0.0; 2], [0.0; 2]);
@@ -243,19 +315,36 @@ fn worst(integrator: Integrator, tangents: Tangents, steps: u32, exact: &[[f64; 
 #[test]
 fn a_yielding_building_converges_to_the_exact_motion() {
     let exact = Exact::run();
-    let peak = exact.iter().flatten().copied().map(f64::abs).fold(0.0, f64::max);
+    let peak = exact
+        .iter()
+        .flatten()
+        .copied()
+        .map(f64::abs)
+        .fold(0.0, f64::max);
     for (integrator, tangents) in [
-        (Integrator::Tangent, Tangents::Storeys { largest_ratio: 2.0 }),
+        (
+            Integrator::Tangent,
+            Tangents::Storeys { largest_ratio: 2.0 },
+        ),
         (Integrator::Explicit, Tangents::Initial),
         (Integrator::AlphaOs { alpha: 0.0 }, Tangents::Initial),
         (Integrator::AlphaOs { alpha: -0.1 }, Tangents::Initial),
     ] {
-        let (coarse, fine) = (worst(integrator, tangents, 4, &exact), worst(integrator, tangents, 128, &exact));
+        let (coarse, fine) = (
+            worst(integrator, tangents, 4, &exact),
+            worst(integrator, tangents, 128, &exact),
+        );
         let order = (coarse / fine).log2() / 5.0;
-        assert!((order - 2.0).abs() < 0.1, "{integrator:?}: order {order}, from {coarse} to {fine} m");
+        assert!(
+            (order - 2.0).abs() < 0.1,
+            "{integrator:?}: order {order}, from {coarse} to {fine} m"
+        );
         assert!(fine < 2e-5 * peak, "{integrator:?}: {fine} of {peak} m");
     }
     // The tangent form foretells the force by K_t: with K0 on a yielding storey it errs in every step and is of first order.
     let stale = [64, 128].map(|steps| worst(Integrator::Tangent, Tangents::Initial, steps, &exact));
-    assert!(((stale[0] / stale[1]).log2() - 1.0).abs() < 0.1, "{stale:?}");
+    assert!(
+        ((stale[0] / stale[1]).log2() - 1.0).abs() < 0.1,
+        "{stale:?}"
+    );
 }

@@ -1,20 +1,27 @@
 //! The integrators on linear frames: order of convergence, the stability limit, the energy balance, and what a storey's own
 //! tangent changes (nothing).
 
-use psd::mechanics::frame::{Damping, FrameInput, FrameMatrices, FrameSolver, FrameState, Tangents, damping_matrix, modes};
+use psd::physics::frame::{
+    Damping, FrameInput, FrameMatrices, FrameSolver, FrameState, Tangents, damping_matrix, modes,
+};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform, uniform_frequency, uniform_shape};
 
-const ALL: [Integrator; 4] =
-    [Integrator::Tangent, Integrator::Explicit, Integrator::AlphaOs { alpha: 0.0 }, Integrator::AlphaOs { alpha: -0.1 }];
+const ALL: [Integrator; 4] = [
+    Integrator::Tangent,
+    Integrator::Explicit,
+    Integrator::AlphaOs { alpha: 0.0 },
+    Integrator::AlphaOs { alpha: -0.1 },
+];
 
 /// Five storeys with 5 % in every mode.
 fn damped() -> FrameMatrices {
     let mut frame = uniform(5, 1500.0, 2e6);
     let found = modes(&frame.mass, &frame.stiffness).expect("modes");
     let damping = Damping::Modal(vec![0.05; 5]);
-    frame.damping = damping_matrix(&damping, &frame.mass, &frame.stiffness, &found).expect("ratios of modes");
+    frame.damping =
+        damping_matrix(&damping, &frame.mass, &frame.stiffness, &found).expect("ratios of modes");
     frame
 }
 
@@ -22,11 +29,19 @@ fn damped() -> FrameMatrices {
 fn exact_top(time: f64) -> f64 {
     (1..=5)
         .map(|mode| {
-            let (shape, omega) = (uniform_shape(5, mode), uniform_frequency(5, mode, 1500.0, 2e6));
-            let (sum, square) = (shape.iter().sum::<f64>(), shape.iter().map(|entry| entry * entry).sum::<f64>());
+            let (shape, omega) = (
+                uniform_shape(5, mode),
+                uniform_frequency(5, mode, 1500.0, 2e6),
+            );
+            let (sum, square) = (
+                shape.iter().sum::<f64>(),
+                shape.iter().map(|entry| entry * entry).sum::<f64>(),
+            );
             let (rate, rung) = (0.05 * omega, omega * (1.0_f64 - 0.05 * 0.05).sqrt());
             let amplitude = 0.01 * sum / square * shape[4];
-            amplitude * (-rate * time).exp() * ((rung * time).cos() + rate / rung * (rung * time).sin())
+            amplitude
+                * (-rate * time).exp()
+                * ((rung * time).cos() + rate / rung * (rung * time).sin())
         })
         .sum()
 }
@@ -38,7 +53,8 @@ fn every_integrator_is_of_second_order() {
     for integrator in ALL {
         let error = |steps: u32| {
             let input = at(&frame, integrator, end / f64::from(steps), &[0.0; 5]);
-            run_linear(&input, &[0.01; 5], steps, |_, load| load.fill(0.0), |_| ()).displacement[4] - exact_top(end)
+            run_linear(&input, &[0.01; 5], steps, |_, load| load.fill(0.0), |_| ()).displacement[4]
+                - exact_top(end)
         };
         let order = (error(1600) / error(3200)).log2();
         assert!((order - 2.0).abs() < 0.02, "{integrator:?}: order {order}");
@@ -51,9 +67,15 @@ fn growth(integrator: Integrator, time_step: f64, operator: f64) -> f64 {
     let frame = uniform(2, 1500.0, 2e6);
     let mut operator_stiffness = frame.stiffness.clone();
     operator_stiffness.scale(operator);
-    let shape: Vec<f64> = uniform_shape(2, 2).iter().map(|entry| 1e-6 * entry).collect();
+    let shape: Vec<f64> = uniform_shape(2, 2)
+        .iter()
+        .map(|entry| 1e-6 * entry)
+        .collect();
     let zero = [0.0; 2];
-    let input = FrameInput { operator_stiffness: &operator_stiffness, ..at(&frame, integrator, time_step, &zero) };
+    let input = FrameInput {
+        operator_stiffness: &operator_stiffness,
+        ..at(&frame, integrator, time_step, &zero)
+    };
     let mut largest = [0.0_f64; 2];
     let tell = |state: &FrameState| {
         let half = &mut largest[usize::from(state.step > 1000)];
@@ -66,7 +88,10 @@ fn growth(integrator: Integrator, time_step: f64, operator: f64) -> f64 {
 #[test]
 fn explicit_newmark_is_stable_up_to_the_shortest_period_over_pi() {
     let limit = 2.0 / uniform_frequency(2, 2, 1500.0, 2e6);
-    let (below, above) = (growth(Integrator::Explicit, 0.999 * limit, 1.0), growth(Integrator::Explicit, 1.001 * limit, 1.0));
+    let (below, above) = (
+        growth(Integrator::Explicit, 0.999 * limit, 1.0),
+        growth(Integrator::Explicit, 1.001 * limit, 1.0),
+    );
     assert!(below < 1.0 + 1e-3, "{below}");
     assert!(above > 1e10, "{above}");
 }
@@ -79,10 +104,16 @@ fn splitting_is_stable_at_any_step_while_its_operator_is_stiff_enough() {
     for time_step in [limit, 10.0 * limit, 1000.0 * limit] {
         for operator in [1.0, 1.5] {
             let found = growth(splitting, time_step, operator);
-            assert!(found < 1.0 + 1e-3, "Δt {time_step}, K_I {operator} K: {found}");
+            assert!(
+                found < 1.0 + 1e-3,
+                "Δt {time_step}, K_I {operator} K: {found}"
+            );
         }
     }
-    let (below, above) = (growth(splitting, 0.999 * limit, 0.75), growth(splitting, 1.001 * limit, 0.75));
+    let (below, above) = (
+        growth(splitting, 0.999 * limit, 0.75),
+        growth(splitting, 1.001 * limit, 0.75),
+    );
     assert!(below < 1.0 + 1e-3, "{below}");
     assert!(above > 1e10, "{above}");
 }
@@ -104,9 +135,19 @@ fn the_energy_balance_of_a_linear_frame_closes_to_rounding() {
     for integrator in [Integrator::Tangent, Integrator::AlphaOs { alpha: 0.0 }] {
         let mut worst = 0.0_f64;
         let tell = |state: &FrameState| worst = worst.max(state.energies.error.abs());
-        let last = run_linear(&at(&frame, integrator, 0.02, &[0.0; 5]), &[0.0; 5], 1000, shaken, tell);
+        let last = run_linear(
+            &at(&frame, integrator, 0.02, &[0.0; 5]),
+            &[0.0; 5],
+            1000,
+            shaken,
+            tell,
+        );
         assert!(last.energies.input > 100.0, "{:?}", last.energies);
-        assert!(worst < 1e-12 * last.energies.input, "{integrator:?}: {worst} of {:?}", last.energies);
+        assert!(
+            worst < 1e-12 * last.energies.input,
+            "{integrator:?}: {worst} of {:?}",
+            last.energies
+        );
     }
 }
 
@@ -117,7 +158,12 @@ fn the_error_of_the_explicit_balance_shrinks_with_the_square_of_the_step() {
     let worst = |steps: u32| {
         let mut worst = 0.0_f64;
         let tell = |state: &FrameState| worst = worst.max(state.energies.error.abs());
-        let input = at(&frame, Integrator::Explicit, 2.0 / f64::from(steps), &[0.0; 5]);
+        let input = at(
+            &frame,
+            Integrator::Explicit,
+            2.0 / f64::from(steps),
+            &[0.0; 5],
+        );
         run_linear(&input, &[0.01; 5], steps, |_, load| load.fill(0.0), tell);
         worst
     };
@@ -131,7 +177,11 @@ fn storey_tangents_of_a_linear_frame_change_no_bit() {
     let frame = uniform(20, 1500.0, 2e6);
     let run = |tangents: Tangents| {
         let zero = [0.0; 20];
-        let mut solver = FrameSolver::new(&FrameInput { tangents, ..at(&frame, Integrator::Tangent, 1e-3, &zero) }).expect("20");
+        let mut solver = FrameSolver::new(&FrameInput {
+            tangents,
+            ..at(&frame, Integrator::Tangent, 1e-3, &zero)
+        })
+        .expect("20");
         let (mut load, mut force) = ([0.0; 20], [0.0; 20]);
         for step in 1..=3000_u32 {
             frame.ground_load((f64::from(step) * 0.013).sin(), &mut load);
@@ -141,5 +191,8 @@ fn storey_tangents_of_a_linear_frame_change_no_bit() {
         }
         solver.state().displacement.clone()
     };
-    assert_eq!(run(Tangents::Initial), run(Tangents::Storeys { largest_ratio: 2.0 }));
+    assert_eq!(
+        run(Tangents::Initial),
+        run(Tangents::Storeys { largest_ratio: 2.0 })
+    );
 }

@@ -1,6 +1,8 @@
 //! Frames to test on, and runs of them on ideal specimens.
 
-use psd::mechanics::frame::{FrameInput, FrameMatrices, FrameSolver, FrameState, SymmetricBand, Tangents, storey_stiffness};
+use psd::physics::frame::{
+    FrameInput, FrameMatrices, FrameSolver, FrameState, SymmetricBand, Tangents, storey_stiffness,
+};
 use psd::plan::Integrator;
 
 /// Storeys of one mass (kg) and one stiffness (N/m), undamped.
@@ -15,13 +17,16 @@ pub fn uniform(storeys: usize, mass: f64, stiffness: f64) -> FrameMatrices {
 /// `ω_k` = 2√(k/m) sin((2k − 1)π / (2(2n + 1))), k from 1: a chain of n equal masses fixed at one end.
 pub fn uniform_frequency(storeys: usize, mode: usize, mass: f64, stiffness: f64) -> f64 {
     let (n, k) = (number(storeys), number(mode));
-    2.0 * (stiffness / mass).sqrt() * ((2.0 * k - 1.0) * std::f64::consts::PI / (2.0 * (2.0 * n + 1.0))).sin()
+    2.0 * (stiffness / mass).sqrt()
+        * ((2.0 * k - 1.0) * std::f64::consts::PI / (2.0 * (2.0 * n + 1.0))).sin()
 }
 
 /// Its shape, sin((2k − 1) j π / (2n + 1)) at floor j, from 1.
 pub fn uniform_shape(storeys: usize, mode: usize) -> Vec<f64> {
     let angle = (2.0 * number(mode) - 1.0) * std::f64::consts::PI / (2.0 * number(storeys) + 1.0);
-    (1..=storeys).map(|floor| (angle * number(floor)).sin()).collect()
+    (1..=storeys)
+        .map(|floor| (angle * number(floor)).sin())
+        .collect()
 }
 
 pub fn number(count: usize) -> f64 {
@@ -29,7 +34,12 @@ pub fn number(count: usize) -> f64 {
 }
 
 /// At rest, unloaded, read without noise.
-pub fn at<'a>(matrices: &'a FrameMatrices, integrator: Integrator, time_step: f64, zero: &'a [f64]) -> FrameInput<'a> {
+pub fn at<'a>(
+    matrices: &'a FrameMatrices,
+    integrator: Integrator,
+    time_step: f64,
+    zero: &'a [f64],
+) -> FrameInput<'a> {
     FrameInput {
         matrices,
         operator_stiffness: &matrices.stiffness,
@@ -58,8 +68,12 @@ pub fn run_linear(
     let (mut force, mut load_end) = (vec![0.0; order], vec![0.0; order]);
     stiffness.mul_into(displacement, &mut force);
     load(0.0, &mut load_end);
-    let start =
-        FrameInput { initial_displacement: displacement, initial_restoring_force: &force, initial_load: &load_end, ..*input };
+    let start = FrameInput {
+        initial_displacement: displacement,
+        initial_restoring_force: &force,
+        initial_load: &load_end,
+        ..*input
+    };
     let mut solver = FrameSolver::new(&start).expect("a frame");
     for step in 1..=steps {
         load(f64::from(step) * input.time_step, &mut load_end);

@@ -1,0 +1,58 @@
+//! `psd check`: all diagnostics of all plans; nothing moves.
+
+use super::explain_plan;
+use crate::cli::args::{CheckArguments, Format};
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::plan_file;
+use crate::cli::output::{give, tell};
+use crate::cli::settings::Settings;
+use crate::text::diagnostic::excerpt::one_line;
+use crate::text::diagnostic::json;
+
+/// Checks every plan, and says what each would do where asked.
+pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Failure> {
+    let mut exit = Exit::Met;
+    let mut found = Vec::new();
+    for path in &arguments.plans {
+        let checked = match plan_file::open(path, &arguments.plan_settings) {
+            Ok(checked) => checked,
+            // One file that cannot be read does not hide what is wrong with the others.
+            Err(failure) => {
+                tell(&failure.report(settings));
+                found.push(json::unreadable(
+                    &path.display().to_string(),
+                    &failure.to_string(),
+                    failure.place(),
+                ));
+                exit = exit.max(failure.exit());
+                continue;
+            }
+        };
+        match arguments.format {
+            Format::Human => plan_file::show(&checked, path, settings),
+            Format::Json => found.extend(plan_file::diagnostics(&checked, path)),
+        }
+        let Some(plan) = &checked.plan else {
+            exit = exit.max(Exit::Wrong);
+            continue;
+        };
+        if arguments.explain {
+            let dry = explain_plan::Explained::of(plan);
+            exit = exit.max(dry.exit());
+            match arguments.format {
+                Format::Human => give(&dry.text(settings))?,
+                Format::Json => tell(&dry.text(settings)),
+            }
+        } else if arguments.format == Format::Human {
+            let name = one_line(&path.display().to_string());
+            tell(&format!(
+                "{name}: {}\n",
+                settings.paint_note("the plan is sound")
+            ));
+        }
+    }
+    if arguments.format == Format::Json {
+        give(&json::text(&found))?;
+    }
+    Ok(exit)
+}

@@ -1,0 +1,131 @@
+//! `psd compare RUN RUN…`: runs side by side. In: run folders, read from their records, or folders of blessed results. Out:
+//! tables on standard output, and with `--out` a page, a CSV and the figures. It opens no rig and changes no run.
+
+use std::path::Path;
+
+use crate::cli::args::CompareArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::accepted::truth_in;
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::journal_of;
+use crate::cli::files::run_folder::{RunFolder, write_new};
+use crate::cli::output::give;
+use crate::evidence::{Folder, IssueFile, PlayedBack};
+use crate::golden::comparison;
+use crate::golden::comparison::{Comparison, Side};
+use crate::golden::{FIGURES, SUMMARY, older};
+use crate::report::comparison::page;
+use crate::report::summary::Summary;
+use crate::report::{Figures, OutputError, OutputFile, Run, figure_data};
+
+/// Lays runs side by side.
+pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {
+    let sides = arguments
+        .runs
+        .iter()
+        .map(|run| side(run))
+        .collect::<Result<Vec<Side>, Failure>>()?;
+    let folder = arguments
+        .out
+        .as_deref()
+        .map(|out| RunFolder::create(Some(out), out))
+        .transpose()?;
+    let compared = Comparison::of(&sides);
+    give(&comparison::told(&compared))?;
+    let Some(folder) = folder else {
+        return Ok(Exit::Met);
+    };
+    let mut drawn = Vec::new();
+    for sheet in comparison::sheets(&sides) {
+        let failed = |reason| OutputError::Figure {
+            figure: "comparison",
+            procedure: sheet.name.clone(),
+            reason,
+        };
+        let png = sheet.curves.png().map_err(failed)?;
+        write_new(
+            folder.path(),
+            &OutputFile {
+                path: format!("figures/{}.png", sheet.name),
+                bytes: png.clone(),
+            },
+        )?;
+        drawn.push((sheet.caption, png));
+    }
+    let file = |path: &str, text: String| OutputFile {
+        path: path.to_owned(),
+        bytes: text.into_bytes(),
+    };
+    write_new(
+        folder.path(),
+        &file("results.csv", comparison::csv(&compared)),
+    )?;
+    write_new(
+        folder.path(),
+        &file("comparison.html", page(&compared, &drawn)),
+    )?;
+    give(&format!("{}\n", folder.path().display()))?;
+    Ok(Exit::Met)
+}
+
+/// One run, from its record where it has one.
+fn side(run: &Path) -> Result<Side, Failure> {
+    let name = run.display().to_string();
+    if journal_of(run).exists() {
+        from_record(name, run)
+    } else {
+        from_results(name, run)
+    }
+}
+
+fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
+    let kept = Folder::read(run)?;
+    let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
+    let played = PlayedBack::of(record_file::read(run)?, issues.as_ref())
+        .map_err(|fault| Failure::file(run, fault))?;
+    if played.steps.is_some() {
+        return Err(Failure::file(
+            run,
+            "is a run that a client drove: it has no results to compare",
+        ));
+    }
+    let told = Run {
+        plan: &played.plan,
+        record: &played.record,
+        assessment: &played.assessment,
+        provenance: &played.provenance,
+    };
+    let summary = serde_json::to_value(Summary::of(&told)).map_err(OutputError::from)?;
+    let figures =
+        serde_json::from_slice::<Figures>(&figure_data(&told).bytes).map_err(OutputError::from)?;
+    Ok(Side {
+        name,
+        summary,
+        figures,
+        plan: played.plan.files.first().map(|file| file.text.clone()),
+    })
+}
+
+/// Blessed results hold the same numbers, and no plan.
+fn from_results(name: String, folder: &Path) -> Result<Side, Failure> {
+    let truth = truth_in(folder)?;
+    let Some(summary) = truth.text(SUMMARY) else {
+        return Err(
+            Failure::file(folder, "is no run: it has neither a record nor a summary")
+                .help("name a run folder, such as runs/beam-1, or a folder of blessed results"),
+        );
+    };
+    let summary = older::summary(summary)
+        .map_err(|error| Failure::file(folder.join(SUMMARY), error.to_string()))?;
+    let figures = match truth.text(FIGURES) {
+        Some(text) => serde_json::from_str(text)
+            .map_err(|error| Failure::file(folder.join(FIGURES), error.to_string()))?,
+        None => Figures::default(),
+    };
+    Ok(Side {
+        name,
+        summary,
+        figures,
+        plan: None,
+    })
+}

@@ -1,0 +1,213 @@
+//! What `psd check --explain` says of a frame before anything moves: its modes and its time step, and of the dry run its
+//! peaks. In: the steps of a shake, or of an impact on a storey. Out: rows of text.
+
+use crate::record::{Floors, Modes, ShakeHistory, ShakeStep, StruckFrame};
+use crate::units::Dimension;
+use crate::units::display::{digits, join, readable, significant, unit};
+
+/// One row a mode: period, damping, the part of the mass that goes with it, and its shape from the lowest floor up.
+pub fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {
+    let Some(modes) = modes else {
+        return Vec::new();
+    };
+    let head = [
+        "mode",
+        "period",
+        "damping",
+        "effective mass",
+        "shape, floor by floor",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    let percent = |fraction: f64| format!("{} %", significant(100.0 * fraction, 3));
+    let rows = modes.periods.iter().enumerate().map(|(mode, period)| {
+        let shape: Vec<String> = modes.shapes[mode]
+            .iter()
+            .map(|entry| digits(*entry, 1.0, Dimension::LENGTH))
+            .collect();
+        vec![
+            (mode + 1).to_string(),
+            readable(*period, Dimension::TIME),
+            percent(ratios.get(mode).copied().unwrap_or(0.0)),
+            percent(modes.effective_mass[mode]),
+            shape.join("  "),
+        ]
+    });
+    std::iter::once(head).chain(rows).collect()
+}
+
+/// The shapes of the first modes, drawn: one column a mode, the highest floor on top, the ground below. The largest entry
+/// of a shape stands at an end of its column.
+pub fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
+    const SHOWN: usize = 4;
+    /// Letters on either side of the middle.
+    const HALF: usize = 8;
+    const REACH: f64 = 8.0;
+    let Some(modes) = modes else {
+        return Vec::new();
+    };
+    let shown = modes.shapes.iter().take(SHOWN);
+    let line = |entry: f64| {
+        let mut letters = [' '; 2 * HALF + 1];
+        letters[HALF] = '│';
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "an entry is between −1 and 1"
+        )]
+        let place = (REACH * (1.0 + entry.clamp(-1.0, 1.0))).round() as usize;
+        letters[place] = '●';
+        letters.iter().collect::<String>()
+    };
+    let head = shown
+        .clone()
+        .enumerate()
+        .map(|(mode, _)| format!("mode {}", mode + 1));
+    let mut rows = vec![
+        std::iter::once("floor".to_owned())
+            .chain(head)
+            .collect::<Vec<_>>(),
+    ];
+    let floors = modes.shapes.first().map_or(0, Vec::len);
+    rows.extend((0..floors).rev().map(|floor| {
+        std::iter::once((floor + 1).to_string())
+            .chain(shown.clone().map(|shape| line(shape[floor])))
+            .collect()
+    }));
+    let ground = format!("{0}┴{0}", "─".repeat(HALF));
+    rows.push(
+        std::iter::once("ground".to_owned())
+            .chain(shown.map(|_| ground.clone()))
+            .collect(),
+    );
+    rows
+}
+
+/// The time step and the predicted peaks.
+pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
+    if history.steps.is_empty() {
+        return Vec::new();
+    }
+    let ratio = history.time_step / history.critical_time_step;
+    let judged = if ratio > 1.0 {
+        "ABOVE critical"
+    } else {
+        "of it"
+    };
+    let ends = history.steps.last().map_or(0.0, |step| step.time);
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    vec![
+        row(
+            "critical time step",
+            readable(history.critical_time_step, Dimension::TIME),
+        ),
+        row(
+            "chosen time step",
+            format!(
+                "{}, {} {judged}",
+                readable(history.time_step, Dimension::TIME),
+                significant(ratio, 3)
+            ),
+        ),
+        row(
+            "virtual time",
+            format!(
+                "{} in {} steps",
+                readable(ends, Dimension::TIME),
+                history.steps.len() - 1
+            ),
+        ),
+        row(
+            "largest displacement, floor by floor",
+            peaks(
+                &history.steps,
+                |step| step.computed.clone(),
+                Dimension::LENGTH,
+            ),
+        ),
+        row(
+            "largest drift, storey by storey",
+            peaks(&history.steps, ShakeStep::drift, Dimension::LENGTH),
+        ),
+        row(
+            "largest shear, storey by storey",
+            peaks(&history.steps, ShakeStep::shear, Dimension::FORCE),
+        ),
+        row(
+            "largest ground acceleration",
+            peaks(
+                &history.steps,
+                |step| vec![step.ground_acceleration],
+                Dimension::ACCELERATION,
+            ),
+        ),
+    ]
+}
+
+/// Of an impact on a storey: the predicted peaks of all floors and storeys.
+pub fn floors(history: &StruckFrame) -> Vec<Vec<String>> {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    vec![
+        row(
+            "largest displacement, floor by floor",
+            peaks(
+                &history.floors,
+                |step| step.computed.clone(),
+                Dimension::LENGTH,
+            ),
+        ),
+        row(
+            "largest drift, storey by storey",
+            peaks(&history.floors, Floors::drift, Dimension::LENGTH),
+        ),
+        row(
+            "largest shear, storey by storey",
+            peaks(&history.floors, Floors::shear, Dimension::FORCE),
+        ),
+    ]
+}
+
+/// Largest sizes, all in one unit.
+fn peaks<S>(steps: &[S], read: fn(&S) -> Vec<f64>, dimension: Dimension) -> String {
+    let mut largest: Vec<f64> = Vec::new();
+    for step in steps {
+        let values = read(step);
+        largest.resize(values.len(), 0.0);
+        for (largest, value) in largest.iter_mut().zip(values) {
+            *largest = largest.max(value.abs());
+        }
+    }
+    let (unit, factor) = unit(largest.iter().copied().fold(0.0, f64::max), dimension);
+    let numbers: Vec<String> = largest
+        .iter()
+        .map(|value| digits(*value, factor, dimension))
+        .collect();
+    join(&numbers.join(", "), &unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_stand_on_the_ground_with_their_largest_entry_at_an_end() {
+        let shapes = vec![vec![0.5, 1.0], vec![1.0, -0.7]];
+        let rows = super::shapes(Some(&Modes {
+            periods: vec![0.5, 0.2],
+            shapes,
+            participation: vec![1.2, 0.3],
+            effective_mass: vec![0.9, 0.1],
+        }));
+        let drawn: Vec<String> = rows.iter().map(|row| row.join("|")).collect();
+        assert_eq!(
+            drawn,
+            [
+                "floor|mode 1|mode 2",
+                "2|        │       ●|  ●     │        ",
+                "1|        │   ●    |        │       ●",
+                "ground|────────┴────────|────────┴────────",
+            ]
+        );
+        assert!(super::shapes(None).is_empty());
+    }
+}

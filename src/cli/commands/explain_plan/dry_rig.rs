@@ -1,0 +1,245 @@
+//! A virtual rig that notes how far, how fast and how hard it was driven, procedure by procedure. In: a plan.
+//! Out: the record of a run on it, and what was noted.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use crate::physics::tracking::trajectory::Path;
+use crate::plan::{Interval, Plan};
+use crate::record::Record;
+use crate::rig::{
+    DeclaredNoise, EachReading, Identity, OWN_SPEED, Offer, Reading, Rig, RigFault, virtual_rig,
+};
+use crate::run::{self, Inspection, Observer, StepReport};
+
+/// What one procedure asked of the rig, SI.
+#[derive(Clone, Debug)]
+pub struct Reach {
+    pub name: String,
+    pub keyword: String,
+    pub steps: u64,
+    /// Whether any target was sent.
+    pub moved: bool,
+    pub displacement: Interval,
+    pub force: Interval,
+    pub speed: f64,
+    pub increment: f64,
+    pub tracking_error: f64,
+    /// Rig time.
+    pub started: f64,
+    pub ended: f64,
+}
+
+/// The rig. It shares what it notes with the observer that hears which procedure runs.
+pub struct Watched {
+    inner: Box<dyn Rig>,
+    /// Of the rig that it stands for, m/s.
+    own_speed: Option<f64>,
+    reaches: Rc<RefCell<Vec<Reach>>>,
+    /// The last targets, m; before the first every axis is at 0.
+    target: Vec<f64>,
+}
+
+impl Watched {
+    /// Runs `plan` on its own virtual rig. `own_speed` is that of the rig that it stands for, m/s.
+    pub fn run(plan: &Plan, own_speed: Option<f64>) -> (Record, Vec<Reach>) {
+        let reaches = Rc::new(RefCell::new(Vec::new()));
+        let mut rig = Self {
+            inner: virtual_rig(plan),
+            own_speed,
+            reaches: Rc::clone(&reaches),
+            target: Vec::new(),
+        };
+        let record = run::run(
+            plan,
+            &mut rig,
+            &mut Listener {
+                reaches: Rc::clone(&reaches),
+            },
+        );
+        let noted = reaches.borrow().clone();
+        (record, noted)
+    }
+
+    fn note(&self, change: impl FnOnce(&mut Reach)) {
+        if let Some(reach) = self.reaches.borrow_mut().last_mut() {
+            change(reach);
+            reach.ended = self.inner.time();
+        }
+    }
+
+    fn note_target(&mut self, targets: &[f64], speed: f64) {
+        let before = self.target.iter().copied().chain(std::iter::repeat(0.0));
+        let increment = targets
+            .iter()
+            .zip(before)
+            .map(|(to, from)| (to - from).abs())
+            .fold(0.0, f64::max);
+        self.target = targets.to_vec();
+        self.note(|reach| {
+            reach.moved = true;
+            reach.displacement = targets.iter().copied().fold(reach.displacement, widened);
+            reach.increment = reach.increment.max(increment);
+            if increment > 0.0 {
+                reach.speed = reach.speed.max(speed.abs());
+            }
+        });
+    }
+
+    fn note_reading(&self, reading: &Reading, at_rest: bool) {
+        self.note(|reach| {
+            reach.force = reading.force.iter().copied().fold(reach.force, widened);
+            reach.displacement = reading
+                .displacement
+                .iter()
+                .copied()
+                .fold(reach.displacement, widened);
+            if at_rest && reach.moved {
+                let errors = reading
+                    .displacement
+                    .iter()
+                    .zip(&self.target)
+                    .map(|(measured, target)| (measured - target).abs());
+                reach.tracking_error = errors.fold(reach.tracking_error, f64::max);
+            }
+        });
+    }
+}
+
+/// Before anything is noted an interval is empty: its low end is above its high end.
+const EMPTY: Interval = Interval {
+    low: f64::INFINITY,
+    high: f64::NEG_INFINITY,
+};
+
+fn widened(interval: Interval, value: f64) -> Interval {
+    Interval {
+        low: interval.low.min(value),
+        high: interval.high.max(value),
+    }
+}
+
+impl Rig for Watched {
+    fn identity(&self) -> Identity {
+        self.inner.identity()
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.inner.degrees_of_freedom()
+    }
+
+    fn time(&self) -> f64 {
+        self.inner.time()
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+        let offer = self.inner.propose(targets, speed)?;
+        self.note_target(targets, speed.unwrap_or(OWN_SPEED));
+        Ok(offer)
+    }
+
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let done = self.inner.execute();
+        self.note(|_| ());
+        done
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        let done = self.inner.pause(seconds);
+        self.note(|_| ());
+        done
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        let reading = self.inner.read()?;
+        self.note_reading(&reading, true);
+        Ok(reading)
+    }
+
+    fn traverse(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.note_target(targets, velocity);
+        let mut readings = Vec::new();
+        let traversed = self
+            .inner
+            .traverse(targets, velocity, samples, &mut |reading| {
+                readings.push(reading.clone());
+                each(reading)
+            });
+        for reading in &readings {
+            self.note_reading(reading, false);
+        }
+        traversed
+    }
+
+    fn glide(
+        &mut self,
+        paths: &[Path],
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
+        self.note_target(&ends, paths.iter().map(Path::fastest).fold(0.0, f64::max));
+        let mut readings = Vec::new();
+        let glided = self.inner.glide(paths, samples, &mut |reading| {
+            readings.push(reading.clone());
+            each(reading)
+        });
+        for reading in &readings {
+            self.note_reading(reading, false);
+        }
+        glided
+    }
+
+    fn hold(&mut self) {
+        self.inner.hold();
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        self.inner.declared_noise()
+    }
+
+    fn own_speed(&self) -> Option<f64> {
+        self.own_speed
+    }
+}
+
+/// Hears which procedure runs; goes on at every inspection, where nobody stands before a specimen.
+struct Listener {
+    reaches: Rc<RefCell<Vec<Reach>>>,
+}
+
+impl Observer for Listener {
+    fn procedure_started(&mut self, name: &str, keyword: &str, _: Option<u64>) {
+        let mut reaches = self.reaches.borrow_mut();
+        let time = reaches.last().map_or(0.0, |last| last.ended);
+        reaches.push(Reach {
+            name: name.to_owned(),
+            keyword: keyword.to_owned(),
+            steps: 0,
+            moved: false,
+            displacement: EMPTY,
+            force: EMPTY,
+            speed: 0.0,
+            increment: 0.0,
+            tracking_error: 0.0,
+            started: time,
+            ended: time,
+        });
+    }
+
+    fn step_done(&mut self, StepReport { step, .. }: &StepReport) {
+        if let Some(reach) = self.reaches.borrow_mut().last_mut() {
+            reach.steps = reach.steps.max(*step);
+        }
+    }
+
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::go_on()
+    }
+}

@@ -1,0 +1,118 @@
+//! What `psd check --explain` tells of the start of a run on a real rig. In: the plan. Out: rows: where the plan's zero lies, where the
+//! rig must stand, which move is the first. It opens no rig.
+
+use crate::plan::{Datum, Plan};
+use crate::run::start;
+use crate::units::Dimension;
+use crate::units::display::{plain, stated};
+
+/// None of a virtual rig, which begins at 0.
+pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
+    let Some(link) = plan.rig.link.as_real() else {
+        return Vec::new();
+    };
+    let axes = 0..plan.rig.axes().unwrap_or(1);
+    let each = |of: &dyn Fn(usize) -> f64| {
+        let mut told: Vec<String> = axes
+            .clone()
+            .map(|axis| stated(of(axis), Dimension::LENGTH))
+            .collect();
+        told.dedup();
+        told.join(", ")
+    };
+    let band = each(&|axis| start::band(plan, link, axis));
+    let (zero, stands) = match link.datum {
+        Datum::Machine => (
+            "the rig's own zero",
+            format!(
+                "within {band} of the rig's own zero, or the run is refused before anything moves"
+            ),
+        ),
+        Datum::Here | Datum::At(_) => (
+            "where the rig stands when the run begins; it is told and recorded",
+            format!("anywhere, at rest within {band}, its specimen without load"),
+        ),
+    };
+    let probe = each(&|axis| link.gate_of(axis).probe);
+    let speed = plain(link.own_speed, Dimension::VELOCITY, 4);
+    let row = |name: &str, text: String| vec![name.to_owned(), text];
+    vec![
+        row("zero of the displacements", zero.to_owned()),
+        row("where the rig must stand", stands),
+        row(
+            "first move",
+            format!("{probe} at {speed}, and back: the gate"),
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::language::check::{LoadFault, Loader, Options, check};
+
+    struct NoFiles;
+
+    impl Loader for NoFiles {
+        fn load(&self, _: &str) -> Result<String, LoadFault> {
+            Err(LoadFault::NotFound)
+        }
+    }
+
+    /// The rows of a real rig with this line in its block.
+    fn told(line: &str) -> String {
+        let text = format!(
+            "specimen beam {{
+              mass      = 1 kg
+              behaviour = elastic(stiffness: 300 kN/m)
+            }}
+            limits {{
+              displacement = 2 mm
+              force        = 2 kN
+              speed        = 2 mm/s
+            }}
+            rig frame {{
+              link       = serial(port: \"/dev/none\", dialect: native)
+              settle     = within(0.005 mm, 50 N/s, for: 0.3 s)
+              safe_state = hold
+              gate       = probe(0.02 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)
+              resolution = 1 um
+              {line}
+            }}
+            move out {{ to = 1 mm }}"
+        );
+        let options = Options {
+            rig: Some("frame".to_owned()),
+            ..Options::default()
+        };
+        let checked = check("plan.psd", &text, &NoFiles, &options);
+        let plan = checked
+            .plan
+            .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+        rows(&plan)
+            .into_iter()
+            .map(|row| row.join(": "))
+            .collect::<Vec<_>>()
+            .join("\n")
+    }
+
+    #[test]
+    fn it_is_told_where_the_rig_must_stand_and_what_moves_first() {
+        let machine = told("");
+        assert!(
+            machine.contains("within 5 µm of the rig's own zero, or the run is refused"),
+            "{machine}"
+        );
+        assert!(
+            machine.contains("first move: 20 µm at 1 mm/s, and back"),
+            "{machine}"
+        );
+        assert_eq!(told("datum = machine"), machine);
+        let here = told("datum = here");
+        assert!(
+            here.contains("where the rig stands when the run begins")
+                && here.contains("without load"),
+            "{here}"
+        );
+    }
+}

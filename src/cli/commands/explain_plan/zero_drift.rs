@@ -1,0 +1,192 @@
+//! What `psd check --explain` tells of the zeros of a rig that watches them. In: the plan, the record of its dry run. Out: rows:
+//! when zeros are read, how long there is between them, which drift that leaves room for, and what a declared one comes to.
+
+use crate::plan::{DriftCheck, Plan, ZeroAfter};
+use crate::record::{Drift, Record};
+use crate::report::PredictedZeros;
+use crate::units::Dimension;
+use crate::units::display::{readable, stated};
+
+/// None of a rig that does not say how far its zeros may drift.
+pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
+    let Some(found) = &record.drift else {
+        return Vec::new();
+    };
+    let DriftCheck {
+        force,
+        displacement,
+        over,
+        after,
+    } = found.check;
+    let over_told = stated(over, Dimension::TIME);
+    let row = |name: &str, text: String| vec![name.to_owned(), text];
+    let also = displacement.map_or_else(String::new, |place| {
+        format!(", {} of displacement", stated(place, Dimension::LENGTH))
+    });
+    let mut rows = vec![row(
+        "allowed",
+        format!("{} of force{also}", stated(force, Dimension::FORCE)),
+    )];
+    rows.push(row(
+        "before the test",
+        format!("read over {over_told} at rest, before anything is loaded"),
+    ));
+    let holds = match found.held.count {
+        0 => format!("none is as long as {over_told}: nothing is seen in between"),
+        1 => format!(
+            "one is as long as {over_told}, {}",
+            readable(found.held.longest, Dimension::TIME)
+        ),
+        count => format!(
+            "{count} are as long as {over_told}, the longest {}",
+            readable(found.held.longest, Dimension::TIME)
+        ),
+    };
+    rows.push(row("holds", holds));
+    let between = time_between(found);
+    let later = between.map_or_else(String::new, |seconds| {
+        format!(
+            ", {} after those before",
+            readable(seconds, Dimension::TIME)
+        )
+    });
+    let read = match after {
+        ZeroAfter::Start => format!("back to where it began, and read over {over_told}{later}"),
+        ZeroAfter::Free => {
+            format!("a person takes the specimen off the load cell; read over {over_told}{later}")
+        }
+        ZeroAfter::Nowhere => "not read again: only rest and holds are judged".to_owned(),
+    };
+    rows.push(row("after the test", read));
+    let judged = judged_over(found);
+    let steady = readable(force / judged, Dimension::FORCE);
+    rows.push(row(
+        "a steady drift",
+        format!("of up to {steady}/s is within what is allowed"),
+    ));
+    if let Some(drift) = plan
+        .rig
+        .link
+        .as_virtual()
+        .map(|link| link.drift)
+        .filter(|drift| *drift != 0.0)
+    {
+        let comes_to = (drift * judged).abs();
+        let told = if comes_to <= force {
+            "within"
+        } else {
+            "BEYOND what is allowed: whatever reads the force stays undecided"
+        };
+        let text = format!(
+            "{}/s comes to {}: {told}",
+            readable(drift, Dimension::FORCE),
+            readable(comes_to, Dimension::FORCE)
+        );
+        rows.push(row("declared of this rig", text));
+    }
+    rows
+}
+
+/// The same as data.
+pub fn predicted(record: &Record) -> Option<PredictedZeros> {
+    let found = record.drift.as_ref()?;
+    let DriftCheck {
+        force,
+        displacement,
+        over,
+        after,
+    } = found.check;
+    Some(PredictedZeros {
+        allowed_force_n: force,
+        allowed_displacement_m: displacement,
+        over_s: over,
+        after: after.name(),
+        holds: found.held.count,
+        longest_hold_s: (found.held.count > 0).then_some(found.held.longest),
+        between_s: time_between(found),
+        steady_force_n_per_s: force / judged_over(found),
+    })
+}
+
+/// The longest time over which a drift is judged, s.
+fn judged_over(found: &Drift) -> f64 {
+    time_between(found).unwrap_or(0.0).max(found.check.over)
+}
+
+/// s between the zeros before and after; None where they are not read again.
+fn time_between(found: &Drift) -> Option<f64> {
+    let axis = found.axes.first()?;
+    axis.after.map(|after| after.time - axis.before.time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::language::check::{LoadFault, Loader, Options, check};
+    use crate::rig::virtual_rig;
+    use crate::run::{Unwatched, run};
+
+    struct NoFiles;
+
+    impl Loader for NoFiles {
+        fn load(&self, _: &str) -> Result<String, LoadFault> {
+            unreachable!("the plan uses no file")
+        }
+    }
+
+    /// Ten holds of 5 s, and 8 s of zeros.
+    fn told(declared: &str, check_of: &str) -> String {
+        let text = format!(
+            "specimen beam {{\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}}\nrig r {{\n  link = virtual({declared})\n{check_of}}}\n\
+             stiffness ramp k0 {{\n  displacements = 0.1 mm .. 1 mm step 0.1 mm\n  pause = 5 s\n}}\nrequire \"stiff\" k0.stiffness > 1 kN/m\n"
+        );
+        let checked = check("plan.psd", &text, &NoFiles, &Options::default());
+        let plan = checked
+            .plan
+            .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+        let record = run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched);
+        rows(&plan, &record)
+            .into_iter()
+            .map(|row| row.join(": ") + "\n")
+            .collect()
+    }
+
+    #[test]
+    fn what_is_declared_is_held_against_the_time_between_the_zeros() {
+        let within = told(
+            "drift: 0.02 N/s",
+            "  drift = within(5 N, 10 um, over: 4 s)\n",
+        );
+        assert!(
+            within.contains("allowed: 5 N of force, 10 µm of displacement"),
+            "{within}"
+        );
+        assert!(
+            within.contains("holds: 10 are as long as 4 s, the longest 5.000 s"),
+            "{within}"
+        );
+        assert!(
+            within.contains("back to where it began, and read over 4 s, 5"),
+            "between 50 s and 60 s: {within}"
+        );
+        assert!(
+            within.contains("comes to 1.") && within.contains(": within\n"),
+            "0.02 N/s over almost a minute: {within}"
+        );
+        let beyond = told("drift: 0.2 N/s", "  drift = within(5 N, over: 4 s)\n");
+        assert!(beyond.contains("BEYOND what is allowed"), "{beyond}");
+        let nowhere = told(
+            "drift: -0.2 N/s",
+            "  drift = within(5 N, over: 4 s, after: nowhere)\n",
+        );
+        assert!(
+            nowhere.contains("not read again") && nowhere.contains("comes to 0.8000 N: within"),
+            "{nowhere}"
+        );
+    }
+
+    #[test]
+    fn a_rig_that_does_not_say_is_not_told_of() {
+        assert_eq!(told("drift: 0.2 N/s", ""), "");
+    }
+}

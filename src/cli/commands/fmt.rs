@@ -1,0 +1,136 @@
+//! `psd fmt`: the canonical layout. In: files and folders. Out: the files rewritten, or with `--check` what would
+//! change. A file with syntax errors is left as it is.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use similar::TextDiff;
+
+use crate::cli::args::FmtArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::loader::{plain, read_plan};
+use crate::cli::files::plan_file::name_of;
+use crate::cli::output::{give, tell};
+use crate::cli::settings::Settings;
+use crate::language::syntax;
+use crate::text::diagnostic::excerpt::one_line;
+use crate::text::diagnostic::render::render_all;
+use crate::text::source::Sources;
+
+/// Formats every file named and every plan under every folder named.
+pub fn fmt(arguments: &FmtArguments, settings: Settings) -> Result<Exit, Failure> {
+    let mut exit = Exit::Met;
+    for path in plans(&arguments.paths)? {
+        let done = one(&path, arguments.check, settings).unwrap_or_else(|failure| {
+            tell(&failure.report(settings));
+            failure.exit()
+        });
+        exit = exit.max(done);
+    }
+    Ok(exit)
+}
+
+fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
+    let text = read_plan(path)?;
+    let Some(formatted) = canonical(path, &text, settings) else {
+        return Ok(Exit::Wrong);
+    };
+    if formatted == text {
+        return Ok(Exit::Met);
+    }
+    if check {
+        let name = one_line(&path.display().to_string());
+        let diff = TextDiff::from_lines(&text, &formatted);
+        give(
+            &diff
+                .unified_diff()
+                .context_radius(3)
+                .header(&name, &format!("{name} (formatted)"))
+                .to_string(),
+        )?;
+        return Ok(Exit::Missed);
+    }
+    // Guards a person's work against the formatter itself: what it wrote must read without fault and stay as it is.
+    if canonical(path, &formatted, settings).as_deref() != Some(formatted.as_str()) {
+        return Err(Failure::file(
+            path,
+            "left as it is: its formatted text would not stay the same",
+        ));
+    }
+    replace(path, &formatted).map_err(|error| Failure::file(path, plain(&error)))?;
+    tell(&format!(
+        "formatted {}\n",
+        one_line(&path.display().to_string())
+    ));
+    Ok(Exit::Met)
+}
+
+/// The canonical text. None, and told, if the file has syntax errors.
+fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
+    let mut sources = Sources::default();
+    let file = sources.add(name_of(path), text);
+    let (ast, faults) = syntax::parse(&sources, file);
+    if faults
+        .iter()
+        .any(crate::text::diagnostic::Diagnostic::is_error)
+    {
+        tell(&render_all(&faults, &sources, &settings.appearance(path)));
+        return None;
+    }
+    Some(syntax::format(&ast, text))
+}
+
+/// Writes beside the file and renames, so that at no moment half a plan is on disk. A link stays a link.
+fn replace(path: &Path, text: &str) -> std::io::Result<()> {
+    let place = path.canonicalize()?;
+    let temporary = place.with_file_name(format!(".{}.{}", name_of(&place), std::process::id()));
+    let write = || -> std::io::Result<()> {
+        let mut file = std::fs::OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(&temporary)?;
+        file.write_all(text.as_bytes())?;
+        file.set_permissions(place.metadata()?.permissions())?;
+        file.sync_all()?;
+        std::fs::rename(&temporary, &place)
+    };
+    write().inspect_err(|_| {
+        // The first error is the one to tell.
+        let _ = std::fs::remove_file(&temporary);
+    })
+}
+
+/// The files named, and every `.psd` file under the folders named, in order of name. Links to folders and hidden
+/// folders are not entered.
+fn plans(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut found = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            walk(path, &mut found)?;
+        } else {
+            found.push(path.clone());
+        }
+    }
+    Ok(found)
+}
+
+fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
+    let mut entries = std::fs::read_dir(folder)
+        .map_err(failed)?
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(failed)?;
+    entries.sort_by_key(std::fs::DirEntry::file_name);
+    for entry in entries {
+        let (path, kind) = (entry.path(), entry.file_type().map_err(failed)?);
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        if kind.is_dir() {
+            walk(&path, found)?;
+        } else if kind.is_file() && path.extension().is_some_and(|extension| extension == "psd") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}

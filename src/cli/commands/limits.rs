@@ -1,0 +1,82 @@
+//! `psd limits`: how large a plan may be. Each bound is read from the one constant that holds it.
+
+use std::fmt::Write as _;
+
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::output::give;
+use crate::language::check;
+use crate::language::syntax::limits as syntax;
+use crate::plan;
+use crate::procedures::{damping_sweep, stiffness_ramp};
+use crate::record::journal;
+use crate::text::diagnostic::render;
+
+/// Gives every bound of the language.
+pub fn limits() -> Result<Exit, Failure> {
+    let counted = [
+        (syntax::FILE_BYTES, "bytes of one file"),
+        (syntax::LINE_BYTES, "bytes of one line"),
+        (syntax::NAME_CHARS, "characters of one name"),
+        (syntax::TEXT_BYTES, "bytes of one text"),
+        (syntax::NUMBER_CHARS, "characters of one number"),
+        (syntax::NESTING, "brackets inside brackets"),
+        (
+            syntax::OPERATORS,
+            "operators from the root of an expression to a leaf",
+        ),
+        (
+            syntax::TOKENS,
+            "words, numbers, texts and signs of one file",
+        ),
+        (syntax::FAULTS, "faults reported for one file"),
+        (
+            render::DRAWN,
+            "faults drawn on a terminal, all with `--format json`",
+        ),
+        (
+            journal::LINE_BYTES,
+            "bytes of one record of a run, its newline included",
+        ),
+        (check::MOST_FILES, "files of one plan, the plan included"),
+        (check::DEEPEST, "files that use files, one inside another"),
+        (
+            check::DEEPEST_VALUES,
+            "values that need one another, one inside another",
+        ),
+        (
+            check::MOST_TERMS,
+            "results and operators of one value, those of the values it names counted in",
+        ),
+        (check::MOST_ENTRIES, "entries of one list or range"),
+        (check::MOST_GROUND_SAMPLES, "samples of one ground motion"),
+        (plan::MOST_STOREYS, "storeys of one frame"),
+    ]
+    .map(|(bound, what)| (bound.to_string(), what));
+    let reckoned = [
+        (
+            stiffness_ramp::MOST_READINGS,
+            "readings of one stiffness ramp",
+        ),
+        (
+            damping_sweep::MOST_SAMPLES,
+            "readings of one stroke of a damping sweep",
+        ),
+        (
+            plan::MOST_STEPS,
+            "steps of one impact, or of a shake times its storeys",
+        ),
+    ]
+    .map(|(bound, what)| (format!("{bound:.0}"), what));
+    let record = [(
+        journal::MOST_BYTES.to_string(),
+        "bytes of the record of one run",
+    )];
+    give(&counted.iter().chain(&reckoned).chain(&record).fold(
+        String::new(),
+        |mut text, (bound, what)| {
+            let _ = writeln!(text, "{bound:>10}  {what}");
+            text
+        },
+    ))?;
+    Ok(Exit::Met)
+}

@@ -1,0 +1,119 @@
+//! `psd report RUN`: the results anew, from the record alone. In: the folder of a run. Out: every file the run wrote, byte
+//! for byte, into a folder that has none, or not all of them, with a copy of the record where that is another folder; with an amendment, a report
+//! of its own beside the one it takes the place of. It opens no rig, changes no record and overwrites nothing; of a run that is
+//! still going on it makes nothing.
+
+use std::path::{Path, PathBuf};
+
+use super::issue::amend;
+use crate::cli::args::ReportArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::finish_run::{into, write_made};
+use crate::cli::files::loader::plain;
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::journal_of;
+use crate::cli::files::run_folder::{FolderShelf, RunFolder};
+use crate::cli::files::writing::Telling;
+use crate::cli::output::{give, tell, tell_words};
+use crate::cli::settings::Settings;
+use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, held_issue, stands};
+use crate::record::journal::FileStorage;
+use crate::report;
+use crate::report::Run;
+
+/// Makes the results of one run.
+pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
+    if arguments.amend {
+        return amend(arguments, settings);
+    }
+    let run = &arguments.run;
+    let journal = journal_of(run);
+    let _still = journal
+        .exists()
+        .then(|| FileStorage::keep_still(&journal))
+        .transpose()?;
+    let kept = Folder::read(run)?;
+    let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
+    let read = record_file::read(run)?;
+    stands(&read).map_err(|fault| {
+        Failure::file(journal, fault).help("no report is made of a record that does not verify")
+    })?;
+    let played =
+        PlayedBack::of(read, issues.as_ref()).map_err(|fault| Failure::file(run, fault))?;
+    let folder = match &arguments.out {
+        Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
+        None => without_results(run)?,
+    };
+    let beside = held_issue(&kept).map(|(name, held)| (name.to_owned(), held.digest.clone()));
+    let beside: Vec<(String, String)> = kept.kept().into_iter().chain(beside).collect();
+    // What a manifest lists lies beside it: another folder is a whole run folder, and verifies.
+    if folder != *run {
+        beside
+            .iter()
+            .try_for_each(|(name, _)| copy(run, &folder, name))?;
+    }
+    let exit = conclude_played(&folder, &played, &beside, settings)?;
+    give(&format!("{}\n", folder.display()))?;
+    Ok(exit)
+}
+
+/// Copies one file of a run, by its name in the folder.
+fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
+    let to = folder.join(name);
+    let failed = |error: std::io::Error| Failure::file(&to, plain(&error));
+    if let Some(above) = to.parent() {
+        std::fs::create_dir_all(above).map_err(failed)?;
+    }
+    std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
+}
+
+/// Tells the verdict of a record played back, and writes its results.
+pub fn conclude_played(
+    folder: &Path,
+    played: &PlayedBack,
+    beside: &[(String, String)],
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let PlayedBack {
+        plan,
+        provenance,
+        record,
+        assessment,
+        mismatch,
+        steps,
+    } = played;
+    if steps.is_none() {
+        tell_words(
+            &report::console::verdict_text(
+                &Run {
+                    plan,
+                    record,
+                    assessment,
+                    provenance,
+                },
+                settings.color,
+            ),
+            settings,
+        );
+    }
+    tell(&into(folder));
+    write_made(FolderShelf::replacing(folder), beside, |shelf| {
+        played.results(&mut Telling::over(shelf, settings))
+    })?;
+    let exit = Exit::from(assessment.verdict);
+    let Some(mismatch) = mismatch else {
+        return Ok(exit);
+    };
+    tell(&format!("  the record does not fit the plan: {mismatch}\n"));
+    Ok(exit.max(Exit::Fault))
+}
+
+/// The run folder itself, if its results did not come to their end: the manifest is written last.
+fn without_results(run: &Path) -> Result<PathBuf, Failure> {
+    if run.join(MANIFEST).exists() {
+        return Err(
+            Failure::file(run, "has results already").help("name a new folder with `--out`")
+        );
+    }
+    Ok(run.to_owned())
+}

@@ -1,0 +1,434 @@
+//! `psd resume RUN`: goes on with a run on a real rig. In: the folder of a run that was stopped or cut off, and who takes
+//! it upon them. Out: the same run, to its end. The record is played before a port is opened. Nothing moves before record, plan,
+//! program and rig are known to be those of the run, and the target in doubt is settled by asking the rig.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+use crate::cli::args::ResumeArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::finish_run::conclude;
+use crate::cli::files::loader::plain;
+use crate::cli::files::provenance::{BUILD, TOOLCHAIN};
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::{ReadRecord, journal_of};
+use crate::cli::files::{disk_space, plan_file, provenance};
+use crate::cli::operator::watch::{Attendance, Shared, Signals, Watcher};
+use crate::cli::operator::{confirm_release, expected, held, real_rig};
+use crate::cli::output::{give, tell};
+use crate::cli::settings::Settings;
+use crate::evidence::MANIFEST;
+use crate::plan::{Plan, RealLink};
+use crate::record::equipment::{Device, Equipment};
+use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
+use crate::report::Provenance;
+use crate::rig::real::RealRig;
+use crate::rig::{Rig as _, Wish, connect};
+use crate::run::replay;
+use crate::run::replay::{
+    AmendBody, Assurance, Bands, GoesOn, Header, Played, RecoverBody, ResumeBody, RigBody,
+};
+
+/// Goes on with one run.
+pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
+    for (what, text) in [
+        ("operator", &arguments.operator),
+        ("reason", &arguments.reason),
+    ] {
+        if text.trim().is_empty() || text.len() > 1024 {
+            return Err(Failure::command_line(format!(
+                "`--{what}` says nothing, or too much"
+            )));
+        }
+    }
+    let path = journal_of(&arguments.run);
+    let mut storage = FileStorage::open_existing(&path)?;
+    let read = record_file::from_bytes(&path, &storage.contents()?)?;
+    if read.played.ended {
+        let run = arguments.run.display();
+        let failure = Failure::file(&arguments.run, replay::Refusal::Ended.to_string());
+        // The manifest is written last.
+        return Err(if arguments.run.join(MANIFEST).exists() {
+            failure
+        } else {
+            failure.help(format!(
+                "its results are not all there: `psd report {run}` makes them from the record"
+            ))
+        });
+    }
+    if read.played.header.served.as_deref() == Some(replay::BY_HAND) {
+        return Err(
+            Failure::command_line("this was done by hand: there is nothing to go on with")
+                .help("`psd rig jog` goes from where the rig stands"),
+        );
+    }
+    if read.played.header.served.is_some() {
+        return Err(Failure::command_line(
+            "a client drove this run: psd cannot go on in its place",
+        )
+        .help("start it anew with `psd rig serve`"));
+    }
+    let Some(link) = read.plan.rig.link.as_real().cloned() else {
+        return Err(Failure::command_line(
+            "a run on a virtual rig moved nothing: there is nothing to go on with",
+        )
+        .help("start it anew with `psd run`"));
+    };
+    let (plan, provenance, amendment) = what_holds(arguments, &read)?;
+
+    replay::same_measure(&read.plan.rig, &plan.rig)?;
+    replay::not_restarted(&read.played, &assured(arguments))?;
+    disk_space::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
+
+    let steps = read
+        .played
+        .lines
+        .iter()
+        .filter(|line| line.kind == EntryKind::Step)
+        .count() as u64;
+    let expected = expected::rest(expected::of(&plan), steps);
+    let attendance = Attendance {
+        yes: arguments.yes,
+        operator: Some(arguments.operator.clone()),
+    };
+    let wish = Wish::default().letting_go(arguments.let_go);
+    // Its zero is where it was when the run began, wherever the rig stands now.
+    let datum = read
+        .played
+        .rig
+        .as_ref()
+        .and_then(|rig| rig.datum.as_deref());
+    let at_its_datum = plan.rig.with_recorded_datum(datum);
+    let signals = Signals::caught(&wish).map_err(Failure::Signals)?;
+    let simulated = read
+        .played
+        .last_rig
+        .as_ref()
+        .is_some_and(|rig| rig.identity.simulated);
+    let watcher = RefCell::new(Watcher::new(
+        settings,
+        &attendance,
+        &plan,
+        simulated,
+        signals,
+    ));
+    let (mut connected, mut torn) = (None, None);
+    let (opened, put_aside) = (&mut connected, &mut torn);
+    let begin = || {
+        if wish.wants_end() {
+            return Err(Failure::NotReleased {
+                reason: "stopped on request".to_owned(),
+            });
+        }
+        let rig = &mut opened
+            .insert(connect(&at_its_datum, &plan.limits, &wish)?)
+            .rig;
+        watcher.borrow_mut().watch(rig.live());
+        watcher.borrow_mut().expect(expected);
+        let resumption = settle(
+            arguments,
+            &plan,
+            &link,
+            &read.played,
+            rig,
+            &mut watcher.borrow_mut(),
+        )?;
+
+        // From here on the run goes on: until now the record has not changed.
+        *put_aside = storage.truncate_to(read.recovered.whole)?;
+        let mut journal =
+            Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
+        let mut played = read.played.clone();
+        if let Some(torn) = put_aside {
+            let name = torn
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            journal.append(
+                EntryKind::Recover,
+                &RecoverBody {
+                    t: played.time,
+                    put_aside: name,
+                },
+            )?;
+            played.recovered();
+        }
+        if let Some((amendment, texts)) = amendment {
+            replay::amend(&mut journal, &amendment, &texts)?;
+            played.amended(amendment);
+        }
+        journal.append(
+            EntryKind::Rig,
+            &RigBody {
+                t: played.time,
+                ..RigBody::of(rig)
+            },
+        )?;
+        journal.append(EntryKind::Resume, &resumption)?;
+        journal.sync()?;
+        played.resumed(resumption);
+        put_results_aside(&arguments.run)?;
+        Ok(GoesOn {
+            rig,
+            journal,
+            played,
+        })
+    };
+    let recorded = replay::resume(
+        &plan,
+        &read.played,
+        &mut Shared(&watcher),
+        real_rig::wall_clock(),
+        begin,
+    );
+    let mut watcher = watcher.into_inner();
+    let wanted = match (&recorded, &mut connected) {
+        (Ok(recorded), Some(connected)) => {
+            held::stay(&mut connected.rig, &mut watcher, &recorded.record)
+        }
+        _ => None,
+    };
+    watcher.finish();
+    // Nobody speaks with the rig while the results are written: it is left as it stands.
+    drop((connected, watcher));
+    let recorded = recorded?;
+    if let Some(torn) = torn {
+        tell(&format!(
+            "  a torn end of the record was put aside: {}\n",
+            torn.display()
+        ));
+    }
+    if let Some(reason) = wanted
+        && let Some(exit) = held::go_on(
+            &arguments.run,
+            &arguments.operator,
+            reason,
+            &recorded,
+            settings,
+        )?
+    {
+        return Ok(exit);
+    }
+    let exit = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
+    give(&format!("{}\n", arguments.run.display()))?;
+    Ok(exit)
+}
+
+/// The plan and the program that hold from here on; another than the record's needs an amendment.
+type Held = (Plan, Provenance, Option<(AmendBody, Vec<String>)>);
+
+fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Failure> {
+    let recorded = &read.played.header;
+    let mut differences = Vec::new();
+    if recorded.build != BUILD {
+        differences.push(format!(
+            "program: {} build {} became {} build {BUILD}",
+            recorded.psd,
+            recorded.build,
+            env!("CARGO_PKG_VERSION")
+        ));
+    }
+    let was = equipment_of(read)?;
+    let (mut plan, mut header, mut texts) = (
+        read.plan.clone(),
+        recorded.clone(),
+        read.played.texts.clone(),
+    );
+    if let Some(path) = &arguments.plan {
+        let options = real_rig::settings_of(recorded);
+        let checked = plan_file::open(path, &options)?;
+        let Some(given) = checked.plan else {
+            return Err(Failure::command_line(format!(
+                "{} has errors: see `psd check`",
+                path.display()
+            )));
+        };
+        let nobody = record_file::Circumstances::default();
+        let now = record_file::header(
+            &given,
+            was.device.clone(),
+            &options,
+            &provenance::of(&given, options.date.as_deref()),
+            nobody,
+        );
+        differences.extend(changed_files(recorded, &now));
+        header = Header {
+            files: now.files,
+            ..header
+        };
+        texts = record_file::texts(&given);
+        plan = given;
+    }
+    let now = Equipment::of(&plan, was.device.clone());
+    if let Some(what) = was.measures_otherwise(&now) {
+        return Err(replay::Refusal::OtherMeasure { what }.into());
+    }
+    differences.extend(was.changes(&now));
+    header.equipment = Some(now);
+    if differences.is_empty() {
+        return Ok((plan, read.provenance.clone(), None));
+    }
+    if !arguments.amend {
+        let told = differences.join("\n  ");
+        return Err(
+            Failure::command_line(format!("not what the run began with:\n  {told}")).help(
+                "`--amend` accepts it; who and why go into the record and onto the certificate",
+            ),
+        );
+    }
+    header = Header {
+        psd: env!("CARGO_PKG_VERSION").to_owned(),
+        build: BUILD.to_owned(),
+        toolchain: TOOLCHAIN.to_owned(),
+        ..header
+    };
+    let plan_sha256 = header
+        .files
+        .first()
+        .map_or_else(String::new, |file| file.sha256.clone());
+    let (equipment, build) = (header.equipment.clone(), provenance::this_build());
+    let provenance = Provenance {
+        plan_sha256,
+        psd_version: header.psd.clone(),
+        build,
+        equipment,
+        ..read.provenance.clone()
+    };
+    let (by, reason) = (arguments.operator.clone(), arguments.reason.clone());
+    Ok((
+        plan,
+        provenance,
+        Some((
+            AmendBody {
+                by,
+                reason,
+                differences,
+                header,
+            },
+            texts,
+        )),
+    ))
+}
+
+/// What the record says it was measured with; of version 1, what its plan and its rig say.
+fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
+    if let Some(told) = &read.played.header.equipment {
+        return Ok(told.clone());
+    }
+    let rig = read
+        .played
+        .rig
+        .as_ref()
+        .ok_or(replay::Refusal::NothingRecorded)?;
+    Ok(Equipment::of(
+        &read.plan,
+        Device::of(&rig.identity, rig.noise),
+    ))
+}
+
+/// Files whose digests differ, or that only one of the two has.
+fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {
+    let of = |header: &Header, name: &str| {
+        header
+            .files
+            .iter()
+            .find(|file| file.name == name)
+            .map(|file| file.sha256.clone())
+    };
+    let mut names: Vec<&str> = recorded
+        .files
+        .iter()
+        .chain(&now.files)
+        .map(|file| file.name.as_str())
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    let told = |digest: Option<String>| digest.unwrap_or_else(|| "nothing".to_owned());
+    let changed = names
+        .into_iter()
+        .filter(|name| of(recorded, name) != of(now, name));
+    changed
+        .map(|name| {
+            format!(
+                "{name}: {} became {}",
+                told(of(recorded, name)),
+                told(of(now, name))
+            )
+        })
+        .collect()
+}
+
+/// Asks the rig, without moving it, what became of the last target; and a person, whether it may move.
+fn settle(
+    arguments: &ResumeArguments,
+    plan: &Plan,
+    link: &RealLink,
+    played: &Played,
+    rig: &mut RealRig,
+    watcher: &mut Watcher,
+) -> Result<ResumeBody, Failure> {
+    let recorded = played
+        .last_rig
+        .as_ref()
+        .ok_or(replay::Refusal::NothingRecorded)?;
+    let assured = assured(arguments);
+    replay::same_rig(&recorded.identity, &rig.identity(), &assured)?;
+    replay::same_resolution(recorded.noise, rig.declared_noise())?;
+    let found = rig.read()?;
+    let bands = Bands::of(&plan.rig, link);
+    let decision = replay::decide(
+        played,
+        &RigBody::of(rig),
+        &found,
+        &bands,
+        arguments.accept_relaxation,
+    )?;
+    let released = confirm_release::ask(plan, link, &found, &decision, rig, watcher)?;
+    let resumption =
+        decision.resumption(&arguments.operator, &arguments.reason, &found, played.time);
+    let released = Some(released);
+    Ok(ResumeBody {
+        assured,
+        released,
+        wall: real_rig::wall_clock()(),
+        ..resumption
+    })
+}
+
+/// What the person who resumes the run takes upon themselves.
+fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
+    let said = [
+        (arguments.same_power_up, Assurance::SamePowerUp),
+        (arguments.re_referenced, Assurance::ReReferenced),
+        (arguments.accept_relaxation, Assurance::AcceptedRelaxation),
+        (arguments.let_go, Assurance::LetGo),
+    ];
+    said.into_iter()
+        .filter(|(said, _)| *said)
+        .map(|(_, assured)| assured)
+        .collect()
+}
+
+/// The results of the interrupted run are kept, beside those to come.
+fn put_results_aside(run: &Path) -> Result<(), Failure> {
+    let failed = |path: PathBuf| move |error: std::io::Error| Failure::file(path, plain(&error));
+    let entries = std::fs::read_dir(run).map_err(failed(run.to_owned()))?;
+    let is_result =
+        |name: &str| !name.starts_with("journal.") && !name.starts_with("before-resume-");
+    let names: Vec<String> = entries
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|name| is_result(name))
+        .collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let aside = (1..u32::MAX)
+        .map(|number| run.join(format!("before-resume-{number}")))
+        .find(|path| !path.exists());
+    let Some(aside) = aside else { return Ok(()) };
+    std::fs::create_dir(&aside).map_err(failed(aside.clone()))?;
+    names.into_iter().try_for_each(|name| {
+        std::fs::rename(run.join(&name), aside.join(&name)).map_err(failed(run.join(name)))
+    })
+}

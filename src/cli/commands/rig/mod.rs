@@ -1,0 +1,73 @@
+//! `psd rig …`, one file per subcommand. In: the arguments and the plan's rig. Out: an exit code.
+//! Every motion stays inside the limits of the plan.
+
+mod jog;
+mod list;
+mod monitor;
+mod probe;
+mod serve;
+mod simulate;
+mod typed;
+
+use std::path::Path;
+
+use crate::cli::args::{PlanSettings, RigCommand};
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::plan_file;
+use crate::cli::settings::Settings;
+use crate::plan::{Link, Plan};
+use crate::rig::{Rig, Wish, connect, virtual_rig};
+
+/// Does one of the commands.
+pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
+    match command {
+        RigCommand::List { format } => list::list(*format),
+        RigCommand::Probe {
+            plan,
+            plan_settings,
+        } => with_rig(plan, plan_settings, settings, |rig, plan, _| {
+            probe::probe(rig, plan)
+        }),
+        RigCommand::Monitor {
+            plan,
+            plan_settings,
+            count,
+            every,
+        } => {
+            let asked = monitor::Asked {
+                every: typed::every(every)?,
+                count: *count,
+            };
+            with_rig(plan, plan_settings, settings, |rig, plan, wish| {
+                monitor::monitor(rig, plan, &asked, wish, settings)
+            })
+        }
+        RigCommand::Jog(arguments) => jog::jog(arguments, settings),
+        RigCommand::Simulate(arguments) => simulate::simulate(arguments, settings),
+        RigCommand::Serve(arguments) => serve::serve(arguments, settings),
+    }
+}
+
+/// Checks the plan, opens its rig and does `what` with it.
+fn with_rig(
+    path: &Path,
+    plan_settings: &PlanSettings,
+    settings: Settings,
+    what: impl FnOnce(&mut dyn Rig, &Plan, &Wish) -> Result<Exit, Failure>,
+) -> Result<Exit, Failure> {
+    let checked = plan_file::open(path, plan_settings)?;
+    plan_file::show(&checked, path, settings);
+    let Some(plan) = &checked.plan else {
+        return Ok(Exit::Wrong);
+    };
+    let wish = Wish::default();
+    match &plan.rig.link {
+        Link::Virtual(_) => what(virtual_rig(plan).as_mut(), plan, &wish),
+        Link::Real(_) => {
+            let place = |fault: &str| plan_file::place_of_link(&checked, path, fault);
+            let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
+            what(&mut connected.rig, plan, &wish)
+        }
+    }
+}

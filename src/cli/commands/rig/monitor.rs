@@ -1,0 +1,143 @@
+//! `psd rig monitor`: the readings as they come: on the screen of a terminal, one line a reading in a pipe. Nothing moves.
+
+use std::time::Duration;
+
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::operator::screen::{Screen, is_large_enough};
+use crate::cli::operator::watch::Signals;
+use crate::cli::output::give_on;
+use crate::cli::settings::Settings;
+use crate::plan::Plan;
+use crate::rig::{Reading, Rig, Wish};
+use crate::run::{AxisReport, Observer as _, StepReport};
+
+/// How often, and how long.
+pub struct Asked {
+    /// Time from one reading to the next, s.
+    pub every: f64,
+    /// None: until Ctrl-C.
+    pub count: Option<u64>,
+}
+
+/// Reads until Ctrl-C, `q`, `count` readings, or until nobody reads the lines any more.
+pub fn monitor(
+    rig: &mut dyn Rig,
+    plan: &Plan,
+    asked: &Asked,
+    wish: &Wish,
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let Asked { every, count } = *asked;
+    let _signals = Signals::ending(wish).map_err(Failure::Signals)?;
+    let simulated = rig.identity().simulated;
+    let on_screen =
+        settings.can_ask && settings.stdout_terminal && settings.unicode && is_large_enough();
+    let mut screen = on_screen
+        .then(|| Screen::monitor(plan, simulated, "MONITOR", wish.clone(), settings.color));
+    if let Some(screen) = &mut screen {
+        screen.procedure_started("readings", "monitor", None);
+    } else {
+        give_on(&header(rig.degrees_of_freedom()))?;
+    }
+    let mut number = 0;
+    while !wish.wants_end() && count.is_none_or(|count| number < count) {
+        if number > 0 {
+            rig.pause(every).map_err(Failure::Rig)?;
+            // A virtual rig's time costs nothing; a person's eyes are not that fast.
+            if simulated && count.is_none() {
+                std::thread::sleep(Duration::from_secs_f64(every));
+            }
+        }
+        number += 1;
+        let reading = rig.read().map_err(Failure::Rig)?;
+        match &mut screen {
+            Some(screen) => screen.step_done(&step(number, &reading)),
+            None if give_on(&line(&reading))? => {}
+            None => break,
+        }
+    }
+    Ok(Exit::Met)
+}
+
+/// Every degree of freedom, as a step that asked for nothing.
+fn step(number: u64, reading: &Reading) -> StepReport {
+    let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
+    let displacement = first(&reading.displacement);
+    StepReport {
+        step: number,
+        time: reading.time,
+        command: displacement,
+        displacement,
+        velocity: None,
+        acceleration: None,
+        force: first(&reading.force),
+        speed: None,
+        energy_error: None,
+        others: reading
+            .displacement
+            .iter()
+            .zip(&reading.force)
+            .skip(1)
+            .map(|(x, force)| at_rest(*x, *force))
+            .collect(),
+        tracking: None,
+        tracking_energy_error: None,
+    }
+}
+
+fn at_rest(displacement: f64, force: f64) -> AxisReport {
+    AxisReport {
+        command: displacement,
+        displacement,
+        velocity: 0.0,
+        acceleration: 0.0,
+        force,
+    }
+}
+
+/// What the columns of [`line`] are.
+fn header(axes: usize) -> String {
+    let named = |what: &str, unit: &str| match axes {
+        1 => format!("{what}_{unit}"),
+        _ => (1..=axes)
+            .map(|axis| format!("{what}_{axis}_{unit}"))
+            .collect::<Vec<_>>()
+            .join(","),
+    };
+    format!(
+        "time_s,{},{}\n",
+        named("displacement", "m"),
+        named("force", "n")
+    )
+}
+
+/// SI, one column a value; of several degrees of freedom all displacements, then all forces.
+fn line(reading: &Reading) -> String {
+    let values = std::iter::once(&reading.time)
+        .chain(&reading.displacement)
+        .chain(&reading.force);
+    let words: Vec<String> = values.map(ToString::to_string).collect();
+    format!("{}\n", words.join(","))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reading_is_one_line_that_reads_back() {
+        let reading = Reading {
+            time: 0.1,
+            displacement: vec![1e-3],
+            force: vec![-0.3],
+            raw: Vec::new(),
+        };
+        assert_eq!(line(&reading), "0.1,0.001,-0.3\n");
+        assert_eq!(step(3, &reading).force, -0.3);
+        assert_eq!(header(1), "time_s,displacement_m,force_n\n");
+        assert_eq!(
+            header(2),
+            "time_s,displacement_1_m,displacement_2_m,force_1_n,force_2_n\n"
+        );
+    }
+}

@@ -1,0 +1,481 @@
+//! `psd rig serve`: a coordinator or a finite-element program drives the plan's rig, inside the plan's limits. In: a plan,
+//! a port. Out: a run folder with the record, which `psd verify` plays back, and a table of targets and readings. The one
+//! file that opens the port; it speaks no protocol.
+
+use std::net::{SocketAddr, TcpListener};
+
+use crate::cli::args::{ServeArguments, ServedProtocol};
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::finish_run::write_made;
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::Circumstances;
+use crate::cli::files::run_folder::{FolderShelf, RunFolder};
+use crate::cli::files::{plan_file, provenance};
+use crate::cli::operator::real_rig;
+use crate::cli::operator::watch::{Attendance, Signals, Watcher};
+use crate::cli::output::{give, tell};
+use crate::cli::settings::Settings;
+use crate::evidence::Folder;
+use crate::plan::{Link, Plan};
+use crate::record::Outcome;
+use crate::remote;
+use crate::remote::control::{DrivenStep, Driver};
+use crate::remote::{Ended, Event, Protocol, Session};
+use crate::report;
+use crate::report::Provenance;
+use crate::rig::{Rig, VirtualRig, Wish, virtual_rig};
+use crate::run::replay;
+use crate::run::replay::{Recorded, Wall};
+use crate::text::diagnostic::excerpt::escape;
+use crate::units::Dimension;
+use crate::units::display::readable;
+use crate::units::unit;
+
+/// Serves until a client or a person ends it.
+pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Failure> {
+    let attendance = Attendance {
+        yes: arguments.yes,
+        operator: arguments.operator.clone(),
+    };
+    let unattended = real_rig::unattended(&attendance, settings);
+    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
+    plan_file::show(&checked, &arguments.plan, settings);
+    let Some(plan) = &checked.plan else {
+        return Ok(Exit::Wrong);
+    };
+    let protocol = protocol(arguments, plan)?;
+    named(arguments, plan)?;
+    let attendance = real_rig::named(attendance, plan)?;
+    let door = Door::open(arguments)?;
+    let wish = Wish::default();
+    // The connection to the rig ends with the arm: nobody speaks with it while the results are written.
+    let served = match plan.rig.link {
+        Link::Virtual(_) => {
+            let signals = Signals::caught(&wish).map_err(Failure::Signals)?;
+            let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, signals);
+            let circumstances = Circumstances {
+                served: Some(arguments.protocol.name().to_owned()),
+                ..Circumstances::default()
+            };
+            let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
+            let mut rig = virtual_rig(plan);
+            let stage = Stage {
+                plan,
+                provenance,
+                circumstances,
+                wall: Box::new(|| None),
+            };
+            on_record(
+                arguments,
+                stage,
+                rig.as_mut(),
+                &mut watcher,
+                &door,
+                &protocol,
+                &wish,
+                settings,
+            )?
+        }
+        Link::Real(_) => {
+            let mut opened = real_rig::open_for_client(plan, &attendance, settings, &wish)
+                .map_err(|failure| {
+                    failure.in_the_plan(|fault| {
+                        plan_file::place_of_link(&checked, &arguments.plan, fault)
+                    })
+                })?;
+            let circumstances = real_rig::circumstances(plan, &attendance);
+            let circumstances = Circumstances {
+                served: Some(arguments.protocol.name().to_owned()),
+                ..circumstances
+            };
+            let provenance = provenance::of_real_run(
+                plan,
+                arguments.plan_settings.date.as_deref(),
+                &circumstances,
+            );
+            let stage = Stage {
+                plan,
+                provenance,
+                circumstances,
+                wall: real_rig::wall_clock(),
+            };
+            on_record(
+                arguments,
+                stage,
+                &mut opened.connected.rig,
+                &mut opened.watcher,
+                &door,
+                &protocol,
+                &wish,
+                settings,
+            )?
+        }
+    };
+    served.conclude(arguments, settings)
+}
+
+/// A real rig moves for strangers only where the command line names it.
+fn named(arguments: &ServeArguments, plan: &Plan) -> Result<(), Failure> {
+    if plan.rig.link.as_real().is_some() && arguments.plan_settings.rig.is_none() {
+        let name = &plan.rig.name;
+        let message =
+            format!("the rig `{name}` is a real one, and is served only where it is named");
+        return Err(Failure::command_line(message).help(format!("name it: --rig {name}")));
+    }
+    Ok(())
+}
+
+/// Where clients come in. It is open before the rig is, so that nothing moves where the port is taken.
+struct Door {
+    listener: TcpListener,
+    address: SocketAddr,
+}
+
+impl Door {
+    fn open(arguments: &ServeArguments) -> Result<Self, Failure> {
+        let listener =
+            TcpListener::bind(arguments.listen).map_err(|error| listening(arguments, &error))?;
+        let address = listener
+            .local_addr()
+            .map_err(|error| listening(arguments, &error))?;
+        Ok(Self { listener, address })
+    }
+}
+
+fn listening(arguments: &ServeArguments, error: &std::io::Error) -> Failure {
+    Failure::file(arguments.listen.to_string(), error.to_string())
+        .help("another port: --listen 127.0.0.1:0 takes a free one")
+}
+
+/// What a record says of where it comes from.
+struct Stage<'a> {
+    plan: &'a Plan,
+    provenance: Provenance,
+    circumstances: Circumstances,
+    wall: Wall,
+}
+
+/// What serving came to, and what is on record of it.
+struct Served {
+    folder: RunFolder,
+    recorded: Recorded,
+    steps: Vec<DrivenStep>,
+    /// That of the worst session.
+    exit: Exit,
+    /// Whether the listener and standard output held out.
+    door: std::io::Result<()>,
+    told: Result<(), Failure>,
+}
+
+impl Served {
+    /// Writes the results.
+    fn conclude(self, arguments: &ServeArguments, settings: Settings) -> Result<Exit, Failure> {
+        let Self {
+            folder,
+            recorded,
+            steps,
+            mut exit,
+            door,
+            told,
+        } = self;
+        let drift = recorded.record.drift.as_ref();
+        let kept = Folder::digests(folder.path())?.kept();
+        let shelf = FolderShelf::new(folder.path());
+        if let Outcome::NotReleased { reason } = &recorded.record.outcome {
+            tell(&format!("  NOT RELEASED: {}\n", escape(reason)));
+            write_made(shelf, &kept, |_| Ok(Vec::new()))?;
+        } else {
+            write_made(shelf, &kept, |shelf| {
+                report::put_driven(&steps, drift, shelf)
+            })?;
+        }
+        for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
+            let note = settings.paint_note("  note:");
+            tell(&format!(
+                "{note} {}: what was read decides nothing\n",
+                escape(&beyond.reason)
+            ));
+        }
+        tell(&format!("  {}\n", folder.path().display()));
+        door.map_err(|error| listening(arguments, &error))?;
+        told?;
+        if let Some(fault) = &recorded.fault {
+            tell(&format!(
+                "  the record could not be kept to its end: {fault}\n"
+            ));
+            exit = exit.max(Exit::Fault);
+        }
+        Ok(exit.max(match recorded.record.outcome {
+            Outcome::Completed => Exit::Met,
+            Outcome::Aborted { .. } | Outcome::NotReleased { .. } => Exit::Stopped,
+            Outcome::Blocked { .. } => Exit::Missed,
+            Outcome::Faulted { .. } => Exit::Fault,
+        }))
+    }
+}
+
+/// Serves, with every request and every answer of the rig in a run folder.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "what is served, where, to whom, and who watches"
+)]
+fn on_record(
+    arguments: &ServeArguments,
+    stage: Stage<'_>,
+    rig: &mut dyn Rig,
+    watcher: &mut Watcher,
+    door: &Door,
+    protocol: &Protocol,
+    wish: &Wish,
+    settings: Settings,
+) -> Result<Served, Failure> {
+    let Stage {
+        plan,
+        provenance,
+        circumstances,
+        wall,
+    } = stage;
+    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let header = record_file::header(
+        plan,
+        record_file::device(rig),
+        &arguments.plan_settings,
+        &provenance,
+        circumstances,
+    );
+    let journal = record_file::begin(folder.path(), plan, &header)?;
+    let mut exit = Exit::Met;
+    let mut told = Ok(());
+    let mut served = Ok(());
+    let (recorded, steps) = replay::record_driven(
+        plan,
+        rig,
+        watcher,
+        journal,
+        wall,
+        Driver::Client,
+        &mut |specimen| {
+            if !door.address.ip().is_loopback() {
+                tell(&open_door(door.address, settings));
+            }
+            // Who started this program waits for the line.
+            told = give(&format!(
+                "ready: {} on {}\n",
+                arguments.protocol.name(),
+                door.address
+            ));
+            let mut tell_event = |event: Event<'_>| match event {
+                Event::Connected(client) => tell(&format!("  {client} is connected\n")),
+                Event::Ended(session) => {
+                    exit = exit.max(exit_of(session));
+                    let given = give(&summary(session));
+                    told = std::mem::replace(&mut told, Ok(())).and(given);
+                }
+            };
+            served = remote::serve(
+                &door.listener,
+                protocol,
+                specimen,
+                arguments.once,
+                wish,
+                &mut tell_event,
+            );
+        },
+    );
+    watcher.finish();
+    Ok(Served {
+        folder,
+        recorded,
+        steps,
+        exit,
+        door: served,
+        told,
+    })
+}
+
+/// What the client speaks, with the stiffness that it may ask for.
+fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure> {
+    let given = arguments.stiffness.as_deref().map(stiffness).transpose()?;
+    match arguments.protocol {
+        ServedProtocol::Nees if given.is_some() => Err(Failure::command_line(
+            "NEES has no question for a stiffness: `--stiffness` is for generic-client",
+        )),
+        ServedProtocol::Nees => Ok(Protocol::Nees {
+            control_points: control_points(arguments, plan)?,
+        }),
+        ServedProtocol::GenericClient if arguments.control_points.is_some() => {
+            Err(Failure::command_line(
+                "a generic client numbers its axes: `--control-points` is for nees",
+            ))
+        }
+        ServedProtocol::GenericClient => {
+            let specimen = VirtualRig::specimen_of(plan);
+            if let Some(frame) = specimen.and_then(|specimen| specimen.frame.as_ref()) {
+                if given.is_some() {
+                    return Err(Failure::command_line(
+                        "a frame has a stiffness matrix of its own: leave `--stiffness` out",
+                    ));
+                }
+                return Ok(Protocol::GenericClient {
+                    stiffness: frame.stiffness.concat(),
+                });
+            }
+            let behaviour = specimen.and_then(|specimen| specimen.behaviour.as_ref());
+            let known = given.or_else(|| behaviour.map(crate::plan::Behaviour::initial_stiffness));
+            let stiffness = known.ok_or_else(|| {
+                Failure::command_line(
+                    "the stiffness that a generic client may ask for is not known: the specimen has no behaviour",
+                )
+                .help("give it: --stiffness \"300 kN/m\"")
+            })?;
+            Ok(Protocol::GenericClient {
+                stiffness: vec![stiffness],
+            })
+        }
+    }
+}
+
+/// The names of the rig's axes, for a coordinator.
+fn control_points(arguments: &ServeArguments, plan: &Plan) -> Result<Vec<String>, Failure> {
+    let axes = plan.degrees_of_freedom();
+    let Some(given) = &arguments.control_points else {
+        return Ok(remote::usual_names(axes));
+    };
+    let names: Vec<String> = given
+        .split(',')
+        .map(|name| name.trim().to_owned())
+        .collect();
+    let is_name = |name: &String| {
+        name.starts_with("MDL-") && name.bytes().all(|byte| byte.is_ascii_graphic())
+    };
+    let twice = names
+        .iter()
+        .enumerate()
+        .any(|(at, name)| names[..at].contains(name));
+    if names.len() != axes || twice || !names.iter().all(is_name) {
+        let example: Vec<String> = (1..=axes).map(|axis| format!("MDL-00-{axis:02}")).collect();
+        return Err(Failure::command_line(format!(
+            "--control-points {given}: {axes} names that begin with MDL-, none twice"
+        ))
+        .help(format!(
+            "write them as \"{}\", the lowest storey first",
+            example.join(", ")
+        )));
+    }
+    Ok(names)
+}
+
+/// `300 kN/m`, in N/m.
+fn stiffness(text: &str) -> Result<f64, Failure> {
+    let wrong = |reason: &str| {
+        Failure::command_line(format!(
+            "--stiffness {text}: {reason}; write it as \"300 kN/m\""
+        ))
+    };
+    let (number, token) = text
+        .split_once(' ')
+        .ok_or_else(|| wrong("a number and its unit"))?;
+    let number: f64 = number.parse().map_err(|_| wrong("no number"))?;
+    let unit = unit::parse(token.trim()).map_err(|error| wrong(&error.to_string()))?;
+    if Dimension::FORCE.over(Dimension::LENGTH) != Some(unit.dimension) {
+        return Err(wrong("no unit of stiffness"));
+    }
+    let stiffness = number * unit.factor;
+    if stiffness >= 0.0 && stiffness.is_finite() {
+        Ok(stiffness)
+    } else {
+        Err(wrong("a stiffness is 0 or more"))
+    }
+}
+
+fn open_door(address: SocketAddr, settings: Settings) -> String {
+    let note = settings.paint_note("  note:");
+    format!(
+        "{note} {address} can be reached from other machines, and the protocol has no password:\n        whoever reaches it moves the specimen, within the plan's limits\n"
+    )
+}
+
+/// The four lines that say what a session asked of the specimen.
+fn summary(session: &Session) -> String {
+    let driven = session.driven;
+    let refused = if driven.refused > 0 {
+        format!(", {} refused by a limit", driven.refused)
+    } else {
+        String::new()
+    };
+    format!(
+        "session: {}\ntargets: {}{refused}\nlargest |x|: {}\nlargest |F|: {}\n",
+        escape(&session.ended.to_string()),
+        driven.targets,
+        readable(driven.displacement, Dimension::LENGTH),
+        readable(driven.force, Dimension::FORCE),
+    )
+}
+
+/// A refused target counts as a stop by a limit, whatever the client did then.
+const fn exit_of(session: &Session) -> Exit {
+    match session.ended {
+        Ended::Limit(_) | Ended::Stopped => Exit::Stopped,
+        Ended::Rig(_) | Ended::Lost(_) | Ended::HungUp | Ended::Misspoken(_) => Exit::Fault,
+        Ended::Closed if session.driven.refused > 0 => Exit::Stopped,
+        Ended::Closed => Exit::Met,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::remote::Driven;
+    use crate::rig::RigFault;
+
+    #[test]
+    fn a_stiffness_has_its_unit() {
+        assert_eq!(stiffness("300 kN/m").unwrap(), 3e5);
+        assert_eq!(stiffness("0.3 kN/mm").unwrap(), 3e5);
+        for wrong in [
+            "300",
+            "300 kN",
+            "x kN/m",
+            "-1 N/m",
+            "nan N/m",
+            "1e400 N/m",
+            "300 foo/m",
+        ] {
+            assert_eq!(stiffness(wrong).unwrap_err().exit(), Exit::Wrong, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_session_ends_as_the_reference_says() {
+        let session = |ended, refused| Session {
+            ended,
+            driven: Driven {
+                refused,
+                ..Driven::default()
+            },
+        };
+        for (ended, refused, code) in [
+            (Ended::Closed, 0, 0),
+            (Ended::Closed, 1, 4),
+            (Ended::HungUp, 0, 3),
+            (Ended::Stopped, 0, 4),
+            (Ended::Limit(RigFault::Interrupted), 1, 4),
+        ] {
+            assert_eq!(exit_of(&session(ended, refused)).code(), code);
+        }
+        let driven = Driven {
+            targets: 200,
+            refused: 1,
+            displacement: 0.008_165_08,
+            force: 2449.5,
+        };
+        let said = summary(&Session {
+            ended: Ended::Closed,
+            driven,
+        });
+        assert_eq!(
+            said,
+            "session: closed by the client\ntargets: 200, 1 refused by a limit\nlargest |x|: 8.165 mm\nlargest |F|: 2.450 kN\n"
+        );
+    }
+}

@@ -1,0 +1,150 @@
+//! `psd rig simulate`: stands in for the rig of a plan, at the plan's own port, until it is stopped. In: a plan, a script
+//! of faults. Out: a line that answers, a log, and whether every target lay within the limits.
+
+use std::fs::{self, OpenOptions};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::cli::args::SimulateArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::plan_file;
+use crate::cli::output::tell;
+use crate::cli::settings::Settings;
+use crate::emulator::lines::real_time::{Carrier, Until, serve};
+use crate::emulator::{Log, PseudoTerminal, Script, Stand, TcpLine, of_plan};
+use crate::plan::{DeviceLink, Plan, PortPlan, RealLink};
+use crate::text::diagnostic::excerpt::escape;
+
+/// Stands in for a rig.
+pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exit, Failure> {
+    let checked = plan_file::open(&arguments.plan, &arguments.plan_settings)?;
+    plan_file::show(&checked, &arguments.plan, settings);
+    let Some(plan) = &checked.plan else {
+        return Ok(Exit::Wrong);
+    };
+    let script = arguments
+        .script
+        .as_deref()
+        .map_or_else(|| Ok(Script::default()), script)?;
+    let stopped = stopped_by_signals().map_err(Failure::Signals)?;
+    let unfit =
+        |reason: String| Failure::command_line(format!("{}: {reason}", arguments.plan.display()));
+    // Nothing is made where there is nothing to stand in for.
+    of_plan(plan, &script, Log::none(), arguments.seed, None).map_err(|error| {
+        unfit(error.to_string())
+            .help("name the real rig with --rig NAME, and give its specimen a behaviour")
+    })?;
+    let mut carriers = devices(plan)
+        .map(|(_, device)| carrier(device))
+        .collect::<Result<Vec<_>, _>>()?;
+    let log = arguments
+        .log
+        .as_deref()
+        .map_or_else(|| Ok(Log::none()), log)?;
+    let mut stand = of_plan(plan, &script, log, arguments.seed, Some(power_up()))
+        .map_err(|error| unfit(error.to_string()))?;
+
+    for (name, device) in devices(plan) {
+        tell(&escape(&format!(
+            "  {name} of `{}`: {} at {}\n",
+            plan.rig.name,
+            device.dialect.name(),
+            device.port
+        )));
+    }
+    tell("  stands in until Ctrl-C\n");
+    let until = Until {
+        last_host_left: arguments.once,
+        stopped: &|| stopped.load(Ordering::Relaxed),
+    };
+    let served = serve(&mut stand, &mut carriers, until);
+    // The links go before anything else can fail.
+    drop(carriers);
+    end(&mut stand, arguments.log.as_deref(), served)
+}
+
+/// The devices of the plan's rig, each with its line.
+fn devices(plan: &Plan) -> impl Iterator<Item = (String, &DeviceLink)> {
+    plan.rig
+        .link
+        .as_real()
+        .map(RealLink::devices)
+        .into_iter()
+        .flatten()
+}
+
+fn carrier(device: &DeviceLink) -> Result<Box<dyn Carrier>, Failure> {
+    match &device.port {
+        PortPlan::Serial { path, .. } => match PseudoTerminal::linked(Path::new(path)) {
+            Ok(line) => Ok(Box::new(line)),
+            Err(error) => Err(Failure::file(path.as_str(), error.to_string())
+                .help("a stand-in takes the place of the plan's own port: give a path that is free, such as /tmp/rig")),
+        },
+        PortPlan::Tcp { address } => match TcpLine::at(address) {
+            Ok(line) => Ok(Box::new(line)),
+            Err(error) => Err(Failure::command_line(format!("{address}: {error}"))),
+        },
+    }
+}
+
+fn script(path: &Path) -> Result<Script, Failure> {
+    let text = fs::read_to_string(path).map_err(|error| Failure::file(path, error.to_string()))?;
+    Script::parse(&text)
+        .map_err(|error| Failure::command_line(format!("{}: {error}", path.display())))
+}
+
+/// A new file: a log is evidence, and is never written over.
+fn log(path: &Path) -> Result<Log, Failure> {
+    let file = OpenOptions::new().write(true).create_new(true).open(path);
+    file.map(|file| Log::to(Box::new(file)))
+        .map_err(|error| Failure::file(path, error.to_string()))
+}
+
+fn stopped_by_signals() -> std::io::Result<Arc<AtomicBool>> {
+    let stopped = Arc::new(AtomicBool::new(false));
+    for signal in [
+        signal_hook::consts::SIGINT,
+        signal_hook::consts::SIGTERM,
+        signal_hook::consts::SIGHUP,
+    ] {
+        signal_hook::flag::register(signal, Arc::clone(&stopped))?;
+    }
+    Ok(stopped)
+}
+
+/// A word that is another at every start: a simulator that was started anew has lost its position, and must not seem to
+/// be the one before.
+fn power_up() -> u16 {
+    let now = std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)
+        .unwrap_or_default();
+    let mixed = u64::from(now.subsec_nanos()) ^ now.as_secs() ^ u64::from(std::process::id());
+    let bytes = mixed.wrapping_mul(0x9e37_79b9_7f4a_7c15).to_be_bytes();
+    u16::from_be_bytes([bytes[0], bytes[1]])
+}
+
+/// Says how it went.
+fn end(
+    stand: &mut Stand,
+    log: Option<&Path>,
+    served: std::io::Result<()>,
+) -> Result<Exit, Failure> {
+    let sound = stand.end();
+    let (moves, violations) = (stand.bench().moves().len(), stand.bench().violations());
+    tell(&format!(
+        "  {moves} moves, {} targets outside the limits\n",
+        violations.len()
+    ));
+    for target in violations.iter().take(20) {
+        tell(&format!("  outside: {} mm\n", target * 1e3));
+    }
+    if let Some(error) = stand.log_failure() {
+        return Err(Failure::file(
+            log.map_or_else(PathBuf::new, Path::to_owned),
+            error.to_string(),
+        ));
+    }
+    served.map_err(|error| Failure::file("line", error.to_string()))?;
+    Ok(if sound { Exit::Met } else { Exit::Stopped })
+}

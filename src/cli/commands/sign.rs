@@ -1,0 +1,126 @@
+//! `psd sign RUN --key FILE` and `psd keygen FILE`: who vouches for a run folder. In: a folder that verifies, and a key that
+//! lies elsewhere. Out: one signature file over its manifest. Overwrites nothing.
+
+use std::path::Path;
+
+use super::verify::refuse_unproven;
+use crate::cli::args::{KeygenArguments, SignArguments};
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::run_folder::write_new;
+use crate::cli::output::{give, tell};
+use crate::cli::settings::Settings;
+use crate::evidence::keys;
+use crate::evidence::keys::Protection;
+use crate::evidence::{Folder, MANIFEST, Rebuilt, Statement, examine, file_name, sign_manifest};
+use crate::report::OutputFile;
+use crate::text::diagnostic::excerpt::one_line;
+
+/// Signs a run folder.
+pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failure> {
+    let run = &arguments.run;
+    keys::refuse_inside(&arguments.key, run)?;
+    let mut folder = Folder::read(run)?;
+    let rebuilt = Rebuilt::taking(&mut folder);
+    refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
+    let (Some(report), Some(manifest)) = (&rebuilt.report, folder.bytes(MANIFEST)) else {
+        return Err(Failure::file(run, "has no results yet").help("make them with `psd report`"));
+    };
+    let role = role(arguments.role.as_deref(), &report.roles)?;
+    let path = file_name(role, &report.roles);
+    if folder.files.contains_key(&path) {
+        return Err(Failure::file(
+            run.join(path),
+            "is there already: a signature is never overwritten",
+        ));
+    }
+    let (key, protection) =
+        keys::secret(&arguments.key, arguments.password_file.as_deref(), settings)?;
+    warn(&arguments.key, protection);
+    let statement = Statement {
+        run: report.run_id.clone(),
+        report: report.id.clone(),
+        role: role.map(str::to_owned),
+        name: arguments.name.clone(),
+        key: None,
+    };
+    let signed = sign_manifest(manifest, &key, &statement)
+        .map_err(|error| Failure::file(&arguments.key, error.to_string()))?;
+    let file = OutputFile {
+        path,
+        bytes: signed.into_bytes(),
+    };
+    write_new(run, &file)?;
+    tell(&format!("  signed by key {}\n", keys::number(key.keynum())));
+    give(&format!("{}\n", run.join(file.path).display()))?;
+    Ok(Exit::Met)
+}
+
+/// The role as the plan writes it. A plan that names who signs takes nobody else.
+fn role<'a>(given: Option<&'a str>, roles: &'a [String]) -> Result<Option<&'a str>, Failure> {
+    let known = || {
+        roles
+            .iter()
+            .map(|role| format!("`{}`", one_line(role)))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    match given {
+        None if roles.len() > 1 => Err(Failure::command_line("the plan names several who sign")
+            .help(format!("say with `--role` as whom you sign: {}", known()))),
+        // One alone is whoever signs.
+        None => Ok(roles.first().map(String::as_str)),
+        Some(given) if roles.is_empty() => Ok(Some(given)),
+        Some(given) => roles
+            .iter()
+            .map(String::as_str)
+            .find(|role| *role == given)
+            .map(Some)
+            .ok_or_else(|| {
+                Failure::command_line(format!("nobody signs as `{}`", one_line(given)))
+                    .help(format!("the plan names {}", known()))
+            }),
+    }
+}
+
+/// Makes a pair of keys.
+pub fn keygen(arguments: &KeygenArguments, settings: Settings) -> Result<Exit, Failure> {
+    let password = match (&arguments.password_file, arguments.no_password) {
+        (_, true) => None,
+        (Some(file), false) => Some(keys::password(Some(file), "", settings)?),
+        (None, false) => {
+            let first = keys::password(None, "password of the new key: ", settings)?;
+            if keys::password(None, "once more: ", settings)? != first {
+                return Err(Failure::command_line("the two passwords are not the same"));
+            }
+            Some(first)
+        }
+    };
+    let protection = if password.is_some() {
+        Protection::Password
+    } else {
+        Protection::None
+    };
+    let (public, key) = keys::make(&arguments.file, password)?;
+    warn(&arguments.file, protection);
+    tell(&format!(
+        "  key {}: give {} to whoever is to check your signatures\n",
+        keys::number(key.keynum()),
+        public.display()
+    ));
+    give(&format!("{}\n", public.display()))?;
+    Ok(Exit::Met)
+}
+
+fn warn(key: &Path, protection: Protection) {
+    let name = one_line(&key.display().to_string());
+    if protection == Protection::None {
+        tell(&format!(
+            "  {name} has no password: whoever reads it can sign with it\n"
+        ));
+    }
+    if keys::is_readable_by_others(key) {
+        tell(&format!(
+            "  {name} can be read by others than its owner: `chmod 600` keeps it from them\n"
+        ));
+    }
+}

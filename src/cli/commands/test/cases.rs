@@ -1,0 +1,194 @@
+//! Which plans are tested. In: paths as they were typed. Out: a case for each plan, in order of name, and the folders of
+//! blessed results that none of them uses.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use super::shown;
+use crate::cli::args::TestArguments;
+use crate::cli::exit::Failure;
+use crate::cli::files::accepted::BlessedFolder;
+use crate::cli::files::loader::plain;
+use crate::golden::{DIAGNOSTICS, SUMMARY};
+
+/// Where plans lie if nobody says.
+const DEFAULT: &str = "plans";
+
+/// One plan to test.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// `plans/beam`
+    pub name: String,
+    pub plan: PathBuf,
+    pub golden: BlessedFolder,
+    /// The name of its folder among the failures: `beam`.
+    pub folder: String,
+}
+
+/// What was found.
+#[derive(Debug)]
+pub struct Cases {
+    pub cases: Vec<Case>,
+    pub unused: Vec<PathBuf>,
+}
+
+/// The plans named, and those in the folders named; not those in folders further down, which are libraries.
+pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
+    let default = [PathBuf::from(DEFAULT)];
+    let paths = if arguments.paths.is_empty() {
+        &default[..]
+    } else {
+        &arguments.paths[..]
+    };
+    let mut plans: Vec<PathBuf> = Vec::new();
+    let mut whole: Vec<&PathBuf> = Vec::new();
+    for path in paths {
+        let metadata = path
+            .metadata()
+            .map_err(|error| missing(path, &error, arguments.paths.is_empty()))?;
+        if metadata.is_dir() {
+            whole.push(path);
+            plans.extend(plans_in(path)?);
+        } else {
+            plans.push(path.clone());
+        }
+    }
+    let mut seen = BTreeSet::new();
+    plans.retain(|plan| seen.insert(plan.clone()));
+    plans.sort();
+    let mut cases = Vec::new();
+    for plan in plans {
+        let golden = match &arguments.golden {
+            Some(reports) => BlessedFolder::within(reports, &plan)?,
+            None => BlessedFolder::of(&plan)?,
+        };
+        let name = plan.with_extension("").to_string_lossy().into_owned();
+        let folder = plan
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        cases.push(Case {
+            name,
+            plan,
+            golden,
+            folder,
+        });
+    }
+    let unused = if arguments.filter.is_none() {
+        unused(&whole, &cases, arguments.golden.as_deref())?
+    } else {
+        Vec::new()
+    };
+    if let Some(filter) = &arguments.filter {
+        cases.retain(|case| case.name.contains(filter.as_str()));
+    }
+    if cases.is_empty() {
+        let told: Vec<String> = paths
+            .iter()
+            .map(|path| path.display().to_string())
+            .collect();
+        let what = arguments
+            .filter
+            .as_ref()
+            .map_or_else(String::new, |filter| {
+                format!(" with `{filter}` in its name")
+            });
+        return Err(
+            Failure::command_line(format!("no plan{what} in {}", told.join(", ")))
+                .help("a plan is a `.psd` file; `psd test --list` shows them"),
+        );
+    }
+    told_apart(&mut cases);
+    Ok(Cases { cases, unused })
+}
+
+fn missing(path: &Path, error: &std::io::Error, nobody_said: bool) -> Failure {
+    let failure = Failure::file(path, plain(error));
+    if nobody_said {
+        failure.help("name a plan, or a folder of plans")
+    } else {
+        failure
+    }
+}
+
+fn plans_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
+    let mut plans = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let hidden = path
+            .file_name()
+            .is_none_or(|name| name.to_string_lossy().starts_with('.'));
+        if !hidden && path.is_file() && path.extension().is_some_and(|extension| extension == "psd")
+        {
+            plans.push(path);
+        }
+    }
+    Ok(plans)
+}
+
+/// Plans of one name in several folders keep their failures apart.
+fn told_apart(cases: &mut [Case]) {
+    let names: Vec<String> = cases.iter().map(|case| case.folder.clone()).collect();
+    for case in cases {
+        if names.iter().filter(|name| **name == case.folder).count() > 1 {
+            case.folder = case.name.replace(['/', '\\', ':'], "_");
+        }
+    }
+}
+
+/// Folders of blessed results beside a whole folder of plans that belong to none of them.
+fn unused(
+    folders: &[&PathBuf],
+    cases: &[Case],
+    golden: Option<&Path>,
+) -> Result<Vec<PathBuf>, Failure> {
+    let mut reports: Vec<PathBuf> = Vec::new();
+    for folder in folders {
+        let beside = shown(folder)
+            .canonicalize()
+            .ok()
+            .and_then(|folder| Some(folder.parent()?.join("reports")));
+        // As the person would write it, where the folder of plans has a name.
+        let typed = folder.parent().map(|above| shown(above).join("reports"));
+        let typed = typed.filter(|typed| {
+            typed.canonicalize().ok() == beside.as_ref().and_then(|path| path.canonicalize().ok())
+        });
+        reports.extend(golden.map(Path::to_owned).or(typed).or(beside));
+    }
+    reports.sort();
+    reports.dedup();
+    let used: BTreeSet<String> = cases
+        .iter()
+        .filter_map(|case| {
+            Some(
+                case.golden
+                    .path()
+                    .file_name()?
+                    .to_string_lossy()
+                    .into_owned(),
+            )
+        })
+        .collect();
+    let mut found = Vec::new();
+    for reports in reports.into_iter().filter(|path| path.is_dir()) {
+        let failed = |error: std::io::Error| Failure::file(&reports, plain(&error));
+        for entry in std::fs::read_dir(&reports).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            let name = path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            let blessed = [SUMMARY, DIAGNOSTICS]
+                .iter()
+                .any(|file| path.join(file).is_file());
+            if blessed && !name.starts_with('.') && !used.contains(&name) {
+                found.push(path.strip_prefix("./").map(Path::to_owned).unwrap_or(path));
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}

@@ -1,0 +1,84 @@
+//! What a failed case leaves to look at: `NAME/new/`, the results of this run; `NAME/*.png`, old and new on one sheet;
+//! `NAME/difference.txt`, all that differs. In: both results. Out: the folder, which no other program writes into: what an
+//! earlier test left there goes when its plan is tested again.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use super::cases::Case;
+use super::overlay;
+use crate::cli::exit::Failure;
+use crate::cli::files::accepted::{is_kept, remove};
+use crate::cli::files::loader::plain;
+use crate::cli::files::run_folder::write_new;
+use crate::golden::{Finding, Truth, Words};
+use crate::report::OutputFile;
+
+/// By this file a folder is known as one of a failed case.
+const DIFFERENCE: &str = "difference.txt";
+
+/// The folder of a case.
+pub fn folder(out: &Path, case: &Case) -> PathBuf {
+    out.join(&case.folder)
+}
+
+/// Removes what an earlier test left; a folder of anything else stays.
+pub fn clear(out: &Path, case: &Case) -> Result<(), Failure> {
+    let path = folder(out, case);
+    if path.join(DIFFERENCE).is_file() {
+        remove(&path).map_err(|error| Failure::file(&path, plain(&error)))?;
+    }
+    Ok(())
+}
+
+/// Writes it all.
+pub fn write(
+    out: &Path,
+    case: &Case,
+    blessed: &Truth,
+    files: &[OutputFile],
+    found: &[Finding],
+) -> Result<(), Failure> {
+    let folder = folder(out, case);
+    if folder.symlink_metadata().is_ok() {
+        return Err(
+            Failure::file(folder, "is in the way of what a failed test leaves")
+                .help("name another folder with `--out`"),
+        );
+    }
+    std::fs::create_dir_all(&folder).map_err(|error| Failure::file(&folder, plain(&error)))?;
+    write_new(
+        &folder,
+        &OutputFile {
+            path: DIFFERENCE.to_owned(),
+            bytes: told(case, found).into_bytes(),
+        },
+    )?;
+    let new = folder.join("new");
+    files
+        .iter()
+        .filter(|file| is_kept(&file.path))
+        .try_for_each(|file| write_new(&new, file))?;
+    overlay::all(
+        blessed,
+        &crate::cli::files::accepted::truth_of(files),
+        found,
+    )?
+    .iter()
+    .try_for_each(|file| write_new(&folder, file))
+}
+
+/// Every difference, a line each.
+fn told(case: &Case, found: &[Finding]) -> String {
+    let mut text = format!(
+        "{}: {} from {}\n",
+        case.name,
+        found.len(),
+        case.golden.path().display()
+    );
+    for finding in found {
+        let words = Words::of(finding);
+        let _ = writeln!(text, "{:<12} {}", words.part, words.line());
+    }
+    text
+}

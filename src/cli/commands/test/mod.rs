@@ -1,0 +1,81 @@
+//! `psd test [PATH…]`: plans compared with their accepted results. In: paths. Out: the differences,
+//! in the formats asked for, and exit code 5 if there are any. It uses virtual rigs only, one plan
+//! per processor at a time; the output does not depend on their number.
+
+mod cases;
+mod failures;
+mod overlay;
+mod trials;
+
+use std::path::Path;
+
+use crate::cli::args::{Format, TestArguments};
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::loader::plain;
+use crate::cli::output::{give, tell};
+use crate::cli::settings::Settings;
+use crate::golden::{self, Report, console};
+use cases::Case;
+use trials::Trials;
+
+/// Tests plans, or blesses what they give.
+pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failure> {
+    let found = cases::find(arguments)?;
+    if arguments.list {
+        return list(&found.cases);
+    }
+    let human = arguments.format == Format::Human && !arguments.tap;
+    let report = Report {
+        tested: Trials {
+            arguments,
+            settings,
+            human,
+        }
+        .run(&found.cases)?,
+        unused: found
+            .unused
+            .iter()
+            .map(|folder| folder.display().to_string())
+            .collect(),
+    };
+    if human {
+        tell(&console::closing(&report));
+    }
+    if let Some(path) = &arguments.junit {
+        let text =
+            golden::junit(&report).map_err(|error| Failure::file(path, error.to_string()))?;
+        std::fs::write(path, text).map_err(|error| Failure::file(path, plain(&error)))?;
+    }
+    if arguments.tap {
+        give(&golden::tap(&report))?;
+    } else if arguments.format == Format::Json {
+        give(&golden::json::text(&report))?;
+    }
+    Ok(if report.good() == report.tested.len() {
+        Exit::Met
+    } else {
+        Exit::Differs
+    })
+}
+
+/// The names, and which have no blessed results.
+fn list(cases: &[Case]) -> Result<Exit, Failure> {
+    for case in cases {
+        let note = if case.golden.truth()?.is_empty() {
+            "  (not blessed)"
+        } else {
+            ""
+        };
+        give(&format!("{}{note}\n", case.name))?;
+    }
+    Ok(Exit::Met)
+}
+
+/// A folder as a person typed it, or the one they stand in.
+fn shown(path: &Path) -> &Path {
+    if path.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        path
+    }
+}

@@ -1,0 +1,147 @@
+//! Runs the cases, several at a time, and tells each as soon as all before it are told. In: cases. Out: what became of
+//! each, in their order.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::cases::Case;
+use super::failures;
+use crate::cli::args::TestArguments;
+use crate::cli::exit::Failure;
+use crate::cli::files::accepted::truth_of;
+use crate::cli::files::golden_run;
+use crate::cli::files::golden_run::Extent;
+use crate::cli::output::tell;
+use crate::cli::settings::Settings;
+use crate::golden::{Outcome, Tested, compare, console};
+
+/// How the cases are run.
+pub struct Trials<'a> {
+    pub arguments: &'a TestArguments,
+    pub settings: Settings,
+    /// Whether each is told to a person as it ends.
+    pub human: bool,
+}
+
+/// Room for the deepest plan and for the certificate's typesetting, also in a build without optimisation.
+const STACK: usize = 32 << 20;
+
+impl Trials<'_> {
+    /// All of them. With `--fail-fast` none after the first that fails counts, whichever of them ran.
+    pub fn run(&self, cases: &[Case]) -> Result<Vec<Tested>, Failure> {
+        let mut builder = rayon::ThreadPoolBuilder::new().stack_size(STACK);
+        if let Some(jobs) = self.arguments.jobs {
+            builder = builder.num_threads(jobs.get());
+        }
+        let pool = builder.build().map_err(|error| {
+            Failure::command_line(format!("no threads to run plans on: {error}"))
+        })?;
+        let first_bad = AtomicUsize::new(usize::MAX);
+        let teller = Teller {
+            told: Mutex::new((0, BTreeMap::new())),
+            trials: self,
+            cases,
+            first_bad: &first_bad,
+        };
+        let one = |(index, case): (usize, &Case)| {
+            let beyond = self.arguments.fail_fast && first_bad.load(Ordering::SeqCst) < index;
+            let outcome = if beyond {
+                Outcome::NotRun
+            } else {
+                self.one(case)
+            };
+            if !outcome.is_good() && outcome != Outcome::NotRun {
+                first_bad.fetch_min(index, Ordering::SeqCst);
+            }
+            let tested = Tested {
+                name: case.name.clone(),
+                outcome,
+            };
+            teller.tell(index, tested.clone());
+            tested
+        };
+        let mut tested: Vec<Tested> =
+            pool.install(|| cases.par_iter().enumerate().map(one).collect());
+        if self.arguments.fail_fast {
+            let last = first_bad.load(Ordering::SeqCst);
+            for (tested, case) in tested.iter_mut().zip(cases).skip(last.saturating_add(1)) {
+                tested.outcome = Outcome::NotRun;
+                // It may have run all the same, beside the one that failed.
+                failures::clear(&self.arguments.out, case)?;
+            }
+        }
+        Ok(tested)
+    }
+
+    /// One plan; whatever goes wrong is its own outcome.
+    fn one(&self, case: &Case) -> Outcome {
+        self.outcome(case)
+            .unwrap_or_else(|failure| Outcome::Failed(failure.to_string()))
+    }
+
+    fn outcome(&self, case: &Case) -> Result<Outcome, Failure> {
+        if self.arguments.bless {
+            let trial = golden_run::of(&case.plan, Extent::All)?;
+            return Ok(Outcome::Blessed(case.golden.bless(
+                &trial.files,
+                &trial.tolerances,
+                self.arguments.anew,
+            )?));
+        }
+        let trial = golden_run::of(&case.plan, Extent::Compared)?;
+        let blessed = case.golden.truth()?;
+        failures::clear(&self.arguments.out, case)?;
+        if blessed.is_empty() {
+            return Ok(Outcome::NotBlessed {
+                folder: case.golden.path().display().to_string(),
+            });
+        }
+        let found = compare(&blessed, &truth_of(&trial.files), &trial.tolerances);
+        if found.is_empty() {
+            return Ok(Outcome::Same {
+                verdict: trial.verdict,
+            });
+        }
+        // Only what a person is to look at is drawn and set.
+        let files = golden_run::of(&case.plan, Extent::All)?.files;
+        failures::write(&self.arguments.out, case, &blessed, &files, &found)?;
+        Ok(Outcome::Differs(found))
+    }
+}
+
+/// Tells outcomes in the order of the cases, whatever order they end in.
+struct Teller<'a, 'b> {
+    /// The next to tell, and those that wait for it.
+    told: Mutex<(usize, BTreeMap<usize, Tested>)>,
+    trials: &'a Trials<'b>,
+    cases: &'a [Case],
+    first_bad: &'a AtomicUsize,
+}
+
+impl Teller<'_, '_> {
+    fn tell(&self, index: usize, tested: Tested) {
+        if !self.trials.human {
+            return;
+        }
+        let mut told = self.told.lock().expect("nobody panics while telling");
+        told.1.insert(index, tested);
+        loop {
+            let next = told.0;
+            let Some(mut tested) = told.1.remove(&next) else {
+                break;
+            };
+            if self.trials.arguments.fail_fast && self.first_bad.load(Ordering::SeqCst) < told.0 {
+                tested.outcome = Outcome::NotRun;
+            }
+            tell(&console::told(&tested, self.trials.settings.color));
+            if matches!(tested.outcome, Outcome::Differs(_)) {
+                let folder = failures::folder(&self.trials.arguments.out, &self.cases[told.0]);
+                tell(&format!("  see {}\n", folder.display()));
+            }
+            told.0 += 1;
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! `psd verify RUN`: the record is whole and in order; the run, done again from the recorded readings, asks for the very
+//! same targets and gives the very same results; every file of the folder is the one its manifest names; and who has
+//! signed it. Moves nothing, writes nothing.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::cli::args::VerifyArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::record_file::{JOURNAL, journal_of};
+use crate::cli::output::give;
+use crate::cli::settings::Settings;
+use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
+use crate::record::journal::{FileFault, FileStorage};
+use crate::text::diagnostic::excerpt::one_line;
+
+/// Proves what can be proven of a run folder. Of a run that is still going on nothing can.
+pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, Failure> {
+    let _still = match FileStorage::keep_still(&journal_of(&arguments.run)) {
+        Err(fault @ FileFault::InUse { .. }) => return Err(fault.into()),
+        // Whatever else is wrong with it is told below; a file system may know no locks.
+        still => still.ok(),
+    };
+    let mut folder = Folder::read(&arguments.run)?;
+    if !folder.files.contains_key(JOURNAL) {
+        return Err(Failure::file(journal_of(&arguments.run), "no such file")
+            .help("a run folder is told by its record"));
+    }
+    let keys = arguments
+        .key
+        .iter()
+        .map(|path| keys::public(path))
+        .collect::<Result<Vec<_>, _>>()?;
+    let rebuilt = Rebuilt::taking(&mut folder);
+    let findings = examine(&folder, &rebuilt, &keys);
+    let mut text = String::new();
+    for finding in &findings {
+        let word = if finding.sound {
+            "ok".to_owned()
+        } else {
+            settings.paint_bad("WRONG")
+        };
+        let _ = writeln!(
+            text,
+            "  {:<11}  {word}  {}",
+            finding.part,
+            one_line(&finding.told)
+        );
+    }
+    give(&text)?;
+    Ok(if findings.iter().all(|finding| finding.sound) {
+        Exit::Met
+    } else {
+        Exit::Fault
+    })
+}
+
+/// Nobody signs or amends what does not verify.
+pub fn refuse_unproven(run: &Path, findings: &[Finding]) -> Result<(), Failure> {
+    match findings.iter().find(|finding| !finding.sound) {
+        Some(finding) => Err(Failure::file(
+            run,
+            format!("does not verify: {}: {}", finding.part, finding.told),
+        )
+        .help("see `psd verify`")),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,286 @@
+//! The results that a plan is held against. In: the plan's place, and the files of a run. Out: the folder
+//! `reports/NAME`, beside the folder of `plans/NAME.psd`, read or replaced as a whole; no other folder is touched.
+
+use std::path::{Path, PathBuf};
+
+use super::loader::plain;
+use super::run_folder::write_new;
+use crate::cli::exit::Failure;
+use crate::golden::{Blessed, DIAGNOSTICS, FIGURES, SUMMARY, Tolerances, Truth, compare};
+use crate::report::OutputFile;
+
+/// Where a plan's blessed results are kept.
+#[derive(Clone, Debug)]
+pub struct BlessedFolder {
+    reports: PathBuf,
+    name: String,
+}
+
+impl BlessedFolder {
+    /// The folder for `plan`, which exists.
+    pub fn of(plan: &Path) -> Result<Self, Failure> {
+        let place = plan
+            .canonicalize()
+            .map_err(|error| Failure::file(plan, plain(&error)))?;
+        match place.parent().and_then(Path::parent) {
+            Some(above) => {
+                // As the person would write it, where that is the same place.
+                let typed = plan
+                    .parent()
+                    .and_then(Path::parent)
+                    .filter(|typed| typed.canonicalize().is_ok_and(|place| place == above));
+                let here = plan
+                    .parent()
+                    .is_some_and(|folder| folder.parent() == Some(Path::new("")));
+                let here = here
+                    && Path::new(".")
+                        .canonicalize()
+                        .is_ok_and(|place| place == above);
+                Self::within(
+                    &if here {
+                        PathBuf::new()
+                    } else {
+                        typed.unwrap_or(above).to_owned()
+                    }
+                    .join("reports"),
+                    &place,
+                )
+            }
+            None => Err(Failure::file(
+                plan,
+                "has no folder above its own to keep blessed results in",
+            )),
+        }
+    }
+
+    /// The folder for `plan` among others in `reports`.
+    pub fn within(reports: &Path, plan: &Path) -> Result<Self, Failure> {
+        match plan.file_stem() {
+            Some(name) => Ok(Self {
+                reports: reports.to_owned(),
+                name: name.to_string_lossy().into_owned(),
+            }),
+            None => Err(Failure::file(
+                plan,
+                "has no name to keep blessed results under",
+            )),
+        }
+    }
+
+    pub fn path(&self) -> PathBuf {
+        self.reports.join(&self.name)
+    }
+
+    /// What is compared of the blessed results; empty where there are none.
+    pub fn truth(&self) -> Result<Truth, Failure> {
+        truth_in(&self.path())
+    }
+
+    /// Blesses the files of a run. Where every number is near enough and no file came or went, nothing is written, unless
+    /// all is to be written anew.
+    pub fn bless(
+        &self,
+        files: &[OutputFile],
+        tolerances: &Tolerances,
+        anew: bool,
+    ) -> Result<Blessed, Failure> {
+        let (old, new) = (self.truth()?, truth_of(files));
+        if old.text(SUMMARY).is_some() && new.is_of_faults() {
+            return Ok(Blessed::Refused(
+                "the plan had results and now fails to check; remove the folder to bless that",
+            ));
+        }
+        if old.is_empty() {
+            self.replace(files)?;
+            return Ok(Blessed::New);
+        }
+        let found = compare(&old, &new, tolerances);
+        let mut kept: Vec<String> = files
+            .iter()
+            .map(|file| file.path.clone())
+            .filter(|path| is_kept(path))
+            .collect();
+        kept.sort();
+        if found.is_empty() && !anew && kept == names(&self.path())? {
+            return Ok(Blessed::Unchanged);
+        }
+        self.replace(files)?;
+        Ok(Blessed::Changed(found))
+    }
+
+    /// Puts the files that are kept in place of those that were. The old ones go only when the new ones are written.
+    fn replace(&self, files: &[OutputFile]) -> Result<(), Failure> {
+        let failed = |path: &Path, error: &std::io::Error| Failure::file(path, plain(error));
+        std::fs::create_dir_all(&self.reports).map_err(|error| failed(&self.reports, &error))?;
+        let (path, fresh, old) = (self.path(), self.beside("new"), self.beside("old"));
+        for left_over in [&fresh, &old] {
+            remove(left_over).map_err(|error| failed(left_over, &error))?;
+        }
+        std::fs::create_dir(&fresh).map_err(|error| failed(&fresh, &error))?;
+        files
+            .iter()
+            .filter(|file| is_kept(&file.path))
+            .try_for_each(|file| write_new(&fresh, file))?;
+        let swap = || -> std::io::Result<()> {
+            if path.symlink_metadata().is_ok() {
+                std::fs::rename(&path, &old)?;
+            }
+            std::fs::rename(&fresh, &path)?;
+            remove(&old)
+        };
+        swap().map_err(|error| failed(&path, &error))
+    }
+
+    fn beside(&self, what: &str) -> PathBuf {
+        self.reports.join(format!(".{}.{what}", self.name))
+    }
+}
+
+/// What is compared of a folder of results; empty where there is none.
+pub fn truth_in(folder: &Path) -> Result<Truth, Failure> {
+    let mut files = Vec::new();
+    for name in names(folder)?.into_iter().filter(|name| Truth::holds(name)) {
+        let path = folder.join(&name);
+        let text =
+            std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))?;
+        files.push((name, text));
+    }
+    Ok(Truth::of(files))
+}
+
+/// What is compared of the files of a run.
+pub fn truth_of(files: &[OutputFile]) -> Truth {
+    let text = |file: &OutputFile| {
+        (
+            file.path.clone(),
+            String::from_utf8_lossy(&file.bytes).into_owned(),
+        )
+    };
+    Truth::of(
+        files
+            .iter()
+            .filter(|file| Truth::holds(&file.path))
+            .map(text),
+    )
+}
+
+/// Every file of a folder and of the folders in it, by its path, in order; none of a folder that is not there.
+fn names(folder: &Path) -> Result<Vec<String>, Failure> {
+    let mut found = Vec::new();
+    let mut open = vec![(folder.to_owned(), String::new())];
+    while let Some((path, prefix)) = open.pop() {
+        let entries = match std::fs::read_dir(&path) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound && prefix.is_empty() => {
+                return Ok(found);
+            }
+            Err(error) => return Err(Failure::file(path, plain(&error))),
+        };
+        for entry in entries {
+            let entry = entry.map_err(|error| Failure::file(&path, plain(&error)))?;
+            let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+            if entry.path().is_dir() {
+                open.push((entry.path(), format!("{name}/")));
+            } else {
+                found.push(name);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Removes a folder, or the link or file in its place.
+pub fn remove(path: &Path) -> std::io::Result<()> {
+    match path.symlink_metadata() {
+        Ok(metadata) if metadata.is_dir() => std::fs::remove_dir_all(path),
+        Ok(_) => std::fs::remove_file(path),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+    }
+}
+
+/// Results that a visitor reads and a later run is compared with; not the plan, which lies beside them, and no Parquet.
+pub fn is_kept(path: &str) -> bool {
+    let is = |folder: &str, ending: &str| {
+        path.starts_with(folder) && Path::new(path).extension().is_some_and(|e| e == ending)
+    };
+    let certificate = matches!(path, "certificate.html" | "certificate.pdf");
+    certificate
+        || matches!(path, SUMMARY | FIGURES | DIAGNOSTICS)
+        || is("figures/", "png")
+        || is("tables/", "csv")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(path: &str) -> OutputFile {
+        OutputFile {
+            path: path.to_owned(),
+            bytes: b"{}".to_vec(),
+        }
+    }
+
+    #[test]
+    fn only_the_plans_own_folder_is_replaced_and_only_where_something_changed() {
+        let root = tempfile::tempdir().unwrap();
+        for folder in ["plans", "reports/beam/tables", "reports/other"] {
+            std::fs::create_dir_all(root.path().join(folder)).unwrap();
+        }
+        for path in [
+            "plans/beam.psd",
+            "reports/beam/tables/gone.csv",
+            "reports/other/summary.json",
+        ] {
+            std::fs::write(root.path().join(path), "old").unwrap();
+        }
+        let blessed = BlessedFolder::of(&root.path().join("plans/beam.psd")).unwrap();
+        let files = [
+            file("summary.json"),
+            file("tables/hit.csv"),
+            file("tables/hit.parquet"),
+            file("plan/beam.psd"),
+        ];
+        let bless = |anew| blessed.bless(&files, &Tolerances::default(), anew).unwrap();
+        assert!(matches!(bless(false), Blessed::Changed(found) if !found.is_empty()));
+        let read =
+            |path: &str| std::fs::read_to_string(root.path().join("reports").join(path)).ok();
+        assert_eq!(read("beam/summary.json").as_deref(), Some("{}"));
+        assert_eq!(read("beam/tables/hit.csv").as_deref(), Some("{}"));
+        assert_eq!(read("other/summary.json").as_deref(), Some("old"));
+        assert_eq!(
+            (
+                read("beam/tables/gone.csv"),
+                read("beam/tables/hit.parquet"),
+                read("beam/plan/beam.psd")
+            ),
+            (None, None, None)
+        );
+        assert_eq!(
+            std::fs::read_dir(root.path().join("reports"))
+                .unwrap()
+                .count(),
+            2
+        );
+        assert_eq!(
+            (bless(false), bless(true)),
+            (Blessed::Unchanged, Blessed::Changed(Vec::new()))
+        );
+        let faults = [file(DIAGNOSTICS)];
+        assert!(matches!(
+            blessed
+                .bless(&faults, &Tolerances::default(), true)
+                .unwrap(),
+            Blessed::Refused(_)
+        ));
+        std::fs::remove_dir_all(blessed.path()).unwrap();
+        assert_eq!(
+            blessed
+                .bless(&faults, &Tolerances::default(), false)
+                .unwrap(),
+            Blessed::New
+        );
+    }
+}

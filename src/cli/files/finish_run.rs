@@ -1,0 +1,213 @@
+//! The end of a run: verdict, results, manifest. In: what was recorded. Out: the files of the run folder. The record lies
+//! there already, whole, whatever becomes of the results.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::loader::plain;
+use super::provenance;
+use super::record_file::{self, journal_of};
+use super::run_folder::{FolderShelf, write_new};
+use super::writing::Telling;
+use crate::cli::commands::rehearse;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::operator::held;
+use crate::cli::output::{tell, tell_words};
+use crate::cli::settings::Settings;
+use crate::evidence::Folder;
+use crate::plan::Plan;
+use crate::record::{EventKind, Outcome, Record};
+use crate::remote::control::DrivenStep;
+use crate::report;
+use crate::report::{Listed, OutputError, Provenance, Run, Shelf};
+use crate::run::replay::Recorded;
+use crate::text::diagnostic::excerpt::escape;
+use crate::verdict::{self, Assessment};
+
+/// Tells the verdict and writes every result into the run's own folder.
+pub fn conclude(
+    folder: &Path,
+    plan: &Plan,
+    provenance: &Provenance,
+    recorded: &Recorded,
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let provenance = &as_recorded(folder, plan, provenance, recorded).inspect_err(|_| {
+        // Without a report, but not without where the rig stands.
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    })?;
+    let assessment = verdict::assess(plan, &recorded.record);
+    let run = Run {
+        plan,
+        record: &recorded.record,
+        assessment: &assessment,
+        provenance,
+    };
+    if !held::is_held(&recorded.record) {
+        // Nothing comes before it, and nothing beside it says how to go on.
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    }
+    tell_words(
+        &report::console::verdict_text(&run, settings.color),
+        settings,
+    );
+    if held::is_held(&recorded.record) {
+        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+    }
+    tell(&into(folder));
+    let kept = Folder::digests(folder)?.kept();
+    write_made(FolderShelf::new(folder), &kept, |shelf| {
+        let shelf = &mut Telling::over(shelf, settings);
+        made_of(plan, &recorded.record, &assessment, provenance, None, shelf)
+    })?;
+    let exit = Exit::from(assessment.verdict);
+    match (&recorded.fault, &recorded.mismatch) {
+        (None, None) => Ok(exit),
+        (Some(fault), _) => {
+            tell(&format!(
+                "  the record could not be kept to its end: {fault}\n"
+            ));
+            Ok(exit.max(Exit::Fault))
+        }
+        (None, Some(mismatch)) => {
+            tell(&format!("  the record does not fit the plan: {mismatch}\n"));
+            Ok(exit.max(Exit::Fault))
+        }
+    }
+}
+
+/// Said with the verdict: where the record lies, and the results will.
+pub fn into(folder: &Path) -> String {
+    format!("  run folder {}\n", escape(&folder.display().to_string()))
+}
+
+/// What a run that ended early left at the rig, and how to go on: what a person who stands before it must know first.
+fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings) -> String {
+    // A rig that nobody released stands as it stood.
+    let unmoved = matches!(record.outcome, Outcome::NotReleased { .. }) && held::is_held(record);
+    if plan.rig.link.as_real().is_none() || record.outcome == Outcome::Completed || unmoved {
+        return String::new();
+    }
+    let last = record
+        .events
+        .iter()
+        .rev()
+        .find(|event| matches!(event.kind, EventKind::Held | EventKind::NotHeld));
+    let mut text = last.map_or_else(String::new, |event| match event.kind {
+        EventKind::NotHeld => format!("  {}\n", settings.paint_error(&escape(&event.text))),
+        _ => format!("  the rig: {}\n", escape(&event.text)),
+    });
+    if held::is_held(record) && held::can_go_on(record) {
+        let folder = folder.display();
+        let _ = writeln!(
+            text,
+            "  to go on: psd resume {folder} --operator \"your name\" --reason \"why it stopped\""
+        );
+    }
+    text
+}
+
+/// Puts every file that a run gives on a shelf; not the manifest, which also lists what lies beside them. A rig that a client
+/// drove gives the table of its steps alone.
+pub fn made_of(
+    plan: &Plan,
+    record: &Record,
+    assessment: &Assessment,
+    provenance: &Provenance,
+    driven: Option<&[DrivenStep]>,
+    shelf: &mut dyn Shelf,
+) -> Result<Vec<Listed>, OutputError> {
+    if matches!(record.outcome, Outcome::NotReleased { .. }) {
+        // Nothing moved: there is the record, and nothing to report.
+        return Ok(Vec::new());
+    }
+    if let Some(steps) = driven {
+        return report::put_driven(steps, record.drift.as_ref(), shelf);
+    }
+    let prediction = rehearse::prediction(plan, record);
+    let provenance = &Provenance {
+        prediction,
+        ..provenance.clone()
+    };
+    report::put_everything(
+        &Run {
+            plan,
+            record,
+            assessment,
+            provenance,
+        },
+        shelf,
+    )
+}
+
+/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest. The manifest is the
+/// last: results without one are none that came to their end.
+pub fn write_made(
+    mut shelf: FolderShelf<'_>,
+    beside: &[Listed],
+    make: impl FnOnce(&mut dyn Shelf) -> Result<Vec<Listed>, OutputError>,
+) -> Result<(), Failure> {
+    let folder = shelf.folder();
+    let listed = match make(&mut shelf) {
+        Ok(listed) => listed,
+        Err(error) => return Err(shelf.failed(error)),
+    };
+    let all: Vec<Listed> = listed.into_iter().chain(beside.iter().cloned()).collect();
+    write_new(folder, &report::manifest_with(&[], &all))
+}
+
+/// The summary of results that are written; of a rig that was not released, that alone.
+pub fn summary(folder: &Path, record: &Record) -> Result<String, Failure> {
+    if let Outcome::NotReleased { reason } = &record.outcome {
+        return Ok(format!(
+            "{}\n",
+            serde_json::json!({ "outcome": "not released", "reason": reason })
+        ));
+    }
+    let path = folder.join(report::SUMMARY);
+    std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))
+}
+
+/// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where the record could
+/// not be kept, and cannot be read back, what the run began with is told, and no head of the record. One that could be kept, and is not
+/// what was written, proves nothing: somebody has changed it under way, and no results are made of it.
+fn as_recorded(
+    folder: &Path,
+    plan: &Plan,
+    began: &Provenance,
+    recorded: &Recorded,
+) -> Result<Provenance, Failure> {
+    if plan.rig.link.as_real().is_none() {
+        return Ok(numbered(began.clone(), plan, recorded));
+    }
+    let read = record_file::read(folder);
+    if recorded.fault.is_some() {
+        return Ok(read.map_or_else(
+            |_| numbered(began.clone(), plan, recorded),
+            |read| read.provenance,
+        ));
+    }
+    let read = read?;
+    let lies_there = (
+        read.recovered.lines.len() as u64,
+        read.recovered.head().to_owned(),
+    );
+    if recorded.sealed.as_ref() != Some(&lies_there) {
+        return Err(Failure::file(
+            journal_of(folder),
+            "is not what this run has written: no results are made of it",
+        )
+        .help("look for who else writes there; `psd verify` says what is wrong with it"));
+    }
+    Ok(read.provenance)
+}
+
+/// With the number of the report, where the record gives one.
+pub fn numbered(provenance: Provenance, plan: &Plan, recorded: &Recorded) -> Provenance {
+    let head = recorded.sealed.as_ref().map(|(_, head)| head.as_str());
+    let ended = recorded.record.outcome == Outcome::Completed;
+    Provenance {
+        number: provenance::report_number(&provenance.run_id, plan, ended, head),
+        ..provenance
+    }
+}

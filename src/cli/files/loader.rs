@@ -1,0 +1,179 @@
+//! Files of a plan. In: paths. Out: their text. What a plan may `use` is confined to its folder: relative paths of
+//! regular files, no way up and no link out, at most [`FILE_BYTES`] of UTF-8.
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Component, Path, PathBuf};
+
+use crate::cli::exit::Failure;
+use crate::language::check::{LoadFault, Loader};
+use crate::language::syntax::limits::FILE_BYTES;
+use crate::text::source::Position;
+
+/// Gives files of one folder and what is under it.
+#[derive(Debug)]
+pub struct FolderLoader {
+    /// Without links, so that a file's true place can be compared with it.
+    folder: PathBuf,
+}
+
+impl FolderLoader {
+    /// A loader for the folder of `plan`, which exists.
+    pub fn beside(plan: &Path) -> Result<Self, Failure> {
+        let plan = plan
+            .canonicalize()
+            .map_err(|error| Failure::file(plan, plain(&error)))?;
+        Ok(Self {
+            folder: plan.parent().unwrap_or(&plan).to_owned(),
+        })
+    }
+}
+
+impl Loader for FolderLoader {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        let relative = Path::new(path);
+        let inside = relative
+            .components()
+            .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if !inside || path.is_empty() || path.contains(['\\', '\0']) {
+            return Err(LoadFault::Refused(
+                "the path must lead down from the plan's folder".to_owned(),
+            ));
+        }
+        let file =
+            self.folder
+                .join(relative)
+                .canonicalize()
+                .map_err(|error| match error.kind() {
+                    std::io::ErrorKind::NotFound => LoadFault::NotFound,
+                    _ => LoadFault::Refused(plain(&error)),
+                })?;
+        if !file.starts_with(&self.folder) {
+            return Err(LoadFault::Refused(
+                "it is a link that leads out of the plan's folder".to_owned(),
+            ));
+        }
+        read(&file).map_err(|fault| LoadFault::Refused(fault.reason))
+    }
+}
+
+/// The text of the plan itself. It may be a link: the person named it.
+pub fn read_plan(path: &Path) -> Result<String, Failure> {
+    let metadata = path
+        .metadata()
+        .map_err(|error| Failure::file(path, plain(&error)))?;
+    if metadata.is_dir() {
+        return Err(Failure::file(path, "is a folder").help("name the plan itself, a `.psd` file"));
+    }
+    read(path).map_err(|Unread { reason, at }| Failure::NotAPlan {
+        path: path.to_owned(),
+        reason,
+        at,
+    })
+}
+
+/// Why a file is no text of a plan, and where, if it is a byte of it.
+struct Unread {
+    reason: String,
+    at: Option<Position>,
+}
+
+impl From<String> for Unread {
+    fn from(reason: String) -> Self {
+        Self { reason, at: None }
+    }
+}
+
+fn read(path: &Path) -> Result<String, Unread> {
+    // Asked before opening: to open a pipe or a device may wait for ever.
+    if !path.metadata().map_err(|error| plain(&error))?.is_file() {
+        return Err("it is not a regular file".to_owned().into());
+    }
+    let file = File::open(path).map_err(|error| plain(&error))?;
+    let mut bytes = Vec::new();
+    file.take(FILE_BYTES as u64 + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| plain(&error))?;
+    if bytes.len() > FILE_BYTES {
+        return Err(format!("it is larger than {} MiB", FILE_BYTES >> 20).into());
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let (line, column) = place(&error.as_bytes()[..at]);
+        let reason = format!(
+            "it is not UTF-8 text (byte {at}, line {line}, column {column}): save it as UTF-8"
+        );
+        Unread {
+            reason,
+            at: Some(Position { line, column }),
+        }
+    })
+}
+
+/// Line and column, from 1, of what comes after these bytes.
+fn place(before: &[u8]) -> (usize, usize) {
+    let line = before
+        .rsplit(|byte| *byte == b'\n')
+        .next()
+        .unwrap_or_default();
+    (
+        before.split(|byte| *byte == b'\n').count(),
+        String::from_utf8_lossy(line).chars().count() + 1,
+    )
+}
+
+/// The system's word for an error, without its number.
+pub fn plain(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        _ => {
+            let text = error.to_string();
+            text.split(" (os error").next().unwrap_or(&text).to_owned()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(loader: &FolderLoader, path: &str) -> String {
+        match loader.load(path) {
+            Err(LoadFault::Refused(reason)) => reason,
+            other => panic!("{path}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn only_regular_files_under_the_plans_folder_are_given() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join("plans");
+        std::fs::create_dir_all(folder.join("lib")).unwrap();
+        for (name, bytes) in [
+            ("plans/a.psd", "let a = 1".as_bytes()),
+            ("plans/lib/b.psd", b"let b = 2"),
+            ("secret.psd", b"x"),
+            ("plans/bytes.psd", b"a\xffb"),
+        ] {
+            std::fs::write(root.path().join(name), bytes).unwrap();
+        }
+        std::fs::write(folder.join("large.psd"), vec![b' '; FILE_BYTES + 1]).unwrap();
+        std::os::unix::fs::symlink("../secret.psd", folder.join("out.psd")).unwrap();
+        std::os::unix::fs::symlink("lib/b.psd", folder.join("in.psd")).unwrap();
+        let loader = FolderLoader::beside(&folder.join("a.psd")).unwrap();
+
+        assert_eq!(loader.load("lib/b.psd").as_deref(), Ok("let b = 2"));
+        assert_eq!(loader.load("./in.psd").as_deref(), Ok("let b = 2"));
+        assert_eq!(loader.load("lib/none.psd"), Err(LoadFault::NotFound));
+        assert!(refused(&loader, "../secret.psd").contains("plan's folder"));
+        assert!(refused(&loader, folder.join("a.psd").to_str().unwrap()).contains("plan's folder"));
+        assert!(refused(&loader, "out.psd").contains("leads out"));
+        assert!(refused(&loader, "lib").contains("regular"));
+        assert!(
+            refused(&loader, "bytes.psd").contains("(byte 1, line 1, column 2): save it as UTF-8")
+        );
+        assert_eq!(place("a\né".as_bytes()), (2, 2));
+        assert!(refused(&loader, "large.psd").contains("1 MiB"));
+    }
+}

@@ -1,0 +1,113 @@
+//! A plan on disk → a checked plan, and its diagnostics told. What `run` and `check` have in common.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::loader::{FolderLoader, read_plan};
+use crate::cli::args::PlanSettings;
+use crate::cli::exit::Failure;
+use crate::cli::output::tell;
+use crate::cli::settings::{Settings, folder_of};
+use crate::language::check::{Checked, Options, check};
+use crate::text::diagnostic::{json, render};
+use crate::text::source::{Position, Span};
+
+/// Reads and checks a plan. Its name inside the program is its file's name: where it lies is recorded nowhere.
+pub fn open(path: &Path, settings: &PlanSettings) -> Result<Checked, Failure> {
+    open_to_run(path, settings, false)
+}
+
+/// [`open`] for a run that is about to begin; `unattended` where nobody is named and nobody can be asked.
+pub fn open_to_run(
+    path: &Path,
+    settings: &PlanSettings,
+    unattended: bool,
+) -> Result<Checked, Failure> {
+    for (at, (name, _)) in settings.set.iter().enumerate() {
+        if settings.set[..at].iter().any(|(before, _)| before == name) {
+            return Err(
+                Failure::command_line(format!("`--set {name}` is given twice"))
+                    .help("give it once, with the value that is meant"),
+            );
+        }
+    }
+    let text = read_plan(path)?;
+    let loader = FolderLoader::beside(path)?;
+    let (rig, set, date) = (
+        settings.rig.clone(),
+        settings.set.clone(),
+        settings.date.clone(),
+    );
+    let options = Options {
+        rig,
+        settings: set,
+        date,
+        unattended,
+        recorded: false,
+    };
+    Ok(check(&name_of(path), &text, &loader, &options))
+}
+
+/// Draws what the checker found, for a person.
+pub fn show(checked: &Checked, path: &Path, settings: Settings) {
+    tell(&render::render_all(
+        &checked.diagnostics,
+        &checked.sources,
+        &settings.appearance(path),
+    ));
+}
+
+/// What the checker found, for an editor.
+pub fn diagnostics(checked: &Checked, path: &Path) -> Vec<Value> {
+    let (name, folder) = (name_of(path), folder_of(path));
+    checked
+        .diagnostics
+        .iter()
+        .map(|found| json::diagnostic(found, &checked.sources, &name, &folder))
+        .collect()
+}
+
+/// Where the fault of a rig that cannot be opened is to be looked for: the field whose port the fault names.
+pub fn place_of_link(checked: &Checked, path: &Path, fault: &str) -> Option<String> {
+    let text = |span: &Span| {
+        checked
+            .sources
+            .file(span.file)
+            .text
+            .get(span.range())
+            .unwrap_or_default()
+    };
+    let quoted = |text: &str| {
+        text.split('"')
+            .skip(1)
+            .step_by(2)
+            .any(|word| !word.is_empty() && fault.contains(word))
+    };
+    let links = &checked.rig_links;
+    let span = *links
+        .iter()
+        .find(|span| quoted(text(span)))
+        .or(links.first())?;
+    let Position { line, column } = checked.sources.position(span);
+    let file = &checked.sources.file(span.file).name;
+    let written: Vec<&str> = text(&span)
+        .lines()
+        .next()
+        .unwrap_or_default()
+        .split_whitespace()
+        .collect();
+    let written = written.join(" ");
+    Some(format!(
+        "{}{file}:{line}:{column}: {written}",
+        folder_of(path)
+    ))
+}
+
+/// The name of a plan's file, without its folder.
+pub fn name_of(path: &Path) -> String {
+    path.file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}

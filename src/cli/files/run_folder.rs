@@ -1,0 +1,313 @@
+//! The run folder: new or empty, each file created once. In: where the person wants it, and the files. Out: the
+//! folder on disk. Overwrites nothing but a part of results that are made again, and deletes nothing but what it has just written.
+
+use std::fs::OpenOptions;
+use std::io::{BufWriter, ErrorKind, IntoInnerError, Write};
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Component, Path, PathBuf};
+
+use super::loader::plain;
+use crate::cli::exit::Failure;
+use crate::report::{OutputError, OutputFile, Shelf};
+use crate::text::sanitize;
+
+/// An empty folder that belongs to this run.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+impl RunFolder {
+    /// The folder named by `--out`, or `runs/PLAN-N` with the next free number.
+    pub fn create(out: Option<&Path>, plan: &Path) -> Result<Self, Failure> {
+        match out {
+            Some(path) => Self::named(path),
+            None => Self::numbered(
+                Path::new("runs"),
+                &sanitize::file_part(&plan.file_stem().unwrap_or_default().to_string_lossy()),
+            ),
+        }
+    }
+
+    fn named(path: &Path) -> Result<Self, Failure> {
+        let failed = |error: std::io::Error| Failure::file(path, plain(&error));
+        // A link may lead anywhere, also to nothing.
+        if path.is_symlink() {
+            return Err(Failure::file(path, "is a link").help("name the run folder itself"));
+        }
+        match std::fs::read_dir(path) {
+            Ok(mut entries) => {
+                if entries.next().is_some() {
+                    return Err(Failure::file(path, "the run folder must be new or empty")
+                        .help("name another with `--out`"));
+                }
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                std::fs::create_dir_all(path).map_err(failed)?;
+            }
+            Err(error) => return Err(failed(error)),
+        }
+        Ok(Self {
+            path: path.to_owned(),
+        })
+    }
+
+    fn numbered(runs: &Path, plan: &str) -> Result<Self, Failure> {
+        let failed = |path: &Path, error: &std::io::Error| Failure::file(path, plain(error));
+        std::fs::create_dir_all(runs).map_err(|error| failed(runs, &error))?;
+        let taken = std::fs::read_dir(runs)
+            .map_err(|error| failed(runs, &error))?
+            .filter_map(|entry| {
+                let name = entry.ok()?.file_name().into_string().ok()?;
+                name.strip_prefix(plan)?
+                    .strip_prefix('-')?
+                    .parse::<u32>()
+                    .ok()
+            });
+        let mut number = taken.max().unwrap_or(0);
+        loop {
+            number = number
+                .checked_add(1)
+                .ok_or_else(|| Failure::file(runs, "no number is free"))?;
+            let path = runs.join(format!("{plan}-{number}"));
+            // To make the folder is to take the number, also from a run that starts at the same moment.
+            match std::fs::create_dir(&path) {
+                Ok(()) => return Ok(Self { path }),
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(failed(&path, &error)),
+            }
+        }
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// Creates one file under `folder`, which must not have it.
+pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
+    let path = inside(folder, &file.path)?;
+    written(&path, &mut |out| out.write_all(&file.bytes)).map_err(|error| unwritten(&path, &error))
+}
+
+/// Why a file was not written; where one is there already, also what is left to do.
+fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::AlreadyExists => Failure::file(path, "is there already: somebody else wrote it")
+            .help("a record beside it is whole: make its results in a new folder with `psd report RUN --out FOLDER`"),
+        _ => Failure::file(path, plain(error)),
+    }
+}
+
+/// Where a file of the folder lies.
+fn inside(folder: &Path, relative: &str) -> Result<PathBuf, Failure> {
+    let path = folder.join(relative);
+    if Path::new(relative)
+        .components()
+        .all(|part| matches!(part, Component::Normal(_)))
+    {
+        return Ok(path);
+    }
+    Err(Failure::file(path, "would be written outside its folder"))
+}
+
+fn written(
+    path: &Path,
+    write: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    if let Some(parent) = path.parent() {
+        std::fs::create_dir_all(parent)?;
+    }
+    let created = OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .mode(MODE)
+        .open(path)?;
+    let mut created = BufWriter::with_capacity(WRITE_BYTES, created);
+    write(&mut created)?;
+    created
+        .into_inner()
+        .map_err(IntoInnerError::into_error)?
+        .sync_all()
+}
+
+/// Results say what the record says, and like it are for their owner alone until the owner gives them to others.
+const MODE: u32 = 0o600;
+
+/// Bytes of a file that are given to the disk at once.
+const WRITE_BYTES: usize = 64 * 1024;
+
+/// Files put into a folder as they are made.
+pub struct FolderShelf<'a> {
+    folder: &'a Path,
+    /// What lies at a file's place is a piece of results that did not come to their end.
+    replaces: bool,
+    created: Vec<PathBuf>,
+    failure: Option<Failure>,
+}
+
+impl<'a> FolderShelf<'a> {
+    pub const fn new(folder: &'a Path) -> Self {
+        Self {
+            folder,
+            replaces: false,
+            created: Vec::new(),
+            failure: None,
+        }
+    }
+
+    /// For a folder with a part of the results, which are made again.
+    pub const fn replacing(folder: &'a Path) -> Self {
+        Self {
+            folder,
+            replaces: true,
+            created: Vec::new(),
+            failure: None,
+        }
+    }
+
+    pub const fn folder(&self) -> &'a Path {
+        self.folder
+    }
+
+    /// Why not all files are there. Where one could not be made, none of those before it stays: the results can be made again.
+    pub fn failed(self, error: OutputError) -> Failure {
+        self.failure.unwrap_or_else(|| {
+            for path in &self.created {
+                let _ = std::fs::remove_file(path);
+            }
+            error.into()
+        })
+    }
+}
+
+impl Shelf for FolderShelf<'_> {
+    fn put(
+        &mut self,
+        path: &str,
+        write: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>,
+    ) -> std::io::Result<()> {
+        let place = match inside(self.folder, path) {
+            Ok(place) => place,
+            Err(failure) => {
+                self.failure = Some(failure);
+                return Err(ErrorKind::InvalidInput.into());
+            }
+        };
+        // A link goes, and not what it leads to.
+        if self.replaces && place.is_symlink() | place.is_file() {
+            std::fs::remove_file(&place)
+                .inspect_err(|error| self.failure = Some(unwritten(&place, error)))?;
+        }
+        written(&place, write)
+            .inspect_err(|error| self.failure = Some(unwritten(&place, error)))?;
+        self.created.push(place);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(path: &str) -> OutputFile {
+        OutputFile {
+            path: path.to_owned(),
+            bytes: b"x".to_vec(),
+        }
+    }
+
+    #[test]
+    fn numbers_go_up_and_no_file_is_written_twice() {
+        let root = tempfile::tempdir().unwrap();
+        let first = RunFolder::numbered(root.path(), "beam").unwrap();
+        std::fs::create_dir(root.path().join("beam-7")).unwrap();
+        std::fs::create_dir(root.path().join("beam-of-9")).unwrap();
+        let next = RunFolder::numbered(root.path(), "beam").unwrap();
+        assert!(first.path().ends_with("beam-1") && next.path().ends_with("beam-8"));
+        write_new(next.path(), &file("a/b.csv")).unwrap();
+        assert!(write_new(next.path(), &file("a/b.csv")).is_err());
+        assert!(write_new(next.path(), &file("../b.csv")).is_err());
+    }
+
+    #[test]
+    fn a_folder_in_use_is_refused() {
+        let root = tempfile::tempdir().unwrap();
+        assert!(RunFolder::named(&root.path().join("new/deep")).is_ok());
+        assert!(
+            RunFolder::named(&root.path().join("new/deep")).is_ok(),
+            "empty"
+        );
+        assert!(RunFolder::named(root.path()).is_err());
+        std::fs::write(root.path().join("file"), "").unwrap();
+        assert!(RunFolder::named(&root.path().join("file")).is_err());
+        for target in ["empty", "nowhere"] {
+            std::fs::create_dir_all(root.path().join("empty")).unwrap();
+            let link = root.path().join(format!("to-{target}"));
+            std::os::unix::fs::symlink(root.path().join(target), &link).unwrap();
+            assert!(
+                RunFolder::named(&link)
+                    .unwrap_err()
+                    .to_string()
+                    .contains("is a link")
+            );
+        }
+    }
+
+    #[test]
+    fn what_could_not_all_be_made_leaves_nothing_and_what_could_not_be_kept_names_its_file() {
+        let root = tempfile::tempdir().unwrap();
+        let mut shelf = FolderShelf::new(root.path());
+        shelf
+            .put("tables/a.csv", &mut |out| out.write_all(b"x"))
+            .unwrap();
+        let failure = shelf.failed(OutputError::Pdf("no such font".to_owned()));
+        assert!(
+            failure.to_string().contains("no such font")
+                && !root.path().join("tables/a.csv").exists()
+        );
+
+        let mut shelf = FolderShelf::new(root.path());
+        shelf
+            .put("tables/a.csv", &mut |out| out.write_all(b"x"))
+            .unwrap();
+        let told = shelf
+            .put("tables/a.csv", &mut |out| out.write_all(b"y"))
+            .unwrap_err()
+            .to_string();
+        let failure = shelf.failed(OutputError::Pdf(told)).to_string();
+        assert!(
+            failure.contains("tables/a.csv")
+                && std::fs::read(root.path().join("tables/a.csv")).unwrap() == b"x",
+            "{failure}"
+        );
+        let mut shelf = FolderShelf::new(root.path());
+        assert!(shelf.put("../a.csv", &mut |_| Ok(())).is_err());
+
+        std::os::unix::fs::symlink(root.path().join("tables/a.csv"), root.path().join("link"))
+            .unwrap();
+        let mut shelf = FolderShelf::replacing(root.path());
+        shelf.put("link", &mut |out| out.write_all(b"z")).unwrap();
+        assert_eq!(
+            std::fs::read(root.path().join("tables/a.csv")).unwrap(),
+            b"x",
+            "what a link leads to stays"
+        );
+        shelf
+            .put("tables/a.csv", &mut |out| out.write_all(b"z"))
+            .unwrap();
+        assert_eq!(
+            std::fs::read(root.path().join("tables/a.csv")).unwrap(),
+            b"z"
+        );
+        let mode = std::os::unix::fs::PermissionsExt::mode(
+            &root
+                .path()
+                .join("tables/a.csv")
+                .metadata()
+                .unwrap()
+                .permissions(),
+        );
+        assert_eq!(mode & 0o777, 0o600, "for their owner alone, as the record");
+    }
+}

@@ -1,0 +1,88 @@
+//! Jumps of the wall clock under a run. In: the records, with both clocks. Out: where the two parted, and by how much. Durations are
+//! never of the wall clock; this only tells a reader of the record why its dates do not fit.
+
+use jiff::Timestamp;
+
+use crate::record::journal::{EntryKind, Line};
+use crate::report::ClockJump;
+
+/// Less than this is the slow correction of a clock, or the time between the two stamps of a record, s.
+const SMALL: f64 = 10.0;
+
+/// Every jump between two readings of one part of the run; what passed before a resumption is nobody's jump.
+pub fn jumps(lines: &[Line]) -> Vec<ClockJump> {
+    let mut before: Option<(f64, Timestamp)> = None;
+    let mut found = Vec::new();
+    for line in lines {
+        match line.kind {
+            EntryKind::Resume => before = None,
+            EntryKind::Sample => {
+                let Some((time, wall)) = stamps(line) else {
+                    continue;
+                };
+                if let Some((time_before, wall_before)) = before {
+                    let seconds =
+                        wall.duration_since(wall_before).as_secs_f64() - (time - time_before);
+                    if seconds.abs() > SMALL {
+                        found.push(ClockJump { time, seconds });
+                    }
+                }
+                before = Some((time, wall));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Rig time (s) and wall clock of a reading.
+fn stamps(line: &Line) -> Option<(f64, Timestamp)> {
+    Some((
+        line.time()?,
+        line.body().get("wall")?.as_str()?.parse().ok()?,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn line(kind: EntryKind, time: f64, wall: &str) -> Line {
+        Line::new(1, kind, &json!({"t": time, "wall": wall}), 0)
+    }
+
+    #[test]
+    fn a_year_forth_and_back_is_told_and_a_slow_run_is_none() {
+        let sample = |time, wall| line(EntryKind::Sample, time, wall);
+        let steady = [
+            sample(1.0, "2026-10-25T00:59:59.000Z"),
+            sample(3601.0, "2026-10-25T01:59:59.500Z"),
+            sample(3602.0, "2026-10-25T02:00:09.000Z"),
+        ];
+        assert_eq!(jumps(&steady), []);
+        let jumping = [
+            sample(1.0, "2026-03-01T10:00:00.000Z"),
+            sample(2.0, "2027-03-01T10:00:01.000Z"),
+            sample(3.0, "2026-03-01T10:00:02.000Z"),
+            // Gone on with next day.
+            line(EntryKind::Resume, 3.0, "2026-03-02T10:00:00.000Z"),
+            sample(4.0, "2026-03-02T10:00:01.000Z"),
+        ];
+        let year = 365.0 * 86400.0;
+        assert_eq!(
+            jumps(&jumping),
+            [
+                ClockJump {
+                    time: 2.0,
+                    seconds: year
+                },
+                ClockJump {
+                    time: 3.0,
+                    seconds: -year
+                }
+            ]
+        );
+    }
+}

@@ -1,0 +1,109 @@
+//! The release of a rig that a run is to go on with. In: what was found, and what would be sent first. Out: who lets it move, or that
+//! nobody does. Nothing has moved by then, and the record has not changed.
+
+use super::watch::Watcher;
+use crate::cli::exit::Failure;
+use crate::plan::{Plan, RealLink};
+use crate::rig::{Reading, Rig, place_and_force};
+use crate::run::replay::{Decision, Doubt};
+use crate::run::{Inspection, Motion, Observer as _};
+use crate::units::Dimension;
+use crate::units::display::{plain, readable};
+
+/// How long the rig is left alone between two looks at whether the person has decided, s.
+const BREATH: f64 = 0.05;
+
+/// Asks whether the rig may move again; gives who said so, with which words.
+pub fn ask(
+    plan: &Plan,
+    link: &RealLink,
+    found: &Reading,
+    decision: &Decision,
+    rig: &mut dyn Rig,
+    watcher: &mut Watcher,
+) -> Result<String, Failure> {
+    let question = question(plan, link, found, decision);
+    let motion = Motion::of(plan, rig.identity(), next(link, found, decision));
+    loop {
+        match watcher.release(&question, &motion) {
+            Inspection::GoOn { note, by } => {
+                let by = by.unwrap_or_else(|| "nobody".to_owned());
+                return Ok(note.map_or_else(|| by.clone(), |note| format!("{by}: {note}")));
+            }
+            Inspection::Stop { reason, .. } => return Err(refused(watcher, reason)),
+            Inspection::Wait if watcher.stop_requested() => {
+                return Err(refused(watcher, "stopped on request".to_owned()));
+            }
+            Inspection::Wait => {
+                if let Err(fault) = rig.pause(BREATH) {
+                    watcher.finish();
+                    return Err(fault.into());
+                }
+            }
+        }
+    }
+}
+
+fn refused(watcher: &mut Watcher, reason: String) -> Failure {
+    watcher.finish();
+    Failure::NotReleased { reason }
+}
+
+/// What was found, what would move, and how.
+fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &Decision) -> String {
+    format!(
+        "resume on rig {}: {}",
+        plan.rig.name,
+        next(link, found, decision)
+    )
+}
+
+fn next(link: &RealLink, found: &Reading, decision: &Decision) -> String {
+    let places = |places: &[f64]| {
+        places
+            .iter()
+            .map(|place| readable(*place, Dimension::LENGTH))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let at = |speed: f64| plain(speed, Dimension::VELOCITY, 4);
+    let own = at(link.own_speed);
+    let next = match (&decision.sends, &decision.doubt) {
+        (Some((to, speed)), Doubt::NotExecuted) => {
+            format!(
+                "the last target did not arrive: it will move to {} at {}, then as the plan says",
+                places(to),
+                at(*speed)
+            )
+        }
+        (Some((to, speed)), _) => {
+            format!(
+                "the last target was not reached: it will move to {} at {}, then as the plan says",
+                places(to),
+                at(*speed)
+            )
+        }
+        (None, Doubt::Stroke { back_to, others }) => {
+            let to: Vec<f64> = std::iter::once(*back_to)
+                .chain(others.iter().copied())
+                .collect();
+            format!(
+                "a way was cut off: it will move back to {} at {own}, then as the plan says",
+                places(&to)
+            )
+        }
+        (None, Doubt::RestOfTheWay { .. }) => {
+            "a way was cut off: it will go the rest of it from here, then as the plan says"
+                .to_owned()
+        }
+        (None, _) => {
+            format!(
+                "it stands where the record left it, and will move as the plan says, at {own} where that says nothing"
+            )
+        }
+    };
+    format!(
+        "found at {}; {next}",
+        place_and_force(&found.displacement, &found.force)
+    )
+}

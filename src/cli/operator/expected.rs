@@ -1,0 +1,54 @@
+//! What a run is expected to do to its rig, for who releases it: how far, how hard, how fast, how long. In: a plan. Out: the extent of a
+//! dry run on an ideal copy of the specimen, and its steps. It moves nothing.
+
+use crate::cli::commands::explain_plan::dry_rig::{Reach, Watched};
+use crate::plan::{Interval, Link, Plan, VirtualLink};
+use crate::run::Extent;
+
+/// The extent of the whole plan, and its number of steps. Where only the rig knows how the specimen bends, nothing is known.
+pub fn of(plan: &Plan) -> (Extent, u64) {
+    let unknown = plan
+        .specimen_on_the_rig()
+        .is_some_and(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none());
+    if unknown {
+        return (Extent::default(), 0);
+    }
+    let mut ideal = plan.clone();
+    ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
+    let (_, reaches) = Watched::run(&ideal, plan.rig.link.as_real().map(|link| link.own_speed));
+    (
+        over(&reaches),
+        reaches.iter().map(|reach| reach.steps).sum(),
+    )
+}
+
+/// What is left of it where so many of its steps are done.
+pub fn rest((extent, steps): (Extent, u64), done: u64) -> Extent {
+    #[expect(clippy::cast_precision_loss, reason = "a share of steps")]
+    let share = if steps > 0 {
+        1.0 - (done.min(steps) as f64) / (steps as f64)
+    } else {
+        1.0
+    };
+    Extent {
+        duration: extent.duration.map(|duration| share * duration),
+        ..extent
+    }
+}
+
+fn over(reaches: &[Reach]) -> Extent {
+    let moved = || reaches.iter().filter(|reach| reach.moved);
+    let widest = |pick: fn(&Reach) -> Interval| {
+        let spans = moved().map(pick).filter(|span| span.low <= span.high);
+        spans.reduce(|a, b| Interval {
+            low: a.low.min(b.low),
+            high: a.high.max(b.high),
+        })
+    };
+    Extent {
+        travel: widest(|reach| reach.displacement),
+        force: widest(|reach| reach.force),
+        speed: moved().map(|reach| reach.speed).reduce(f64::max),
+        duration: reaches.last().map(|reach| reach.ended),
+    }
+}

@@ -1,0 +1,238 @@
+//! What a person is asked, and which words answer it: the same on the live screen and on a terminal of lines. In: what is to be looked
+//! at or moved, a rig that holds. Out: a title, lines, the word that agrees, the keys of a choice. No single key lets a rig move, and
+//! nothing typed ahead counts.
+
+use std::time::Duration;
+
+use crate::run::{Inspection, Motion};
+use crate::text::diagnostic::excerpt::escape;
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+/// So long after a question was shown what is typed does not count: nobody has read it yet.
+pub const DEAF: Duration = Duration::from_secs(1);
+
+/// A question of the run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Question {
+    pub kind: Kind,
+    pub lines: Vec<String>,
+}
+
+/// What agreeing does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A look at a specimen that nothing real moves.
+    Look,
+    /// A look, after which the rig moves on.
+    GoOn,
+    /// The first move of a run, of a resumed run, of a served rig.
+    Release,
+    /// The load is taken off after a stop.
+    Unload,
+    /// One move by hand.
+    Jog,
+}
+
+/// The early end of a run, as a person stands before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum After {
+    /// The rig holds, and these may be chosen.
+    Held { resume: bool, unload: bool },
+    /// Nobody knows whether it holds.
+    NotHeld,
+}
+
+/// What a person does with a rig whose run has ended early. None of it moves anything yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    Resume,
+    Unload,
+    Leave,
+}
+
+/// Asked of who resumes a held run.
+pub const WHY_RESUME: &str = "Why was the run held, and why may it go on? With the reason you say that the rig was not switched off. \
+                              Both are recorded.";
+
+/// Where a rig stands, and what it feels there.
+pub fn felt(displacement: f64, force: f64) -> String {
+    format!(
+        "X {}   R {}",
+        readable(displacement, Dimension::LENGTH),
+        readable(force, Dimension::FORCE)
+    )
+}
+
+impl After {
+    /// What may be chosen: its key, and what it does.
+    pub fn choices(self) -> Vec<(char, Choice, &'static str)> {
+        let Self::Held { resume, unload } = self else {
+            return vec![('a', Choice::Leave, "I have seen this")];
+        };
+        let resume = resume.then_some((
+            'r',
+            Choice::Resume,
+            "resume the run; the rig is released first",
+        ));
+        let unload = unload.then_some(('u', Choice::Unload, "unload; the rig is released first"));
+        resume
+            .into_iter()
+            .chain(unload)
+            .chain([('x', Choice::Leave, "leave; the rig stays held")])
+            .collect()
+    }
+
+    /// What this key chooses.
+    pub fn choice(self, key: char) -> Option<Choice> {
+        let chosen = |(own, ..): &(char, Choice, &str)| own.eq_ignore_ascii_case(&key);
+        self.choices()
+            .into_iter()
+            .find(chosen)
+            .map(|(_, choice, _)| choice)
+    }
+}
+
+impl Question {
+    /// A look, behind which a motion waits where a real rig was released before.
+    pub fn look(note: &str, released: Option<&Motion>) -> Self {
+        let note = format!("inspect: {}", escape(note));
+        let Some(motion) = released else {
+            return Self {
+                kind: Kind::Look,
+                lines: vec![note],
+            };
+        };
+        let onward = Motion {
+            does: "it goes on as the plan says".to_owned(),
+            ..motion.clone()
+        };
+        Self {
+            kind: Kind::GoOn,
+            lines: [vec![note, String::new()], onward.lines()].concat(),
+        }
+    }
+
+    /// A motion that waits for a person's word.
+    pub fn of(kind: Kind, motion: &Motion) -> Self {
+        Self {
+            kind,
+            lines: motion.lines().iter().map(|line| escape(line)).collect(),
+        }
+    }
+}
+
+impl Kind {
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Look => "INSPECTION",
+            Self::GoOn => "INSPECTION, THEN THE RIG WILL MOVE",
+            Self::Release => "RELEASE: THE RIG WILL MOVE",
+            Self::Unload => "UNLOAD: THE RIG WILL MOVE",
+            Self::Jog => "JOG: THE RIG WILL MOVE",
+        }
+    }
+
+    /// The word that agrees.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Look => "yes",
+            Self::GoOn | Self::Release => "RELEASE",
+            Self::Unload => "UNLOAD",
+            Self::Jog => "MOVE",
+        }
+    }
+
+    /// What `n` does.
+    pub const fn declined(self) -> &'static str {
+        match self {
+            Self::Look | Self::GoOn => "the run ends here and the rig holds",
+            Self::Release | Self::Jog => "nothing moves",
+            Self::Unload => "it stays held",
+        }
+    }
+
+    /// What an entered line says; None: nothing. A word that lets something move is typed as it is shown.
+    pub fn answer(self, line: &str) -> Option<bool> {
+        let line = line.trim();
+        if line == self.word() || self == Self::Look && line.eq_ignore_ascii_case("y") {
+            return Some(true);
+        }
+        ["n", "no"]
+            .iter()
+            .any(|no| line.eq_ignore_ascii_case(no))
+            .then_some(false)
+    }
+
+    /// An answer for the record, with the remark and the name.
+    pub fn said(self, yes: bool, remark: Option<String>, by: String) -> Inspection {
+        let by = Some(by);
+        if yes {
+            return Inspection::GoOn { note: remark, by };
+        }
+        let reason = match self {
+            Self::Look | Self::GoOn => "stopped by a person at an inspection",
+            Self::Release => "declined by the operator",
+            Self::Unload | Self::Jog => "no",
+        };
+        let reason =
+            remark.map_or_else(|| reason.to_owned(), |remark| format!("{reason}: {remark}"));
+        Inspection::Stop { reason, by }
+    }
+
+    /// Nobody answers.
+    pub fn unanswered(self) -> Inspection {
+        let reason = match self {
+            Self::Look | Self::GoOn => "no answer at an inspection",
+            Self::Release | Self::Unload | Self::Jog => "no answer",
+        };
+        Inspection::Stop {
+            reason: reason.to_owned(),
+            by: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_word_as_it_is_shown_lets_something_move() {
+        for kind in [Kind::GoOn, Kind::Release, Kind::Unload, Kind::Jog] {
+            assert_eq!(kind.answer(&format!(" {} ", kind.word())), Some(true));
+            for other in [
+                "y",
+                "Y",
+                "yes",
+                "",
+                "release",
+                "unload",
+                "move",
+                "R",
+                "RELEASE it",
+                "ok",
+                "go",
+            ] {
+                assert_eq!(kind.answer(other), None, "{kind:?} {other:?}");
+            }
+            assert_eq!(
+                (kind.answer("n"), kind.answer("No")),
+                (Some(false), Some(false))
+            );
+        }
+        assert_eq!(
+            Kind::Unload.answer("RELEASE"),
+            None,
+            "each motion has its own word"
+        );
+        assert_eq!(
+            (
+                Kind::Look.answer("y"),
+                Kind::Look.answer("yes"),
+                Kind::Look.answer("yesterday")
+            ),
+            (Some(true), Some(true), None)
+        );
+    }
+}

@@ -1,0 +1,134 @@
+//! A real rig for a command. In: a checked plan that names one. Out: the rig, open, with who watches it.
+
+use super::watch::{Attendance, Signals, Watcher, throw_away};
+use crate::cli::args::{PlanSettings, name};
+use crate::cli::exit::Failure;
+use crate::cli::files::record_file::Circumstances;
+use crate::cli::output::tell;
+use crate::cli::settings::Settings;
+use crate::plan::Plan;
+use crate::rig::{Connected, Rig as _, Wish, connect};
+use crate::run::replay::Wall;
+
+/// Whether nobody is named on the command line, and nobody can be asked.
+pub fn unattended(attendance: &Attendance, settings: Settings) -> bool {
+    attendance.operator.is_none() && (attendance.yes || !settings.can_ask)
+}
+
+/// The name of who runs the test on a real rig, asked for at the terminal where neither command line nor plan gives it. Nothing
+/// is open yet, and Ctrl-C ends the program.
+pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure> {
+    if plan.rig.link.as_real().is_none() || operator(plan, &attendance).is_some() {
+        return Ok(attendance);
+    }
+    let nobody = || {
+        Failure::command_line("nobody is named who runs the test: nothing was opened")
+            .help("--operator \"A. Tester\"")
+    };
+    // What was typed before the question is no name.
+    throw_away();
+    loop {
+        tell("  who runs the test? [your name] ");
+        let mut line = String::new();
+        let count = std::io::stdin()
+            .read_line(&mut line)
+            .map_err(|_| nobody())?;
+        if count == 0 {
+            tell("\n");
+            return Err(nobody());
+        }
+        match name(&line) {
+            Ok(name) => {
+                return Ok(Attendance {
+                    operator: Some(name),
+                    ..attendance
+                });
+            }
+            Err(reason) => tell(&format!("  {reason}\n")),
+        }
+    }
+}
+
+/// Who is named, by the command line or by the plan.
+pub fn operator(plan: &Plan, attendance: &Attendance) -> Option<String> {
+    let of_plan = plan
+        .particulars
+        .iter()
+        .find(|(field, _)| *field == "operator")
+        .map(|(_, name)| name.clone());
+    attendance
+        .operator
+        .clone()
+        .or(of_plan)
+        .filter(|name| !name.trim().is_empty())
+}
+
+/// A rig that is open, and who watches it.
+pub struct Opened {
+    pub connected: Connected,
+    pub watcher: Watcher,
+}
+
+/// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on, and become `wish`: to be killed in
+/// the middle of a word is no way to leave a rig.
+pub fn open(
+    plan: &Plan,
+    attendance: &Attendance,
+    wish: &Wish,
+    settings: Settings,
+) -> Result<Opened, Failure> {
+    let signals = Signals::caught(wish).map_err(Failure::Signals)?;
+    let connected = connect(&plan.rig, &plan.limits, wish)?;
+    let simulated = connected.rig.identity().simulated;
+    let mut watcher = Watcher::new(settings, attendance, plan, simulated, signals);
+    watcher.watch(connected.rig.live());
+    Ok(Opened { connected, watcher })
+}
+
+/// [`open`] for a client that drives: watched in lines, and `wish` is what signals become.
+pub fn open_for_client(
+    plan: &Plan,
+    attendance: &Attendance,
+    settings: Settings,
+    wish: &Wish,
+) -> Result<Opened, Failure> {
+    let signals = Signals::caught(wish).map_err(Failure::Signals)?;
+    let connected = connect(&plan.rig, &plan.limits, wish)?;
+    let simulated = connected.rig.identity().simulated;
+    let watcher = Watcher::in_lines(settings, attendance, plan, simulated, signals);
+    Ok(Opened { connected, watcher })
+}
+
+/// Who stands by, on which machine, and when it began.
+pub fn circumstances(plan: &Plan, attendance: &Attendance) -> Circumstances {
+    let host = rustix::system::uname()
+        .nodename()
+        .to_string_lossy()
+        .into_owned();
+    Circumstances {
+        operator: operator(plan, attendance),
+        host: Some(host),
+        began: wall_clock()(),
+        served: None,
+    }
+}
+
+/// UTC, to the millisecond.
+pub fn wall_clock() -> Wall {
+    Box::new(|| {
+        Some(
+            jiff::Timestamp::now()
+                .strftime("%Y-%m-%dT%H:%M:%S%.3fZ")
+                .to_string(),
+        )
+    })
+}
+
+/// What `--rig`, `--set` and `--date` said when a record began.
+pub fn settings_of(header: &crate::run::replay::Header) -> PlanSettings {
+    PlanSettings {
+        rig: header.rig.clone(),
+        set: header.settings.clone(),
+        date: header.date.clone(),
+    }
+}

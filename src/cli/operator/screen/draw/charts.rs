@@ -1,0 +1,138 @@
+//! The two curves: displacement over time and force over displacement of the procedure that runs.
+
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::Color;
+use ratatui::symbols::Marker;
+use ratatui::widgets::{Axis, Block, BorderType, Chart, Dataset, GraphType};
+
+use super::View;
+use crate::cli::operator::screen::curve::Curve;
+use crate::units::Dimension;
+use crate::units::display::{readable_unit, significant};
+
+pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
+    let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(area);
+    let [x, r] = if view.model.axes() > 1 {
+        ["top floor", "base shear"]
+    } else {
+        ["X", "R"]
+    };
+    let across = if view.model.axes() > 1 {
+        "first floor"
+    } else {
+        "X"
+    };
+    let displacement = [("t", Dimension::TIME), (x, Dimension::LENGTH)];
+    let force = [(across, Dimension::LENGTH), (r, Dimension::FORCE)];
+    chart(
+        frame,
+        view,
+        left,
+        &view.model.displacement,
+        "Displacement",
+        displacement,
+    );
+    chart(frame, view, right, &view.model.force, "Force", force);
+}
+
+/// One axis: where it begins and ends in SI, and how its numbers are written.
+struct Scale {
+    bounds: [f64; 2],
+    unit: String,
+    factor: f64,
+}
+
+impl Scale {
+    /// From the smallest to the largest; around a single value, some room.
+    fn of(data: [f64; 2], dimension: Dimension) -> Self {
+        let largest = data[0].abs().max(data[1].abs());
+        let (unit, factor) = readable_unit(largest, dimension);
+        let span = data[1] - data[0];
+        let room = if span > largest * 1e-9 {
+            0.0
+        } else if largest > 0.0 {
+            0.1 * largest
+        } else {
+            factor
+        };
+        Self {
+            bounds: [data[0] - room, data[1] + room],
+            unit,
+            factor,
+        }
+    }
+
+    fn labels(&self) -> [String; 2] {
+        let span = self.bounds[1] - self.bounds[0];
+        self.bounds.map(|bound| {
+            // The first step is not quite 0, and nobody wants to read how much.
+            let bound = if bound.abs() < 1e-3 * span {
+                0.0
+            } else {
+                bound
+            };
+            let number = significant(bound / self.factor, 3);
+            let decimals = number.contains('.') && !number.contains('e');
+            if decimals {
+                number
+                    .trim_end_matches('0')
+                    .trim_end_matches('.')
+                    .to_owned()
+            } else {
+                number
+            }
+        })
+    }
+}
+
+fn chart(
+    frame: &mut Frame<'_>,
+    view: &View<'_>,
+    area: Rect,
+    curve: &Curve,
+    what: &str,
+    [(across, across_dimension), (up, up_dimension)]: [(&str, Dimension); 2],
+) {
+    let frame_of = |title: String| {
+        Block::bordered()
+            .border_type(BorderType::Plain)
+            .border_style(view.quiet())
+            .title(title)
+    };
+    let Some(bounds) = curve.bounds() else {
+        frame.render_widget(frame_of(format!(" {what} ")), area);
+        return;
+    };
+    let (x, y) = (
+        Scale::of(bounds.x, across_dimension),
+        Scale::of(bounds.y, up_dimension),
+    );
+    let points: Vec<(f64, f64)> = curve.points().collect();
+    let newest: Vec<(f64, f64)> = curve.newest().into_iter().collect();
+    let datasets = vec![
+        Dataset::default()
+            .marker(Marker::Braille)
+            .graph_type(GraphType::Line)
+            .style(view.paint(Color::Cyan))
+            .data(&points),
+        Dataset::default()
+            .marker(Marker::Dot)
+            .graph_type(GraphType::Scatter)
+            .style(view.paint(Color::Yellow))
+            .data(&newest),
+    ];
+    let axis = |scale: &Scale| {
+        Axis::default()
+            .bounds(scale.bounds)
+            .labels(scale.labels())
+            .style(view.quiet())
+    };
+    let title = format!(" {up} ({}) over {across} ({}) ", y.unit, x.unit);
+    let chart = Chart::new(datasets)
+        .block(frame_of(title))
+        .x_axis(axis(&x))
+        .y_axis(axis(&y))
+        .legend_position(None);
+    frame.render_widget(chart, area);
+}

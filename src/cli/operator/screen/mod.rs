@@ -1,0 +1,339 @@
+//! The live screen of a run. In: reports of the run, and keys. Out: frames, stop requests and
+//! answers. The run only stores its reports; a thread of the screen draws them, at most twenty
+//! times a second.
+
+mod curve;
+mod dialogue;
+mod draw;
+mod keys;
+pub mod model;
+mod terminal;
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::question::{After, Kind, Question};
+use super::watch::Stay;
+use crate::plan::Plan;
+use crate::record::Event;
+use crate::rig::{Live, Wish};
+use crate::run::{Inspection, Next, Observer, StepReport};
+use dialogue::Dialogue;
+use draw::View;
+use keys::Key;
+use model::{Ended, Model};
+use terminal::{Gone, Page};
+
+pub use terminal::is_large_enough;
+
+/// Time from one picture to the next, at least.
+const FRAME: Duration = Duration::from_millis(50);
+
+/// A virtual run shorter than this shows no screen.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// How long the end of a run waits for the terminal to be given back.
+const FAREWELL: Duration = Duration::from_secs(1);
+
+/// The run's side of the screen.
+pub struct Screen {
+    shared: Arc<Shared>,
+    wish: Wish,
+    finished: bool,
+}
+
+struct Shared {
+    state: Mutex<State>,
+    /// Something is to be shown, or an answer is there.
+    changed: Condvar,
+}
+
+struct State {
+    model: Model,
+    dialogue: Dialogue,
+    /// Where the rig shows what it reads, on the way too.
+    live: Option<Live>,
+    /// The screen is wanted, however short the run.
+    wanted: bool,
+    /// The run is over.
+    over: bool,
+    /// The terminal has been given back, or was never taken.
+    closed: bool,
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Screen {
+    /// A screen for a run of `plan`; it appears at once on a real rig, else when the run lasts.
+    pub fn new(
+        plan: &Plan,
+        simulated: bool,
+        operator: Option<String>,
+        wish: Wish,
+        color: bool,
+    ) -> Self {
+        Self::start(
+            Model::new(plan, simulated),
+            Dialogue::new(operator),
+            !simulated,
+            wish,
+            color,
+        )
+    }
+
+    /// A screen that only watches, under this word.
+    pub fn monitor(
+        plan: &Plan,
+        simulated: bool,
+        word: &'static str,
+        wish: Wish,
+        color: bool,
+    ) -> Self {
+        let model = Model {
+            by_hand: Some(word),
+            ..Model::new(plan, simulated)
+        };
+        Self::start(model, Dialogue::of_monitor(), true, wish, color)
+    }
+
+    fn start(model: Model, dialogue: Dialogue, wanted: bool, wish: Wish, color: bool) -> Self {
+        let state = State {
+            model,
+            dialogue,
+            live: None,
+            wanted,
+            over: false,
+            closed: false,
+        };
+        let shared = Arc::new(Shared {
+            state: Mutex::new(state),
+            changed: Condvar::new(),
+        });
+        let (theirs, their_wish) = (Arc::clone(&shared), wish.clone());
+        std::thread::spawn(move || show(&theirs, &their_wish, color));
+        Self {
+            shared,
+            wish,
+            finished: false,
+        }
+    }
+
+    /// The numbers are those of this rig as it reads them.
+    pub fn watch(&self, live: Live) {
+        self.shared.lock().live = Some(live);
+    }
+
+    /// Asks, or gives the answer once it is known.
+    pub fn ask(&self, question: &Question) -> Inspection {
+        self.wait_for(
+            |dialogue| dialogue.ask(question),
+            |answer| *answer == Inspection::Wait,
+        )
+    }
+
+    /// The run has ended early, and the rig holds: what may be done with it. None: it stays held.
+    pub fn ask_to_unload(&self, question: &Question) -> Option<Inspection> {
+        self.wait_for(
+            |dialogue| dialogue.ask_to_unload(question),
+            |answer| *answer == Some(Inspection::Wait),
+        )
+    }
+
+    /// The run has ended early: what the person before it wants.
+    pub fn stay(&self, after: After) -> Stay {
+        self.wait_for(|dialogue| dialogue.stay(after), |stay| *stay == Stay::Wait)
+    }
+
+    /// Whether somebody has stopped the run at its keys.
+    pub fn is_attended(&self) -> bool {
+        self.shared.lock().dialogue.attended
+    }
+
+    /// What the dialogue says; where that is to wait, after a moment: an answer, or the time for the rig to be heard from.
+    fn wait_for<T>(
+        &self,
+        ask: impl FnOnce(&mut Dialogue) -> T,
+        waits: impl FnOnce(&T) -> bool,
+    ) -> T {
+        let mut state = self.shared.lock();
+        state.wanted = true;
+        self.shared.changed.notify_all();
+        let answer = ask(&mut state.dialogue);
+        if waits(&answer) {
+            drop(self.shared.changed.wait_timeout(state, FRAME));
+        }
+        answer
+    }
+
+    /// Gives the terminal back.
+    pub fn finish(&mut self) {
+        if std::mem::replace(&mut self.finished, true) {
+            return;
+        }
+        let mut state = self.shared.lock();
+        state.over = true;
+        self.shared.changed.notify_all();
+        // A terminal that is gone may keep its thread for ever; the run's results are not kept with it.
+        let closed = self
+            .shared
+            .changed
+            .wait_timeout_while(state, FAREWELL, |state| !state.closed);
+        drop(closed);
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        self.finish();
+    }
+}
+
+impl Observer for Screen {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.shared
+            .lock()
+            .model
+            .procedure_started(name, keyword, steps);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.shared.lock().model.step_done(report);
+    }
+
+    fn studying(&mut self, done: usize, of: usize) {
+        self.shared.lock().model.study = Some((done, of));
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.wish.wants_end()
+    }
+
+    fn inspect(&mut self, note: &str) -> Inspection {
+        self.ask(&Question {
+            kind: Kind::Look,
+            lines: vec![note.to_owned()],
+        })
+    }
+
+    fn next(&mut self) -> Next {
+        let mut state = self.shared.lock();
+        let next = state.dialogue.next();
+        if next == Next::Wait {
+            drop(self.shared.changed.wait_timeout(state, FRAME));
+        }
+        next
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.shared.lock().model.event(event);
+    }
+}
+
+/// The screen's thread.
+fn show(shared: &Shared, wish: &Wish, color: bool) {
+    let began = Instant::now();
+    let mut left = Left {
+        shared,
+        wish,
+        gone: true,
+    };
+    left.gone = is_wanted(shared) && page(shared, wish, color, began).is_err();
+}
+
+/// Says that the thread has left the terminal, however it did.
+struct Left<'a> {
+    shared: &'a Shared,
+    wish: &'a Wish,
+    /// The terminal is gone, or the drawing failed: nobody will answer.
+    gone: bool,
+}
+
+impl Drop for Left<'_> {
+    fn drop(&mut self) {
+        let mut state = self.shared.lock();
+        if self.gone {
+            state.dialogue.lose(self.wish);
+        }
+        state.closed = true;
+        self.shared.changed.notify_all();
+    }
+}
+
+/// Waits until the run has lasted, or asks for the screen; false when it is over before.
+fn is_wanted(shared: &Shared) -> bool {
+    let state = shared.lock();
+    let waited = shared
+        .changed
+        .wait_timeout_while(state, PATIENCE, |state| !state.wanted && !state.over);
+    let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
+    !state.over
+}
+
+/// Draws and listens until the run is over.
+fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(), Gone> {
+    let mut page = Page::open()?;
+    let mut alarmed = false;
+    loop {
+        let drawn = Instant::now();
+        let (model, dialogue) = {
+            let state = shared.lock();
+            if state.over {
+                return Ok(());
+            }
+            let live = state.live.as_ref().and_then(Live::newest);
+            (
+                Model {
+                    live,
+                    ..state.model.clone()
+                },
+                state.dialogue.clone(),
+            )
+        };
+        page.draw(&View {
+            model: &model,
+            dialogue: &dialogue,
+            wish,
+            now: began.elapsed(),
+            color,
+        })?;
+        if model.ended == Some(Ended::NotHeld) && !std::mem::replace(&mut alarmed, true) {
+            Page::ring();
+        }
+        if dialogue.is_new() {
+            // What was typed before it could be seen is none of its answers.
+            loop {
+                let pressed = page.keys(Duration::ZERO)?;
+                if pressed.is_empty() {
+                    break;
+                }
+                press(shared, pressed, began, wish);
+            }
+            shared
+                .lock()
+                .dialogue
+                .drawn(dialogue.appeared, began.elapsed());
+        }
+        // Keys are heard at once, and the next picture is drawn when its time has come.
+        while let Some(left) = FRAME
+            .checked_sub(drawn.elapsed())
+            .filter(|left| !left.is_zero())
+        {
+            let pressed = page.keys(left)?;
+            if !pressed.is_empty() {
+                press(shared, pressed, began, wish);
+            }
+        }
+    }
+}
+
+fn press(shared: &Shared, keys: Vec<Key>, began: Instant, wish: &Wish) {
+    let mut state = shared.lock();
+    for key in keys {
+        state.dialogue.press(key, began.elapsed(), wish);
+    }
+    shared.changed.notify_all();
+}

@@ -1,0 +1,417 @@
+//! What the screen knows of a run. In: what the run tells its observer. Out: numbers in SI and words, bounded in number
+//! however long the run is. It knows no terminal and no clock.
+
+use std::collections::VecDeque;
+
+use super::curve::Curve;
+use crate::plan::{Interval, Limits, Plan, SafeState};
+use crate::record::{Event, EventKind};
+use crate::rig::Felt;
+use crate::rig::real::commands_only;
+use crate::run::{StepReport, UNLOADING};
+use crate::units::Dimension;
+
+/// Events kept for the screen.
+const MOST_EVENTS: usize = 32;
+
+/// The procedure that moves nothing.
+pub const INSPECT: &str = "inspect";
+
+/// Everything that is drawn but the dialogue with the person.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub title: String,
+    pub rig: String,
+    pub simulated: bool,
+    pub limits: Limits,
+    /// The procedure that runs, or ran last.
+    pub procedure: Option<Running>,
+    pub last: Option<StepReport>,
+    /// While the uncertainty of the results is worked out: runs taken again, of how many.
+    pub study: Option<(usize, usize)>,
+    /// Displacement (m) over time (s) of this procedure.
+    pub displacement: Curve,
+    /// Force (N) over displacement (m) of this procedure.
+    pub force: Curve,
+    /// Change of target by the last step, m.
+    pub increment: Option<f64>,
+    /// The newest last.
+    pub events: VecDeque<Event>,
+    /// What stands in place of a running procedure: `monitor`.
+    pub by_hand: Option<&'static str>,
+    /// Nothing measures where the actuator is.
+    pub open_loop: bool,
+    /// Its safe state is to unload.
+    pub unloads: bool,
+    /// What was read last, also while nothing moves and on the way: m, N, one entry an axis.
+    pub live: Option<Felt>,
+    /// The run has ended early: what became of the rig.
+    pub ended: Option<Ended>,
+}
+
+/// What a rig does whose run has ended early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    Held,
+    NotHeld,
+    Unloading,
+}
+
+/// A procedure and how far it can go.
+#[derive(Clone, Debug)]
+pub struct Running {
+    pub name: String,
+    pub keyword: String,
+    /// Upper bound of its steps, where one is known.
+    pub steps: Option<u64>,
+}
+
+/// One limit and where the last step stands in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitRow {
+    pub name: &'static str,
+    pub dimension: Dimension,
+    pub limit: Interval,
+    /// Whether it bounds a size, to which 0 is no danger.
+    pub size: bool,
+    /// Whether psd itself keeps to it: at its bound the rig goes as it was told, and only past it something is wrong.
+    pub kept: bool,
+    /// None where nothing is known of it yet.
+    pub value: Option<f64>,
+}
+
+impl LimitRow {
+    /// Distance to the nearer end; negative past it.
+    pub fn margin(&self) -> Option<f64> {
+        let value = self.value?;
+        let above = if self.size && self.limit.low == 0.0 {
+            f64::INFINITY
+        } else {
+            value - self.limit.low
+        };
+        let margin = above.min(self.limit.high - value);
+        margin.is_finite().then_some(margin)
+    }
+}
+
+impl Model {
+    pub fn new(plan: &Plan, simulated: bool) -> Self {
+        Self {
+            title: plan.title.clone(),
+            rig: plan.rig.name.clone(),
+            simulated,
+            limits: plan.limits,
+            procedure: None,
+            last: None,
+            study: None,
+            displacement: Curve::default(),
+            force: Curve::default(),
+            increment: None,
+            events: VecDeque::new(),
+            by_hand: None,
+            open_loop: plan.rig.link.as_real().is_some_and(commands_only),
+            unloads: plan
+                .rig
+                .link
+                .as_real()
+                .is_some_and(|link| link.safe_state == SafeState::Unload),
+            live: None,
+            ended: None,
+        }
+    }
+
+    pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.study = None;
+        self.procedure = Some(Running {
+            name: name.to_owned(),
+            keyword: keyword.to_owned(),
+            steps,
+        });
+        // While a person looks at the specimen, what came before stays to be seen.
+        if keyword == INSPECT {
+            return;
+        }
+        self.last = None;
+        self.increment = None;
+        self.displacement = Curve::default();
+        self.force = Curve::default();
+    }
+
+    pub fn step_done(&mut self, report: &StepReport) {
+        self.study = None;
+        self.increment = self.last.as_ref().map(|last| {
+            let changes = report
+                .axes()
+                .zip(last.axes())
+                .map(|((to, ..), (from, ..))| (to - from).abs());
+            changes.fold(0.0, f64::max)
+        });
+        // Of several floors the highest one, and the base shear over the drift of the lowest storey.
+        let highest = report
+            .axes()
+            .last()
+            .map_or(report.displacement, |(_, displacement, _)| displacement);
+        self.displacement.push(report.time, highest);
+        self.force.push(
+            report.displacement,
+            report.axes().map(|(.., force)| force).sum(),
+        );
+        self.last = Some(report.clone());
+    }
+
+    /// Axes that the last step moved.
+    pub fn axes(&self) -> usize {
+        self.felt().len().max(1)
+    }
+
+    pub fn event(&mut self, event: &Event) {
+        if self.events.len() == MOST_EVENTS {
+            self.events.pop_front();
+        }
+        match event.kind {
+            EventKind::Held => self.ended = Some(Ended::Held),
+            EventKind::NotHeld => self.ended = Some(Ended::NotHeld),
+            EventKind::Hold if event.text == UNLOADING => self.ended = Some(Ended::Unloading),
+            _ => {}
+        }
+        self.events.push_back(event.clone());
+    }
+
+    /// Displacement (m) and force (N) of every axis: as read last, else at the end of the last step.
+    pub fn felt(&self) -> Vec<(f64, f64)> {
+        match &self.live {
+            Some(live) => live
+                .displacement
+                .iter()
+                .copied()
+                .zip(live.force.iter().copied())
+                .collect(),
+            None => self
+                .last
+                .iter()
+                .flat_map(StepReport::axes)
+                .map(|(_, displacement, force)| (displacement, force))
+                .collect(),
+        }
+    }
+
+    /// |command − displacement| of the last step, m; none while the rig is read on the way.
+    pub fn tracking_error(&self) -> Option<f64> {
+        let on_the_way = self
+            .procedure
+            .as_ref()
+            .is_some_and(|running| running.keyword == "damping sweep");
+        if on_the_way || self.by_hand.is_some() || self.open_loop {
+            return None;
+        }
+        let errors = self
+            .last
+            .iter()
+            .flat_map(StepReport::axes)
+            .map(|(command, displacement, _)| (command - displacement).abs());
+        errors.reduce(f64::max)
+    }
+
+    /// The limits of the plan that a step says something of, those that bound nothing left out.
+    pub fn limit_rows(&self) -> Vec<LimitRow> {
+        let Limits {
+            displacement,
+            force,
+            speed,
+            increment,
+            tracking_error,
+            energy_error,
+            tracking_energy_error,
+            nrms_error,
+        } = self.limits;
+        // Of several axes the one with the largest size.
+        let of = |value: fn((f64, f64)) -> f64| {
+            let felt = self.felt();
+            let values = felt.into_iter().map(value);
+            values.reduce(|largest, value| {
+                if value.abs() > largest.abs() {
+                    value
+                } else {
+                    largest
+                }
+            })
+        };
+        let last = self.last.as_ref();
+        let energy = last.and_then(|last| last.energy_error).map(f64::abs);
+        let share = last
+            .and_then(|last| last.tracking_energy_error)
+            .map(f64::abs);
+        let nrms = last
+            .and_then(|last| last.tracking)
+            .map(|tracking| tracking.nrms_error);
+        let sizes = |limit: Interval| Interval {
+            low: limit.low.max(0.0),
+            ..limit
+        };
+        let row = |name, dimension, limit, size, value| LimitRow {
+            name,
+            dimension,
+            limit,
+            size,
+            kept: false,
+            value,
+        };
+        let went = last.and_then(|last| last.speed);
+        [
+            row(
+                "displacement",
+                Dimension::LENGTH,
+                displacement,
+                false,
+                of(|(displacement, _)| displacement),
+            ),
+            row(
+                "force",
+                Dimension::FORCE,
+                force,
+                false,
+                of(|(_, force)| force),
+            ),
+            LimitRow {
+                kept: true,
+                ..row("speed", Dimension::VELOCITY, sizes(speed), true, went)
+            },
+            row(
+                "increment",
+                Dimension::LENGTH,
+                sizes(increment),
+                true,
+                self.increment,
+            ),
+            row(
+                "tracking error",
+                Dimension::LENGTH,
+                sizes(tracking_error),
+                true,
+                self.tracking_error(),
+            ),
+            row(
+                "energy error",
+                Dimension::NUMBER,
+                sizes(energy_error),
+                true,
+                energy,
+            ),
+            row(
+                "tracking energy",
+                Dimension::NUMBER,
+                sizes(tracking_energy_error),
+                true,
+                share,
+            ),
+            row(
+                "NRMS error",
+                Dimension::NUMBER,
+                sizes(nrms_error),
+                true,
+                nrms,
+            ),
+        ]
+        .into_iter()
+        .filter(|row| {
+            row.limit.high < f64::INFINITY
+                || row.limit.low > if row.size { 0.0 } else { f64::NEG_INFINITY }
+        })
+        .collect()
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+    use crate::tests::testing::empty_plan;
+
+    pub fn step(step: u64, time: f64, command: f64, force: f64) -> StepReport {
+        StepReport {
+            step,
+            time,
+            command,
+            displacement: command - 2e-6,
+            velocity: None,
+            acceleration: None,
+            force,
+            speed: Some(0.4),
+            energy_error: Some(-1e-4),
+            others: Vec::new(),
+            tracking: None,
+            tracking_energy_error: None,
+        }
+    }
+
+    #[test]
+    fn limits_stand_with_value_and_margin_and_only_where_they_bound() {
+        let mut plan = empty_plan();
+        plan.limits.displacement = Interval {
+            low: -0.01,
+            high: 0.1,
+        };
+        plan.limits.increment = Interval {
+            low: 0.0,
+            high: 0.02,
+        };
+        plan.limits.speed = Interval {
+            low: 0.0,
+            high: 1.0,
+        };
+        let mut model = Model::new(&plan, true);
+        model.procedure_started("hit", "impact", Some(3));
+        assert_eq!(
+            model
+                .limit_rows()
+                .iter()
+                .map(|row| (row.name, row.value))
+                .collect::<Vec<_>>(),
+            [("displacement", None), ("speed", None), ("increment", None)]
+        );
+        model.step_done(&step(1, 0.1, 0.01, 5.0));
+        model.step_done(&step(2, 0.2, 0.025, 6.0));
+        let rows = model.limit_rows();
+        assert_eq!(rows[0].margin(), Some(0.024_998 + 0.01));
+        assert!(
+            (rows[1].margin().unwrap() - 0.6).abs() < 1e-12,
+            "0.4 m/s of 1 m/s"
+        );
+        assert!((rows[2].margin().unwrap() - 0.005).abs() < 1e-12);
+        model.step_done(&step(3, 0.3, 0.026, 6.0));
+        assert!(
+            (model.limit_rows()[2].margin().unwrap() - 0.019).abs() < 1e-12,
+            "no increment at all is as far as can be"
+        );
+        assert!((model.tracking_error().unwrap() - 2e-6).abs() < 1e-12);
+        model.procedure_started("c", "damping sweep", None);
+        model.step_done(&step(1, 0.1, 0.01, 5.0));
+        assert_eq!(
+            model.tracking_error(),
+            None,
+            "the target of a stroke is its end"
+        );
+        model.procedure_started("look", INSPECT, Some(0));
+        assert_eq!(
+            model.displacement.points().count(),
+            2,
+            "a procedure begins its own curves"
+        );
+    }
+
+    #[test]
+    fn events_are_bounded() {
+        let mut model = Model::new(&empty_plan(), true);
+        for number in 0..100 {
+            let text = format!("event {number}");
+            model.event(&Event {
+                time: 0.0,
+                procedure: None,
+                step: None,
+                kind: EventKind::Note,
+                text,
+            });
+        }
+        assert_eq!(model.events.len(), MOST_EVENTS);
+        assert_eq!(model.events.back().unwrap().text, "event 99");
+    }
+}

@@ -1,0 +1,133 @@
+//! The terminal while the screen stands: raw mode, another page, no cursor. In: pictures. Out: keys. However the program
+//! ends, the terminal is as it was before; a terminal that is gone is told as such and never waited for. What is typed is read
+//! here, byte by byte, and not by a queue of events: one that hears of a new size of the window may miss the key beside it.
+
+use std::io::{BufWriter, Stderr, Write as _, stderr};
+use std::mem::ManuallyDrop;
+use std::sync::Once;
+use std::time::Duration;
+
+use ratatui::Terminal;
+use ratatui::backend::CrosstermBackend;
+use ratatui::crossterm::cursor::Show;
+use ratatui::crossterm::execute;
+use ratatui::crossterm::terminal::{
+    EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode, size,
+};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use super::draw::{SMALLEST, View, draw};
+use super::keys::{Key, Keyboard};
+
+/// The terminal is gone.
+#[derive(Clone, Copy, Debug)]
+pub struct Gone;
+
+/// Drawn on standard error: standard output may be a pipe.
+pub struct Page {
+    /// Never dropped: it would print that it cannot show the cursor of a terminal that is gone, and what cannot be printed panics, which
+    /// holds the rig. [`restore`] shows the cursor.
+    terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<Stderr>>>>,
+    keyboard: Keyboard,
+}
+
+/// Whether the terminal is large enough for the screen.
+pub fn is_large_enough() -> bool {
+    size().is_ok_and(|(columns, rows)| columns >= SMALLEST.0 && rows >= SMALLEST.1)
+}
+
+impl Page {
+    /// Takes the terminal.
+    pub fn open() -> Result<Self, Gone> {
+        static HOOK: Once = Once::new();
+        HOOK.call_once(|| {
+            // What a panic says must land on the page that stays.
+            let before = std::panic::take_hook();
+            std::panic::set_hook(Box::new(move |panic| {
+                restore();
+                before(panic);
+            }));
+        });
+        enable_raw_mode().map_err(|_| Gone)?;
+        let opened = execute!(stderr(), EnterAlternateScreen).and_then(|()| {
+            Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(
+                1 << 14,
+                stderr(),
+            )))
+        });
+        let Ok(terminal) = opened else {
+            restore();
+            return Err(Gone);
+        };
+        Ok(Self {
+            terminal: ManuallyDrop::new(terminal),
+            keyboard: Keyboard::default(),
+        })
+    }
+
+    pub fn draw(&mut self, view: &View<'_>) -> Result<(), Gone> {
+        self.terminal
+            .draw(|frame| draw(frame, view))
+            .map(|_| ())
+            .map_err(|_| Gone)
+    }
+
+    /// Makes itself heard by who does not look.
+    pub fn ring() {
+        let _ = stderr().write_all(b"\x07").and_then(|()| stderr().flush());
+    }
+
+    /// The keys pressed, if any within the time-out.
+    pub fn keys(&mut self, timeout: Duration) -> Result<Vec<Key>, Gone> {
+        if !has_input(timeout)? {
+            self.keyboard.quiet();
+            return Ok(Vec::new());
+        }
+        let mut typed = [0; 256];
+        match rustix::io::read(std::io::stdin(), &mut typed) {
+            Ok(0) => Err(Gone),
+            Ok(count) => Ok(self.keyboard.typed(&typed[..count])),
+            Err(rustix::io::Errno::INTR | rustix::io::Errno::AGAIN) => Ok(Vec::new()),
+            Err(_) => Err(Gone),
+        }
+    }
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        restore();
+    }
+}
+
+/// Gives the terminal back. Once more does no harm.
+fn restore() {
+    let _ = disable_raw_mode();
+    let _ = execute!(stderr(), LeaveAlternateScreen, Show);
+    let _ = stderr().flush();
+}
+
+/// Whether a key waits. A read is begun only where there is something to read: it never waits, and ends at once on a terminal
+/// that is gone.
+fn has_input(timeout: Duration) -> Result<bool, Gone> {
+    let stdin = std::io::stdin();
+    let mut watched = [PollFd::new(&stdin, PollFlags::IN)];
+    let wait = Timespec {
+        tv_sec: timeout.as_secs().try_into().unwrap_or(1),
+        tv_nsec: timeout.subsec_nanos().into(),
+    };
+    match poll(&mut watched, Some(&wait)) {
+        // Nothing yet; or the size of the window changed, or the like.
+        Ok(0) | Err(rustix::io::Errno::INTR) => Ok(false),
+        Err(_) => Err(Gone),
+        Ok(_) => {
+            let found = watched[0].revents();
+            let gone = found.intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
+            let readable = rustix::io::ioctl_fionread(&stdin).is_ok_and(|bytes| bytes > 0);
+            if gone || !readable {
+                Err(Gone)
+            } else {
+                Ok(true)
+            }
+        }
+    }
+}

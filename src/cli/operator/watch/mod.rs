@@ -1,0 +1,448 @@
+//! Observation of a run by the operator: live screen, progress bar or plain lines, answers at an
+//! inspection, signals. In: reports of the run. Out: answers and stop requests. It does not know
+//! which procedure runs.
+
+mod asking;
+mod plain;
+mod signals;
+mod typed;
+
+use std::cell::RefCell;
+
+use super::question::{self, After, Kind, Question};
+use super::screen::{self, Screen};
+use crate::cli::settings::Settings;
+use crate::plan::Plan;
+use crate::record::{Event, EventKind};
+use crate::rig::{Live, Wish};
+use crate::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
+use crate::text::diagnostic::excerpt::escape;
+use asking::Person;
+pub use asking::{agrees, next_line};
+use plain::{Bar, Lines};
+pub use signals::{Signals, catch_full_files, interrupt};
+pub use typed::{Typed, throw_away};
+
+/// The observer of `psd run`.
+pub struct Watcher {
+    face: Face,
+    asking: Asking,
+    operator: Option<String>,
+    wish: Wish,
+    /// What the run is expected to do.
+    expected: Extent,
+    /// What the rig was asked to be released for.
+    released: Option<Motion>,
+    /// Why the run ended early.
+    ended: Option<String>,
+    /// That nobody knows whether the rig holds.
+    alarm: Option<String>,
+    /// Where a rig shows what it reads.
+    live: Option<Live>,
+    /// Whether the end and a hold were wanted already when a person was first asked what to do with a rig that holds.
+    wanted: Option<(bool, bool)>,
+    _signals: Signals,
+}
+
+/// What the person sees.
+#[expect(clippy::large_enum_variant, reason = "a run has one")]
+enum Face {
+    Screen(Screen),
+    Bar(Bar),
+    Lines(Lines),
+}
+
+impl Face {
+    /// Takes a bar off the terminal.
+    fn clear(&mut self) {
+        if let Self::Bar(bar) = self {
+            bar.clear();
+        }
+    }
+}
+
+/// Who answers at an inspection.
+enum Asking {
+    /// `--yes`
+    Yes,
+    /// A person at the screen.
+    Screen,
+    /// A person who types lines.
+    Person(Person),
+    /// No terminal, and nothing real moves.
+    NobodyNeeded,
+    /// No terminal, and a real rig waits for an answer that cannot come.
+    Nobody,
+}
+
+/// What a person wants of a run that has ended early.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stay {
+    /// Nothing yet: the rig is watched on.
+    Wait,
+    /// Nothing more.
+    Leave,
+    /// That it goes on, for this reason.
+    Resume(String),
+}
+
+/// What the command line says of the person.
+#[derive(Clone, Debug, Default)]
+pub struct Attendance {
+    /// `--yes`
+    pub yes: bool,
+    /// `--operator`
+    pub operator: Option<String>,
+}
+
+impl Watcher {
+    /// Watches a run on a simulated or a real rig. Keys and signals become the wish of `signals`, which a rig that can hold in
+    /// the middle of a step is given too.
+    pub fn new(
+        settings: Settings,
+        attendance: &Attendance,
+        plan: &Plan,
+        simulated: bool,
+        signals: Signals,
+    ) -> Self {
+        Self::watching(settings, attendance, plan, simulated, signals, true)
+    }
+
+    /// Watches in lines, also on a terminal: a client drives, and there is no procedure to draw.
+    pub fn in_lines(
+        settings: Settings,
+        attendance: &Attendance,
+        plan: &Plan,
+        simulated: bool,
+        signals: Signals,
+    ) -> Self {
+        Self::watching(settings, attendance, plan, simulated, signals, false)
+    }
+
+    fn watching(
+        settings: Settings,
+        attendance: &Attendance,
+        plan: &Plan,
+        simulated: bool,
+        signals: Signals,
+        drawn: bool,
+    ) -> Self {
+        let wish = signals.wish().clone();
+        let named = plan
+            .particulars
+            .iter()
+            .find(|(field, _)| *field == "operator")
+            .map(|(_, name)| name.clone());
+        let operator = attendance
+            .operator
+            .clone()
+            .or(named)
+            .filter(|name| !name.trim().is_empty());
+        let face = if drawn && settings.can_ask && settings.unicode && screen::is_large_enough() {
+            Face::Screen(Screen::new(
+                plan,
+                simulated,
+                operator.clone(),
+                wish.clone(),
+                settings.color,
+            ))
+        } else if drawn && settings.stderr_terminal {
+            Face::Bar(Bar::new(settings.unicode))
+        } else {
+            Face::Lines(Lines::default())
+        };
+        let asking = match (attendance.yes, settings.can_ask, simulated, &face) {
+            (true, ..) => Asking::Yes,
+            (false, true, _, Face::Screen(_)) => Asking::Screen,
+            (false, true, ..) => Asking::Person(Person::default()),
+            (false, false, true, _) => Asking::NobodyNeeded,
+            (false, false, false, _) => Asking::Nobody,
+        };
+        if !matches!(face, Face::Screen(_)) {
+            signals.told_in_lines(settings.stderr_terminal);
+        }
+        Self {
+            face,
+            asking,
+            operator,
+            wish,
+            expected: Extent::default(),
+            released: None,
+            ended: None,
+            alarm: None,
+            live: None,
+            wanted: None,
+            _signals: signals,
+        }
+    }
+
+    /// Shows the numbers of this rig as it reads them.
+    pub fn watch(&mut self, live: Live) {
+        if let Face::Screen(screen) = &self.face {
+            screen.watch(live.clone());
+        }
+        self.live = Some(live);
+    }
+
+    /// What the run is expected to do, for who releases it.
+    pub const fn expect(&mut self, expected: Extent) {
+        self.expected = expected;
+    }
+
+    /// What a person wants of a run that has ended early, as long as somebody looks at the rig. `resume`: whether the run could go on.
+    pub fn stay(&mut self, resume: bool) -> Stay {
+        if !self.wish.may_ask() {
+            return Stay::Leave;
+        }
+        let alarmed = self.alarm.is_some();
+        let after = if alarmed {
+            After::NotHeld
+        } else {
+            After::Held {
+                resume,
+                unload: false,
+            }
+        };
+        let (stays, interrupted) = (self.stays() || alarmed, self.is_interrupted());
+        let told = self.told_of_the_rig();
+        match (&mut self.face, &mut self.asking) {
+            (Face::Screen(screen), _) if stays => screen.stay(after),
+            (face, Asking::Person(person)) => {
+                face.clear();
+                if interrupted && !alarmed {
+                    person.leave();
+                }
+                person.stay(after, &told)
+            }
+            _ => Stay::Leave,
+        }
+    }
+
+    /// Whether Ctrl-C came since a person was first asked what to do with a rig that holds.
+    fn is_interrupted(&mut self) -> bool {
+        let now = (self.wish.wants_end(), self.wish.wanted_hold());
+        now != *self.wanted.get_or_insert(now)
+    }
+
+    /// What a person in lines sees of a rig whose run has ended early: the alarm alone, or why it holds and what it feels.
+    fn told_of_the_rig(&self) -> Vec<String> {
+        if let Some(alarm) = &self.alarm {
+            return vec![alarm.clone()];
+        }
+        let felt = self.live.as_ref().and_then(Live::newest);
+        let of_axes = felt
+            .iter()
+            .flat_map(|felt| felt.displacement.iter().zip(&felt.force));
+        let of_axes = of_axes.map(|(displacement, force)| question::felt(*displacement, *force));
+        ["HELD".to_owned()]
+            .into_iter()
+            .chain(self.ended.clone())
+            .chain(of_axes)
+            .collect()
+    }
+
+    /// Whether somebody sits at the screen.
+    fn stays(&self) -> bool {
+        let Face::Screen(screen) = &self.face else {
+            return false;
+        };
+        matches!(self.asking, Asking::Screen) || screen.is_attended()
+    }
+
+    /// Takes screen and bar off the terminal.
+    pub fn finish(&mut self) {
+        if let Face::Screen(screen) = &mut self.face {
+            screen.finish();
+        }
+        self.face.clear();
+    }
+
+    fn face(&mut self) -> &mut dyn Observer {
+        match &mut self.face {
+            Face::Screen(screen) => screen,
+            Face::Bar(bar) => bar,
+            Face::Lines(lines) => lines,
+        }
+    }
+}
+
+impl Observer for Watcher {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.face().procedure_started(name, keyword, steps);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.face().step_done(report);
+    }
+
+    fn studying(&mut self, done: usize, of: usize) {
+        self.face().studying(done, of);
+    }
+
+    fn procedure_finished(&mut self, name: &str) {
+        self.face().procedure_finished(name);
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.wish.wants_end()
+    }
+
+    fn inspect(&mut self, note: &str) -> Inspection {
+        self.ask(&Question::look(note, self.released.as_ref()))
+    }
+
+    fn release(&mut self, _: &str, motion: &Motion) -> Inspection {
+        let motion = motion.clone().expecting(self.expected);
+        let question = Question::of(Kind::Release, &motion);
+        self.released = Some(motion);
+        self.ask(&question)
+    }
+
+    fn may_unload(&mut self, _: &str, motion: &Motion) -> Option<Inspection> {
+        let interrupted = self.is_interrupted();
+        if !self.wish.may_ask() {
+            return None;
+        }
+        let question = Question::of(Kind::Unload, motion);
+        if self.stays()
+            && let Face::Screen(screen) = &mut self.face
+        {
+            return screen.ask_to_unload(&question);
+        }
+        let told = self.told_of_the_rig();
+        let Asking::Person(person) = &mut self.asking else {
+            return None;
+        };
+        self.face.clear();
+        if interrupted {
+            person.leave();
+        }
+        let answer = person.ask_to_unload(&question, &told, &mut self.operator);
+        if matches!(answer, Some(Inspection::GoOn { .. })) {
+            // A Ctrl-C on the way is for that way.
+            self.wanted = None;
+        }
+        answer
+    }
+
+    fn next(&mut self) -> Next {
+        self.face().next()
+    }
+
+    fn event(&mut self, event: &Event) {
+        match event.kind {
+            EventKind::NotHeld => self.alarm = Some(escape(&event.text)),
+            EventKind::Held => self.alarm = None,
+            EventKind::Hold | EventKind::LimitBreach | EventKind::Fault => {
+                self.ended = Some(escape(&event.text));
+            }
+            _ => {}
+        }
+        self.face().event(event);
+    }
+}
+
+impl Watcher {
+    fn ask(&mut self, question: &Question) -> Inspection {
+        let by = self.operator.clone();
+        match &mut self.asking {
+            Asking::Yes => Inspection::GoOn {
+                note: Some("answered by --yes".to_owned()),
+                by,
+            },
+            Asking::NobodyNeeded => Inspection::GoOn {
+                note: Some("nobody was asked: simulated rig, no terminal".to_owned()),
+                by: None,
+            },
+            Asking::Nobody => Inspection::Stop {
+                reason: "nobody to ask at an inspection: no terminal, and no --yes".to_owned(),
+                by: None,
+            },
+            Asking::Screen => match &mut self.face {
+                Face::Screen(screen) => screen.ask(question),
+                Face::Bar(_) | Face::Lines(_) => question.kind.unanswered(),
+            },
+            Asking::Person(person) => {
+                self.face.clear();
+                person.ask(question, &mut self.operator)
+            }
+        }
+    }
+}
+
+/// A watcher that is also asked while nothing runs: before a record that was played is gone on with.
+pub struct Shared<'a>(pub &'a RefCell<Watcher>);
+
+impl Observer for Shared<'_> {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.0.borrow_mut().procedure_started(name, keyword, steps);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.0.borrow_mut().step_done(report);
+    }
+
+    fn studying(&mut self, done: usize, of: usize) {
+        self.0.borrow_mut().studying(done, of);
+    }
+
+    fn procedure_finished(&mut self, name: &str) {
+        self.0.borrow_mut().procedure_finished(name);
+    }
+
+    fn stop_requested(&self) -> bool {
+        self.0.borrow().stop_requested()
+    }
+
+    fn inspect(&mut self, note: &str) -> Inspection {
+        self.0.borrow_mut().inspect(note)
+    }
+
+    fn release(&mut self, note: &str, motion: &Motion) -> Inspection {
+        self.0.borrow_mut().release(note, motion)
+    }
+
+    fn may_unload(&mut self, question: &str, motion: &Motion) -> Option<Inspection> {
+        self.0.borrow_mut().may_unload(question, motion)
+    }
+
+    fn next(&mut self) -> Next {
+        self.0.borrow_mut().next()
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.0.borrow_mut().event(event);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::testing::empty_plan;
+
+    #[test]
+    fn a_real_rig_stops_where_nobody_can_be_asked() {
+        let settings = Settings::PLAIN;
+        let mut plan = empty_plan();
+        plan.particulars
+            .push(("operator", "A. Engineer".to_owned()));
+        let ask = |yes, simulated| {
+            let attendance = Attendance {
+                yes,
+                operator: None,
+            };
+            let signals = Signals::caught(&Wish::default()).unwrap();
+            Watcher::new(settings, &attendance, &plan, simulated, signals).inspect("look")
+        };
+        assert!(matches!(ask(false, false), Inspection::Stop { .. }));
+        let yes = Inspection::GoOn {
+            note: Some("answered by --yes".to_owned()),
+            by: Some("A. Engineer".to_owned()),
+        };
+        assert_eq!(ask(true, false), yes);
+        assert!(matches!(
+            ask(false, true),
+            Inspection::GoOn { by: None, .. }
+        ));
+    }
+}

@@ -1,0 +1,178 @@
+//! Watching without the screen: a bar where there is a terminal, lines where there is none. In: what the run tells. Out:
+//! text on standard error, escaped. Neither asks anything.
+
+use std::fmt::Write as _;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::cli::output::tell;
+use crate::record::{Event, EventKind};
+use crate::run::{Inspection, Observer, StepReport};
+use crate::text::diagnostic::excerpt::escape;
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+/// A progress bar.
+pub struct Bar {
+    counted: ProgressStyle,
+    endless: ProgressStyle,
+    shown: Option<ProgressBar>,
+}
+
+impl Bar {
+    pub fn new(unicode: bool) -> Self {
+        let template = |text| {
+            ProgressStyle::with_template(text).unwrap_or_else(|_| ProgressStyle::default_bar())
+        };
+        let filled = if unicode { "━╸ " } else { "=> " };
+        Self {
+            // How it looks where the number of steps is known before, and where it is not.
+            counted: template("  {prefix}  {bar:28} {percent:>3} %  {msg}").progress_chars(filled),
+            endless: template("  {prefix}  step {pos}  {msg}"),
+            shown: None,
+        }
+    }
+
+    /// Takes the bar off the terminal.
+    pub fn clear(&mut self) {
+        if let Some(bar) = self.shown.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Observer for Bar {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.clear();
+        let style = if steps.is_some() {
+            self.counted.clone()
+        } else {
+            self.endless.clone()
+        };
+        let bar =
+            ProgressBar::with_draw_target(steps, ProgressDrawTarget::stderr()).with_style(style);
+        bar.set_prefix(format!("{name}, {keyword}"));
+        self.shown = Some(bar);
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        let step = report.step;
+        let Some(bar) = &self.shown else { return };
+        bar.set_position(step);
+        // Most steps are never drawn: words are made for some only.
+        if step.is_multiple_of(16) {
+            // Of several axes the highest floor and the base shear tell most.
+            let displacement = report
+                .axes()
+                .last()
+                .map_or(0.0, |(_, displacement, _)| displacement);
+            let force = report.axes().map(|(.., force)| force).sum();
+            let (time, displacement) = (
+                readable(report.time, Dimension::TIME),
+                readable(displacement, Dimension::LENGTH),
+            );
+            bar.set_message(format!(
+                "{time}  {displacement}  {}",
+                readable(force, Dimension::FORCE)
+            ));
+        }
+    }
+
+    fn studying(&mut self, done: usize, of: usize) {
+        if let Some(bar) = &self.shown {
+            bar.set_message(format!("uncertainty: {done} of {of} runs taken again"));
+        }
+    }
+
+    fn procedure_finished(&mut self, _: &str) {
+        self.clear();
+    }
+
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::Wait
+    }
+}
+
+/// One line a procedure, with where it came to, and one an event that a person would want to see as it happens.
+#[derive(Default)]
+pub struct Lines {
+    keyword: String,
+    /// Number of the last step.
+    last: Option<u64>,
+    /// Largest |X|, m, and |R|, N.
+    largest: (f64, f64),
+}
+
+impl Lines {
+    fn line(&self, name: &str) -> String {
+        let mut text = format!("  {}: {}", escape(name), self.keyword);
+        if let Some(step) = self.last {
+            let steps = if step == 1 { "step" } else { "steps" };
+            let (displacement, force) = self.largest;
+            let (displacement, force) = (
+                readable(displacement, Dimension::LENGTH),
+                readable(force, Dimension::FORCE),
+            );
+            let _ = write!(
+                text,
+                ", {step} {steps}, largest X {displacement}, largest R {force}"
+            );
+        }
+        text.push('\n');
+        text
+    }
+}
+
+impl Observer for Lines {
+    fn procedure_started(&mut self, _: &str, keyword: &str, _: Option<u64>) {
+        *self = Self {
+            keyword: keyword.to_owned(),
+            ..Self::default()
+        };
+    }
+
+    fn step_done(&mut self, report: &StepReport) {
+        self.last = Some(report.step);
+        for (_, displacement, force) in report.axes() {
+            self.largest = (
+                self.largest.0.max(displacement.abs()),
+                self.largest.1.max(force.abs()),
+            );
+        }
+    }
+
+    fn procedure_finished(&mut self, name: &str) {
+        tell(&self.line(name));
+    }
+
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::Wait
+    }
+
+    fn event(&mut self, event: &Event) {
+        // Remarks are for the report; it has them.
+        if event.kind != EventKind::Remark {
+            tell(&format!("  {}\n", escape(&event.text).replace('\n', " ")));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::operator::screen::model::tests::step;
+
+    #[test]
+    fn a_procedure_is_one_line_with_its_largest_values() {
+        let mut lines = Lines::default();
+        lines.procedure_started("k0", "stiffness ramp", Some(2));
+        lines.step_done(&step(1, 0.1, 0.002_002, -600.0));
+        lines.step_done(&step(2, 0.2, 0.001, 10.0));
+        assert_eq!(
+            lines.line("k0"),
+            "  k0: stiffness ramp, 2 steps, largest X 2.000 mm, largest R 600.0 N\n"
+        );
+        lines.procedure_started("look", "inspect", Some(0));
+        assert_eq!(lines.line("lo\u{1b}ok"), "  lo\\u{1b}ok: inspect\n");
+    }
+}

@@ -1,0 +1,154 @@
+//! Lines typed on a terminal, beside a run. In: lines, a clock. Out: the lines that count for the question that stands there: what was
+//! typed before it could be read is thrown away.
+
+use std::io::BufRead as _;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rustix::termios::{QueueSelector, tcflush};
+
+use crate::cli::operator::question::DEAF;
+
+/// How long one look for a line takes: Ctrl-C and the rig are heard between two.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Standard input, read beside the run: a read that waits must not keep Ctrl-C from being heard. One for the program: a run that is
+/// gone on with is answered by the lines after those of the run before it.
+static STANDARD_INPUT: LazyLock<Arc<Mutex<Receiver<String>>>> = LazyLock::new(|| {
+    let (send, lines) = channel();
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lock().lines() {
+            let Ok(line) = line else { break };
+            if send.send(line).is_err() {
+                break;
+            }
+        }
+    });
+    Arc::new(Mutex::new(lines))
+});
+
+/// What a look for a line found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Heard {
+    Nothing,
+    /// From here on lines count: the answer is to be asked for.
+    Ready,
+    Line(String),
+    /// The end of the input.
+    End,
+}
+
+/// The lines of a terminal.
+pub struct Typed {
+    lines: Arc<Mutex<Receiver<String>>>,
+    clock: Box<dyn Fn() -> Duration>,
+    /// What is typed until then does not count.
+    deaf_until: Option<Duration>,
+    /// Throws away what lies in the terminal.
+    flush: fn(),
+}
+
+impl Typed {
+    /// Standard input.
+    pub fn from_the_terminal() -> Self {
+        throw_away();
+        let began = Instant::now();
+        let clock = Box::new(move || began.elapsed());
+        Self {
+            lines: Arc::clone(&STANDARD_INPUT),
+            clock,
+            deaf_until: None,
+            flush: throw_away,
+        }
+    }
+
+    #[cfg(test)]
+    pub fn of(lines: Receiver<String>, clock: Box<dyn Fn() -> Duration>) -> Self {
+        Self {
+            lines: Arc::new(Mutex::new(lines)),
+            clock,
+            deaf_until: None,
+            flush: || (),
+        }
+    }
+
+    /// A question has been shown: nothing typed before it counts, and nothing of its first second.
+    pub fn begin(&mut self) {
+        self.forget();
+        self.deaf_until = Some((self.clock)() + DEAF);
+    }
+
+    /// Waits a moment for a line.
+    pub fn hear(&mut self) -> Heard {
+        let line = self
+            .lines
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .recv_timeout(LOOK);
+        if let Some(until) = self.deaf_until {
+            if line == Err(RecvTimeoutError::Disconnected) {
+                return Heard::End;
+            }
+            if (self.clock)() < until {
+                return Heard::Nothing;
+            }
+            self.forget();
+            self.deaf_until = None;
+            return Heard::Ready;
+        }
+        match line {
+            Ok(line) => Heard::Line(line),
+            Err(RecvTimeoutError::Timeout) => Heard::Nothing,
+            Err(RecvTimeoutError::Disconnected) => Heard::End,
+        }
+    }
+
+    fn forget(&self) {
+        (self.flush)();
+        let lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
+        while lines.try_recv().is_ok() {}
+    }
+}
+
+/// What lies in the terminal and nobody has read.
+pub fn throw_away() {
+    // What is no terminal has nothing typed ahead.
+    let _ = tcflush(std::io::stdin(), QueueSelector::IFlush);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+    use std::rc::Rc;
+
+    use super::*;
+
+    #[test]
+    fn what_was_typed_before_a_question_could_be_read_does_not_count() {
+        let (send, lines) = channel();
+        let now = Rc::new(Cell::new(Duration::ZERO));
+        let clock = Rc::clone(&now);
+        let mut typed = Typed::of(lines, Box::new(move || clock.get()));
+        let say = |line: &str| send.send(line.to_owned()).unwrap();
+        say("before");
+        typed.begin();
+        assert_eq!(typed.hear(), Heard::Nothing);
+        now.set(Duration::from_millis(999));
+        say("RELEASE");
+        assert_eq!(typed.hear(), Heard::Nothing, "in its first second");
+        say("still there when the second is over");
+        now.set(Duration::from_secs(1));
+        assert_eq!(typed.hear(), Heard::Ready);
+        assert_eq!(typed.hear(), Heard::Nothing);
+        say("RELEASE");
+        assert_eq!(typed.hear(), Heard::Line("RELEASE".to_owned()));
+        say("for the next");
+        typed.begin();
+        now.set(Duration::from_secs(5));
+        assert_eq!((typed.hear(), typed.hear()), (Heard::Ready, Heard::Nothing));
+        drop(send);
+        typed.begin();
+        assert_eq!(typed.hear(), Heard::End);
+    }
+}

@@ -1,0 +1,198 @@
+//! What stands on a bench: a specimen of one degree of freedom, or a frame with a ram at every floor. In: where the rams
+//! stand, how they went there. Out: the restoring force of each. It knows no rig and no sensor.
+
+use crate::physics::frame::{drifts, floor_forces};
+use crate::physics::relaxation::maxwell::Travel;
+use crate::physics::relaxation::state::Relaxing;
+use crate::physics::specimen::SpecimenModel;
+use crate::physics::structure::damping::CellDamping;
+use crate::plan::{Behaviour, Frame, Storey};
+
+#[derive(Debug)]
+pub(crate) enum Structure {
+    One {
+        specimen: Box<SpecimenModel>,
+        damping: CellDamping,
+        relaxing: Box<Relaxing>,
+        force: f64,
+    },
+    /// Each storey resists its drift, and has what damps it beside.
+    Storeys {
+        models: Vec<SpecimenModel>,
+        dampers: Vec<CellDamping>,
+        relaxing: Vec<Relaxing>,
+        shear: Vec<f64>,
+    },
+    /// R = K X, row by row.
+    Matrix(Vec<Vec<f64>>),
+}
+
+impl Structure {
+    /// `damping`: c of c·v, N·s/m.
+    pub(crate) fn of_one(behaviour: &Behaviour, damping: f64) -> Self {
+        let specimen = Box::new(SpecimenModel::new(behaviour));
+        let damping = CellDamping::new(damping, 0.0).with_rate_of(behaviour);
+        Self::One {
+            specimen,
+            damping,
+            relaxing: Box::new(Relaxing::of(behaviour)),
+            force: 0.0,
+        }
+    }
+
+    pub(crate) fn of_frame(frame: &Frame) -> Self {
+        if frame.storeys.is_empty() {
+            return Self::Matrix(frame.stiffness.clone());
+        }
+        let damper = |storey: &Storey| {
+            CellDamping::new(storey.damping, storey.coulomb).with_rate_of(&storey.behaviour)
+        };
+        Self::Storeys {
+            models: frame
+                .storeys
+                .iter()
+                .map(|storey| SpecimenModel::new(&storey.behaviour))
+                .collect(),
+            dampers: frame.storeys.iter().map(damper).collect(),
+            relaxing: frame
+                .storeys
+                .iter()
+                .map(|storey| Relaxing::of(&storey.behaviour))
+                .collect(),
+            shear: vec![0.0; frame.storeys.len()],
+        }
+    }
+
+    /// Restoring forces (N) with the rams at these places (m), to which they moved by so much (m), evenly for `going` of the `seconds` and at
+    /// rest for the others.
+    pub(crate) fn bend(
+        &mut self,
+        places: &[f64],
+        moved: &[f64],
+        going: f64,
+        seconds: f64,
+    ) -> Vec<f64> {
+        let bent = |specimen: &mut SpecimenModel,
+                    relaxing: &mut Relaxing,
+                    force: f64,
+                    place: f64,
+                    moved: f64| {
+            let velocity = if moved == 0.0 { 0.0 } else { moved / going };
+            let force = relaxing.bend(
+                specimen,
+                &Travel::even(velocity, going),
+                (place - moved, place),
+                force,
+            );
+            relaxing.bend(
+                specimen,
+                &Travel::rest(seconds - going),
+                (place, place),
+                force,
+            )
+        };
+        match self {
+            Self::One {
+                specimen,
+                relaxing,
+                force,
+                ..
+            } => {
+                *force = bent(specimen, relaxing, *force, places[0], moved[0]);
+                vec![*force]
+            }
+            Self::Storeys {
+                models,
+                relaxing,
+                shear,
+                ..
+            } => {
+                let (mut drift, mut apart, mut forces) = (
+                    vec![0.0; places.len()],
+                    vec![0.0; places.len()],
+                    vec![0.0; places.len()],
+                );
+                drifts(places, &mut drift);
+                drifts(moved, &mut apart);
+                let storeys = models
+                    .iter_mut()
+                    .zip(relaxing)
+                    .zip(&mut *shear)
+                    .zip(drift.into_iter().zip(apart));
+                for (((model, relaxing), shear), (drift, moved)) in storeys {
+                    *shear = bent(model, relaxing, *shear, drift, moved);
+                }
+                floor_forces(shear, &mut forces);
+                forces
+            }
+            Self::Matrix(rows) => rows
+                .iter()
+                .map(|row| row.iter().zip(places).map(|(k, x)| k * x).sum())
+                .collect(),
+        }
+    }
+
+    /// What the cells feel of `forces` (N) while the rams go at these velocities (m/s).
+    pub(crate) fn felt(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
+        match self {
+            Self::One {
+                damping, relaxing, ..
+            } => {
+                let relaxing = relaxing.force();
+                forces
+                    .iter()
+                    .zip(velocities)
+                    .map(|(force, v)| damping.felt(*force, *v) + relaxing)
+                    .collect()
+            }
+            Self::Storeys {
+                dampers,
+                relaxing,
+                shear,
+                ..
+            } => {
+                let mut apart = vec![0.0; velocities.len()];
+                drifts(velocities, &mut apart);
+                // What a fault took of the specimen's force is not felt again: only what is beside it is added.
+                let relaxing = relaxing.iter().map(Relaxing::force);
+                let storeys = dampers.iter_mut().zip(&*shear).zip(apart).zip(relaxing);
+                let beside = storeys.map(|(((damper, shear), v), relaxing)| {
+                    damper.felt(*shear, v) - shear + relaxing
+                });
+                let mut more = vec![0.0; velocities.len()];
+                floor_forces(&beside.collect::<Vec<f64>>(), &mut more);
+                forces
+                    .iter()
+                    .zip(more)
+                    .map(|(force, more)| force + more)
+                    .collect()
+            }
+            Self::Matrix(_) => forces.to_vec(),
+        }
+    }
+
+    /// Friction on the cell of a specimen of one degree of freedom, N.
+    pub(crate) const fn set_friction(&mut self, friction: f64) {
+        if let Self::One { damping, .. } = self {
+            damping.coulomb = friction;
+        }
+    }
+
+    /// The rams go at these velocities now, m/s: friction is against the last motion.
+    pub(crate) fn goes(&mut self, velocities: &[f64]) {
+        let mut apart = vec![0.0; velocities.len()];
+        drifts(velocities, &mut apart);
+        let dampers = match self {
+            Self::One { damping, .. } => std::slice::from_mut(damping),
+            Self::Storeys { dampers, .. } => dampers,
+            Self::Matrix(_) => return,
+        };
+        for (damper, velocity) in dampers
+            .iter_mut()
+            .zip(apart)
+            .filter(|(_, velocity)| *velocity != 0.0)
+        {
+            damper.last_direction = velocity.signum();
+        }
+    }
+}

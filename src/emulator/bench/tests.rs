@@ -1,0 +1,218 @@
+//! The bench: how rams move, what they feel, what faults spoil.
+
+use super::*;
+use crate::emulator::testing::bench;
+use crate::plan::Storey;
+
+#[test]
+fn it_moves_evenly_and_stops_at_its_target() {
+    let mut bench = bench();
+    bench.go(0.005, 0.002);
+    bench.advance(1.0);
+    assert!((bench.displacement() - 0.002).abs() < 1e-12 && bench.moving());
+    assert!((bench.force() - 200.0).abs() < 1e-9);
+    assert_eq!(bench.counts(), 1000 - 20_000);
+    bench.advance(10.0);
+    assert!((bench.displacement() - 0.005).abs() < 1e-12 && !bench.moving());
+    bench.go(0.02, 1.0);
+    bench.advance(10.1);
+    bench.hold();
+    bench.advance(20.0);
+    assert!(
+        (bench.displacement() - 0.006).abs() < 1e-12,
+        "no faster than it can"
+    );
+    assert_eq!(
+        (bench.violations(), bench.targets().len()),
+        (&[0.02][..], 2)
+    );
+    assert_eq!(
+        bench.moves()[1],
+        SentMove {
+            time: 10.0,
+            id: None,
+            targets: vec![0.02],
+            speed: 0.01
+        }
+    );
+    bench.refuse(f64::NAN);
+    assert_eq!(bench.violations().len(), 2, "what is no number is outside");
+}
+
+#[test]
+fn friction_stays_at_rest_and_viscous_damping_does_not() {
+    let mut bench = bench().with_friction(3.0);
+    assert_eq!(bench.force(), 0.0, "not before the first motion");
+    bench.go(0.005, 0.01);
+    bench.advance(1.0);
+    assert!((bench.force() - 503.0).abs() < 1e-9);
+    bench.go(0.004, 0.01);
+    bench.advance(2.0);
+    assert!(
+        (bench.force() - 397.0).abs() < 1e-9,
+        "it is against the last motion"
+    );
+}
+
+/// The bench sent to 5 mm, a second after `fault` struck: displacement in mm, force in N.
+fn after(fault: BenchFault) -> (f64, f64) {
+    let mut bench = bench();
+    bench.strike(0, fault);
+    bench.go(0.005, 0.01);
+    for tick in 1..=100 {
+        bench.advance(f64::from(tick) * 0.01);
+    }
+    assert!(!bench.moving(), "the controller takes it for done");
+    (bench.displacement() * 1e3, bench.force())
+}
+
+#[test]
+fn each_fault_spoils_what_it_names() {
+    let near = |found: (f64, f64), expected: (f64, f64)| {
+        assert!(
+            (found.0 - expected.0).abs() < 2e-3 && (found.1 - expected.1).abs() < 0.2,
+            "{found:?} is not {expected:?}"
+        );
+    };
+    near(after(BenchFault::Reach(0.4)), (2.0, 200.0));
+    near(after(BenchFault::Reach(0.0)), (0.0, 0.0));
+    // A ramp of 0.5 s followed with 0.2 s: short by v τ (1 − e^(−T/τ)) at its end, less e^(−t/τ) half a second later.
+    let short = 10.0 * 0.2 * (1.0 - f64::exp(-2.5)) * f64::exp(-2.5);
+    let (lagging, _) = after(BenchFault::Lag(0.2));
+    assert!((lagging - (5.0 - short)).abs() < 0.01, "{lagging} mm");
+    near(after(BenchFault::ScaleForce(-1.0)), (5.0, -500.0));
+    near(after(BenchFault::ScaleDisplacement(25.4)), (127.0, 500.0));
+    near(after(BenchFault::ClipForce(350.0)), (5.0, 350.0));
+    near(after(BenchFault::Drift(3.0)), (5.0, 503.0));
+    near(after(BenchFault::DriftDisplacement(2e-4)), (5.2, 500.0));
+    near(after(BenchFault::Spike(70.0)), (5.0, 570.0));
+    near(
+        after(BenchFault::Fracture {
+            displacement: 0.003,
+            left: 0.1,
+        }),
+        (5.0, 50.0),
+    );
+}
+
+#[test]
+fn a_frozen_sensor_stays_and_a_spike_passes() {
+    let mut bench = bench();
+    bench.strike(0, BenchFault::FreezeForce);
+    bench.strike(0, BenchFault::Spike(7.0));
+    assert_eq!(bench.force(), 7.0);
+    bench.go(0.005, 0.01);
+    bench.advance(1.0);
+    assert_eq!((bench.force(), bench.readings()), (7.0, 2));
+    bench.strike(0, BenchFault::Number("OVL".to_owned()));
+    assert_eq!(bench.shown_force(0, "1.0".to_owned()), "OVL");
+    assert_eq!(bench.shown_force(0, "1.0".to_owned()), "1.0");
+}
+
+#[test]
+fn a_fault_by_chance_comes_about_as_often_as_said() {
+    let mut bench = bench();
+    bench.strike_by_chance(0, BenchFault::Spike(100.0), 0.1);
+    let spikes = (0..10_000).filter(|_| bench.force() == 100.0).count();
+    assert!(
+        (850..1150).contains(&spikes),
+        "{spikes} of 10 000, expected 1000 with a deviation of 30"
+    );
+}
+
+const RAM: RamSettings = RamSettings {
+    sign: 1.0,
+    noise: 0.0,
+    resolution: 0.0,
+    limits: Interval {
+        low: -0.01,
+        high: 0.01,
+    },
+};
+
+/// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.
+fn frame() -> Frame {
+    let yielding = Behaviour::Bilinear {
+        stiffness: 2000.0,
+        yield_force: 4.0,
+        hardening: 0.0,
+    };
+    Frame::of_storeys(vec![
+        Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
+        Storey::new(1.0, 2000.0, yielding),
+    ])
+}
+
+#[test]
+fn rams_of_a_frame_arrive_together_and_feel_differences_of_storey_shears() {
+    let settings = bench().settings().clone();
+    let mut bench = Bench::of_frame(settings.clone(), &frame(), &[RAM, RAM]);
+    bench.go_as(Some(1), &[0.001, 0.002], 0.01);
+    bench.advance(0.1);
+    // Half the way: drifts of half a millimetre, shears 1.5 N and 1 N.
+    assert!(
+        (bench.commanded_of(0) - 0.0005).abs() < 1e-15
+            && (bench.commanded_of(1) - 0.001).abs() < 1e-15
+    );
+    assert!((bench.force_of(0) - 0.5).abs() < 1e-12 && (bench.force_of(1) - 1.0).abs() < 1e-12);
+    bench.advance(0.21);
+    assert!(!bench.moving());
+    // A drift of 4 mm yields at 4 N.
+    bench.go_as(Some(2), &[0.001, 0.005], 0.01);
+    bench.advance(1.0);
+    assert!((bench.force_of(0) + 1.0).abs() < 1e-12 && (bench.force_of(1) - 4.0).abs() < 1e-12);
+    assert_eq!(
+        (bench.readings(), bench.targets().len()),
+        (2, 4),
+        "readings of the first ram"
+    );
+    bench.go_as(Some(3), &[0.0, 0.02], 0.01);
+    assert_eq!(bench.violations(), [0.02]);
+    let turned = RamSettings { sign: -1.0, ..RAM };
+    let matrix = Frame {
+        storeys: Vec::new(),
+        ..frame()
+    };
+    let mut bench = Bench::of_frame(settings, &matrix, &[RAM, turned]);
+    bench.go_as(None, &[0.001, -0.005], 0.01);
+    bench.advance(1.0);
+    // K = [5, −2; −2, 2] kN/m at (1, 5) mm; the second ram counts the other way round.
+    assert!((bench.force_of(0) + 5.0).abs() < 1e-12 && (bench.force_of(1) + 8.0).abs() < 1e-12);
+}
+
+#[test]
+fn each_ram_has_faults_and_a_noise_of_its_own() {
+    let noisy = RamSettings { noise: 1.0, ..RAM };
+    let mut bench = Bench::of_frame(bench().settings().clone(), &frame(), &[noisy, noisy]);
+    assert_ne!(bench.force_of(0), bench.force_of(1));
+    bench.strike(1, BenchFault::FreezeForce);
+    let frozen = bench.force_of(1);
+    assert!(bench.force_of(1) == frozen && bench.force_of(0) != bench.force_of(0));
+}
+
+/// 100 kN/m at 1 mm, beside it 50 kN/m of 2 s, after 0.1 s on the way at 10 mm/s: as a virtual rig has it, whatever the ticks.
+#[test]
+fn what_relaxes_beside_a_specimen_is_felt_also_at_rest() {
+    let of = Box::new(Behaviour::Elastic { stiffness: 1e5 });
+    let behaviour = Behaviour::Maxwell {
+        of,
+        stiffness: 5e4,
+        time_constant: 2.0,
+    };
+    let mut relaxing = Bench::new(BenchSettings {
+        behaviour,
+        noise: 0.0,
+        damping: 0.0,
+        ..bench().settings().clone()
+    });
+    relaxing.go(0.001, 0.01);
+    for tick in 1..=40 {
+        relaxing.advance(f64::from(tick) * 0.025);
+    }
+    let held = 5e4 * 0.01 * 2.0 * (1.0 - f64::exp(-0.05)) * f64::exp(-0.45);
+    assert!(
+        (relaxing.force() - 100.0 - held).abs() < 1e-9,
+        "{} N",
+        relaxing.force()
+    );
+}

@@ -1,0 +1,509 @@
+//! A Grbl 1.1 board with one axis that matters, X. In: lines and real-time bytes. Out: `ok`, errors, status reports.
+//! `ok` says that a line was understood. Its machine space is 0 down to −`$130`, its end switch at 0; a target beyond that is
+//! `error:15` and moves nothing.
+
+use std::collections::VecDeque;
+use std::fmt::Write as _;
+
+use crate::emulator::{Bench, Firmware};
+
+/// Longest line, bytes.
+const LONGEST: usize = 80;
+/// How far down from 0 it may go, m: `$130` as it is delivered.
+const TRAVEL: f64 = 0.2;
+/// Jogs the planner takes before it lets the host wait.
+const PLANNER: usize = 15;
+
+/// A move that waits for its turn: m, m/s.
+#[derive(Clone, Copy, Debug)]
+struct Jog {
+    target: f64,
+    speed: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Idle,
+    Jog,
+    Hold,
+    Alarm,
+}
+
+/// The firmware.
+#[derive(Debug)]
+pub struct Grbl {
+    /// Words of its owner, which `$I` shows.
+    owner: String,
+    line: Vec<u8>,
+    state: State,
+    planned: VecDeque<Jog>,
+    /// Where the last planned move ends, m.
+    end: f64,
+    /// A dwell that answers once all is at rest: what is left of it, s, and since when it counts, s.
+    dwell: Option<(f64, Option<f64>)>,
+}
+
+impl Grbl {
+    /// A board whose `$I` shows `owner`.
+    #[must_use]
+    pub fn new(owner: &str) -> Self {
+        Self {
+            owner: owner.to_owned(),
+            line: Vec::new(),
+            state: State::Idle,
+            planned: VecDeque::new(),
+            end: 0.0,
+            dwell: None,
+        }
+    }
+
+    /// Stops, and forgets what was planned.
+    fn cancel(&mut self, bench: &mut Bench) {
+        bench.hold();
+        self.planned.clear();
+        self.end = bench.commanded();
+        if self.state == State::Jog {
+            self.state = State::Idle;
+        }
+    }
+
+    fn real_time(&mut self, byte: u8, bench: &mut Bench) -> Option<String> {
+        match byte {
+            b'?' => Some(self.status(bench)),
+            b'!' => {
+                // A jog is cancelled by a hold; nothing else moves here.
+                let at_rest = self.state == State::Idle;
+                self.cancel(bench);
+                if at_rest {
+                    self.state = State::Hold;
+                }
+                Some(String::new())
+            }
+            b'~' => {
+                if self.state == State::Hold {
+                    self.state = State::Idle;
+                }
+                Some(String::new())
+            }
+            0x18 => Some(self.reset(bench)),
+            0x85 => {
+                self.cancel(bench);
+                Some(String::new())
+            }
+            _ => None,
+        }
+    }
+
+    fn reset(&mut self, bench: &mut Bench) -> String {
+        let in_motion = bench.moving();
+        self.cancel(bench);
+        let owner = std::mem::take(&mut self.owner);
+        *self = Self {
+            end: bench.commanded(),
+            ..Self::new(&owner)
+        };
+        let banner = "\r\nGrbl 1.1h ['$' for help]\r\n";
+        if in_motion {
+            self.state = State::Alarm;
+            format!("ALARM:3\r\n{banner}[MSG:'$H'|'$X' to unlock]\r\n")
+        } else {
+            banner.to_owned()
+        }
+    }
+
+    fn status(&self, bench: &Bench) -> String {
+        let state = match self.state {
+            State::Idle => "Idle",
+            State::Jog => "Jog",
+            State::Hold => "Hold:0",
+            State::Alarm => "Alarm",
+        };
+        let feed = if bench.moving() {
+            Self::feed(bench)
+        } else {
+            0.0
+        };
+        format!(
+            "<{state}|MPos:{:.3},0.000,0.000|FS:{feed:.0},0>\r\n",
+            bench.commanded() * 1e3
+        )
+    }
+
+    /// mm/min of the move under way.
+    fn feed(bench: &Bench) -> f64 {
+        bench.moves().last().map_or(0.0, |sent| sent.speed * 6e4)
+    }
+
+    fn settings(bench: &Bench) -> String {
+        let settings = bench.settings();
+        let numbers = [
+            (0, "10".to_owned()),
+            (1, "255".to_owned()),
+            (10, "1".to_owned()),
+            (13, "0".to_owned()),
+            (20, "1".to_owned()),
+            (21, "1".to_owned()),
+            (22, "1".to_owned()),
+            (100, "1250.000".to_owned()),
+            (110, format!("{:.3}", known(settings.top_speed * 6e4))),
+            (120, "100.000".to_owned()),
+            (130, format!("{:.3}", TRAVEL * 1e3)),
+        ];
+        let mut text = String::new();
+        for (number, value) in numbers {
+            let _ = write!(text, "${number}={value}\r\n");
+        }
+        text
+    }
+
+    /// One line → all that is answered.
+    fn carry_out(&mut self, line: &str, bench: &mut Bench) -> String {
+        let bare: String = line
+            .chars()
+            .filter(|letter| !letter.is_whitespace())
+            .collect::<String>()
+            .to_ascii_uppercase();
+        let said = match bare.as_str() {
+            "" => Ok(String::new()),
+            "$$" => Ok(Self::settings(bench)),
+            "$I" => Ok(format!(
+                "[VER:1.1h.20190825:{}]\r\n[OPT:V,15,128]\r\n",
+                self.owner
+            )),
+            "$X" => {
+                let locked = self.state == State::Alarm;
+                if locked {
+                    self.state = State::Idle;
+                }
+                Ok(if locked {
+                    "[MSG:Caution: Unlocked]\r\n".to_owned()
+                } else {
+                    String::new()
+                })
+            }
+            bare => match bare.strip_prefix("$J=") {
+                Some(words) => self.jog(words, bench).map(|()| String::new()),
+                None if bare.starts_with('$') => Err(3),
+                None if self.state == State::Alarm
+                    || self.state == State::Jog && !bare.starts_with("G4P") =>
+                {
+                    Err(9)
+                }
+                None => match bare.strip_prefix("G4P").and_then(number) {
+                    Some(seconds) => {
+                        self.dwell = Some((seconds, None));
+                        return String::new();
+                    }
+                    None => Err(20),
+                },
+            },
+        };
+        match said {
+            Ok(text) => text + "ok\r\n",
+            Err(code) => format!("error:{code}\r\n"),
+        }
+    }
+
+    fn jog(&mut self, words: &str, bench: &mut Bench) -> Result<(), u32> {
+        if !matches!(self.state, State::Idle | State::Jog) {
+            return Err(8);
+        }
+        let (mut millimetres, mut absolute, mut target, mut feed) = (1.0, true, None, None);
+        let mut rest = words;
+        while let Some(letter) = rest.chars().next() {
+            let tail = &rest[letter.len_utf8()..];
+            let length = tail
+                .find(|next: char| !next.is_ascii_digit() && next != '.' && next != '-')
+                .unwrap_or(tail.len());
+            let value = number(&tail[..length]).ok_or(2_u32)?;
+            rest = &tail[length..];
+            match (letter, &tail[..length]) {
+                ('G', "20") => millimetres = 25.4,
+                ('G', "21") => millimetres = 1.0,
+                ('G', "90") => absolute = true,
+                ('G', "91") => absolute = false,
+                ('G', "53") => {}
+                ('X', _) => target = Some(value),
+                ('F', _) => feed = Some(value),
+                ('G', _) => return Err(16),
+                _ => return Err(20),
+            }
+        }
+        let target = target.ok_or(16_u32)? * millimetres / 1e3;
+        let speed = feed.filter(|feed| *feed > 0.0).ok_or(22_u32)? * millimetres / 6e4;
+        let target = if absolute { target } else { self.end + target };
+        // The board's numbers have 24 bits: a target on a limit is within it.
+        let rounding = 2e-7 * target.abs();
+        if !(-TRAVEL - rounding <= target && target <= 0.0) {
+            bench.refuse(target);
+            return Err(15);
+        }
+        if self.planned.len() >= PLANNER {
+            return Err(13);
+        }
+        let limits = bench.settings().limits;
+        let on_the_limit = target.clamp(limits.low, limits.high);
+        self.end = if (target - on_the_limit).abs() <= rounding {
+            on_the_limit
+        } else {
+            target
+        };
+        self.planned.push_back(Jog {
+            target: self.end,
+            speed,
+        });
+        self.state = State::Jog;
+        self.proceed(bench);
+        Ok(())
+    }
+
+    /// Begins the next planned move once the last is done.
+    fn proceed(&mut self, bench: &mut Bench) {
+        while self.state == State::Jog && !bench.moving() {
+            match self.planned.pop_front() {
+                Some(Jog { target, speed }) => bench.go(target, speed),
+                None => self.state = State::Idle,
+            }
+        }
+    }
+}
+
+impl Firmware for Grbl {
+    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+        let mut said = Vec::new();
+        for byte in bytes {
+            self.proceed(bench);
+            if let Some(text) = self.real_time(*byte, bench) {
+                said.extend(text.into_bytes());
+            } else if matches!(byte, b'\n' | b'\r') {
+                let line = std::mem::take(&mut self.line);
+                // The second byte of an ending is no line of its own.
+                if !(line.is_empty() && *byte == b'\n') {
+                    let text = String::from_utf8_lossy(&line).into_owned();
+                    let answer = if line.len() >= LONGEST {
+                        "error:11\r\n".to_owned()
+                    } else {
+                        self.carry_out(&text, bench)
+                    };
+                    said.extend(answer.into_bytes());
+                }
+            } else if self.line.len() < LONGEST {
+                self.line.push(*byte);
+            }
+        }
+        said
+    }
+
+    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
+        self.proceed(bench);
+        let now = bench.time();
+        match &mut self.dwell {
+            Some((seconds, since)) if self.state != State::Jog => {
+                let over = now - *since.get_or_insert(now) >= *seconds;
+                if over {
+                    self.dwell = None;
+                    return b"ok\r\n".to_vec();
+                }
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    /// Switched on anew with `$22=1` it is locked until it has been homed.
+    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
+        bench.hold();
+        let banner = self.reset(bench);
+        self.state = State::Alarm;
+        format!("{banner}[MSG:'$H'|'$X' to unlock]\r\n").into_bytes()
+    }
+}
+
+/// A number as Grbl reads it: digits and a point, no exponent, kept in 32 bits.
+fn number(text: &str) -> Option<f64> {
+    let digits = text.strip_prefix('-').unwrap_or(text);
+    let sound = digits.bytes().any(|byte| byte.is_ascii_digit())
+        && digits
+            .bytes()
+            .all(|byte| byte.is_ascii_digit() || byte == b'.')
+        && digits.matches('.').count() <= 1;
+    if sound {
+        text.parse::<f32>().ok().map(f64::from)
+    } else {
+        None
+    }
+}
+
+/// A setting has to be a number.
+const fn known(value: f64) -> f64 {
+    if value.is_finite() { value } else { 99_999.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::testing::bench;
+    use super::*;
+
+    fn say(board: &mut (Grbl, Bench), bytes: &[u8]) -> String {
+        String::from_utf8(board.0.receive(bytes, &mut board.1)).expect("text")
+    }
+
+    fn wait(board: &mut (Grbl, Bench), seconds: f64) -> String {
+        let until = board.1.time() + seconds;
+        board.1.advance(until);
+        String::from_utf8(board.0.tick(&mut board.1)).expect("text")
+    }
+
+    fn board() -> (Grbl, Bench) {
+        (Grbl::new("PSD-SIM"), bench().standing_at(&[-0.001]))
+    }
+
+    #[test]
+    fn a_jog_is_understood_at_once_and_done_later() {
+        let mut board = board();
+        assert_eq!(say(&mut board, b"$J=G21G90G53X-2.2500F60.000\n"), "ok\r\n");
+        wait(&mut board, 0.5);
+        assert_eq!(
+            say(&mut board, b"?"),
+            "<Jog|MPos:-1.500,0.000,0.000|FS:60,0>\r\n"
+        );
+        wait(&mut board, 1.0);
+        assert_eq!(
+            say(&mut board, b"?"),
+            "<Idle|MPos:-2.250,0.000,0.000|FS:0,0>\r\n"
+        );
+        assert_eq!(
+            say(&mut board, b"$J=G91X-0.25F60\n$J=G91X-0.25F60\n"),
+            "ok\r\nok\r\n",
+            "the second is planned"
+        );
+        wait(&mut board, 0.3);
+        wait(&mut board, 0.3);
+        let near = |(target, wanted): (&f64, f64)| (target - wanted).abs() < 1e-12;
+        assert!(
+            board
+                .1
+                .targets()
+                .iter()
+                .zip([-0.002_25, -0.002_5, -0.002_75])
+                .all(near),
+            "{:?}",
+            board.1.targets()
+        );
+        assert_eq!(board.1.targets().len(), 3);
+    }
+
+    #[test]
+    fn a_target_beyond_the_travel_is_refused_and_counted() {
+        let mut board = board();
+        for beyond in ["0.001", "-200.001", "-1000"] {
+            assert_eq!(
+                say(&mut board, format!("$J=G21G90G53X{beyond}F60\n").as_bytes()),
+                "error:15\r\n",
+                "{beyond}"
+            );
+        }
+        // 0.001 mm is within the limits of whoever runs the test, the others are not.
+        assert_eq!((board.1.violations().len(), board.1.moves().len()), (2, 0));
+        for within in ["0.000", "-1.000"] {
+            assert_eq!(
+                say(&mut board, format!("$J=G21G90G53X{within}F60\n").as_bytes()),
+                "ok\r\n",
+                "{within}"
+            );
+        }
+        assert_eq!(board.1.violations().len(), 2);
+        for (line, answer) in [
+            ("$J=X-1", "error:22"),
+            ("$J=F60", "error:16"),
+            ("$J=X1e0F60", "error:20"),
+            ("$J=X-F60", "error:2"),
+            ("$Q", "error:3"),
+            ("", "ok"),
+            ("G1X0", "error:9"),
+        ] {
+            assert_eq!(
+                say(&mut board, format!("{line}\r").as_bytes()),
+                format!("{answer}\r\n"),
+                "{line}"
+            );
+        }
+        assert_eq!(
+            say(&mut board, &[[b'x'; 100].as_slice(), b"\n"].concat()),
+            "error:11\r\n"
+        );
+    }
+
+    #[test]
+    fn a_hold_cancels_the_jog_and_at_rest_stays_until_it_is_let_go() {
+        let mut board = board();
+        say(&mut board, b"$J=X-6F60\n");
+        wait(&mut board, 1.0);
+        assert_eq!(
+            say(&mut board, b"!?"),
+            "<Idle|MPos:-2.000,0.000,0.000|FS:0,0>\r\n"
+        );
+        assert_eq!(
+            say(&mut board, b"!?"),
+            "<Hold:0|MPos:-2.000,0.000,0.000|FS:0,0>\r\n"
+        );
+        assert_eq!(say(&mut board, b"$J=X-6F60\n"), "error:8\r\n");
+        assert_eq!(say(&mut board, b"~$J=X-6F60\n"), "ok\r\n");
+        assert_eq!(
+            say(&mut board, b"\x85?"),
+            "<Idle|MPos:-2.000,0.000,0.000|FS:0,0>\r\n"
+        );
+    }
+
+    #[test]
+    fn a_reset_in_motion_is_an_alarm() {
+        let mut board = board();
+        assert_eq!(say(&mut board, b"\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
+        say(&mut board, b"$J=X-6F60\n");
+        assert!(say(&mut board, b"\x18").starts_with("ALARM:3\r\n\r\nGrbl 1.1h "));
+        assert_eq!(say(&mut board, b"$J=X-6F60\n"), "error:8\r\n");
+        assert_eq!(
+            say(&mut board, b"$X\n"),
+            "[MSG:Caution: Unlocked]\r\nok\r\n"
+        );
+        assert_eq!(
+            say(&mut board, b"!\x18?"),
+            "\r\nGrbl 1.1h ['$' for help]\r\n<Idle|MPos:-1.000,0.000,0.000|FS:0,0>\r\n"
+        );
+        assert_eq!(
+            board.0.reboot(&mut board.1),
+            b"\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n"
+        );
+        assert!(say(&mut board, b"?").starts_with("<Alarm|"), "not homed");
+    }
+
+    #[test]
+    fn it_says_how_it_is_set_up() {
+        let mut board = board();
+        let settings = say(&mut board, b"$$\n");
+        for setting in [
+            "$1=255\r\n",
+            "$13=0\r\n",
+            "$20=1\r\n",
+            "$21=1\r\n",
+            "$22=1\r\n",
+            "$110=600.000\r\n",
+            "$130=200.000\r\n",
+        ] {
+            assert!(
+                settings.contains(setting),
+                "{setting} is not in\n{settings}"
+            );
+        }
+        assert!(say(&mut board, b"$I\n").starts_with("[VER:1.1h.20190825:PSD-SIM]\r\n"));
+    }
+
+    #[test]
+    fn a_dwell_answers_once_the_axis_is_at_rest() {
+        let mut board = board();
+        assert_eq!(say(&mut board, b"$J=X-1.5F60\nG4P0.01\n"), "ok\r\n");
+        assert_eq!(wait(&mut board, 0.4), "");
+        assert_eq!(wait(&mut board, 0.2), "");
+        assert_eq!(wait(&mut board, 0.02), "ok\r\n");
+    }
+}

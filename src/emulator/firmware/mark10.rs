@@ -1,0 +1,377 @@
+//! A Mark-10 ESM303 stand with its gauge. In: single letters, some with digits after them, no line ends. Out: status,
+//! travel and what the gauge says. There is no "go to": in limit mode it stops exactly at the limit it was given.
+//!
+//! Where the published words leave it open, this stand does so: every answer ends with CR LF; `p` answers as `SM`,
+//! `UL` or `SLUL`, the parts written together; `x`, `v` and `w` answer a number without its unit, as `-12.34`; `n`, whose layout
+//! is not published, is not answered; a speed given with `e` counts from `o` on, until then the panel's speed does;
+//! letters between `/` and `\` go to the gauge, whose command ends with CR or with `\`; a speed of nothing is not taken.
+
+use super::mark10_load_cell::Mark10Gauge;
+use crate::emulator::{Bench, Firmware};
+
+/// Where the stand itself ends, m either way: as far as `u` and `d` go in manual mode.
+const END_OF_TRAVEL: f64 = 0.3;
+/// Speed of the panel's knob, mm/min.
+const PANEL_SPEED: f64 = 10.0;
+const MILLIMETRES_PER_INCH: f64 = 25.4;
+
+#[derive(Debug)]
+pub struct Mark10 {
+    polarity: f64,
+    gauge: Mark10Gauge,
+    stand: Stand,
+}
+
+/// What is forgotten when the power goes. Lengths are in m.
+#[derive(Debug)]
+struct Stand {
+    /// A command whose digits have not all come.
+    begun: Vec<u8>,
+    /// The command that is on its way to the gauge.
+    to_gauge: Option<String>,
+    limit_mode: bool,
+    inch: bool,
+    /// m/s
+    set_speed: f64,
+    use_set_speed: bool,
+    /// m of travel, as given with `g` and `h`.
+    limits: [Option<f64>; 2],
+    /// Where travel is zero, m of the bench.
+    zero: f64,
+}
+
+impl Default for Stand {
+    fn default() -> Self {
+        Self {
+            begun: Vec::new(),
+            to_gauge: None,
+            limit_mode: false,
+            inch: false,
+            set_speed: PANEL_SPEED * 1e-3 / 60.0,
+            use_set_speed: false,
+            limits: [None; 2],
+            zero: 0.0,
+        }
+    }
+}
+
+/// Lower and upper.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Down,
+    Up,
+}
+
+impl Mark10 {
+    /// A stand whose gauge gives the bench's force with this sign, +1 or −1.
+    #[must_use]
+    pub fn new(polarity: f64) -> Self {
+        Self {
+            polarity,
+            gauge: Mark10Gauge::new(polarity),
+            stand: Stand::default(),
+        }
+    }
+
+    fn byte(&mut self, byte: u8, bench: &mut Bench) -> String {
+        if let Some(command) = &mut self.stand.to_gauge {
+            let ended = matches!(byte, b'\r' | b'\n' | b'\\');
+            if !ended && command.len() < 16 {
+                command.push(char::from(byte));
+            }
+            let command = if ended {
+                std::mem::take(command)
+            } else {
+                String::new()
+            };
+            if byte == b'\\' {
+                self.stand.to_gauge = None;
+            }
+            return if command.is_empty() {
+                String::new()
+            } else {
+                self.gauge.command(&command, bench)
+            };
+        }
+        if self.stand.begun.is_empty() {
+            match byte {
+                b'/' => self.stand.to_gauge = Some(String::new()),
+                b'e' | b'g' | b'h' => self.stand.begun.push(byte),
+                _ => return self.stand.letter(byte, bench),
+            }
+        } else {
+            self.stand.digit(byte);
+        }
+        String::new()
+    }
+}
+
+impl Stand {
+    fn letter(&mut self, letter: u8, bench: &mut Bench) -> String {
+        match letter {
+            b'u' => self.go(Side::Up, bench),
+            b'd' => self.go(Side::Down, bench),
+            b's' => bench.hold(),
+            b'l' => self.limit_mode = true,
+            b'm' => self.limit_mode = false,
+            b'b' => self.inch = true,
+            b'i' => self.inch = false,
+            b'o' => self.use_set_speed = true,
+            b'z' => self.zero = bench.commanded(),
+            b'p' => return format!("{}\r\n", self.status(bench)),
+            b'v' => return self.said_limit(self.limits[1].unwrap_or(END_OF_TRAVEL)),
+            b'w' => return self.said_limit(self.limits[0].unwrap_or(-END_OF_TRAVEL)),
+            b'x' => return format!("{:.2}\r\n", self.travel(bench) / self.unit() * 1e3),
+            _ => {}
+        }
+        String::new()
+    }
+
+    /// Another byte of `e`, `g` or `h`: four digits, a point and one; a sign, three digits, a point and two.
+    fn digit(&mut self, byte: u8) {
+        let signed = self.begun[0] != b'e';
+        let (whole, decimals) = if signed { (3, 2) } else { (4, 1) };
+        if signed && self.begun.len() == 1 && matches!(byte, b'-' | b'+') {
+            self.begun.push(byte);
+            return;
+        }
+        let sign = usize::from(matches!(self.begun.get(1), Some(b'-' | b'+')));
+        let at = self.begun.len() - 1 - sign;
+        let fits = if at == whole {
+            byte == b'.'
+        } else {
+            byte.is_ascii_digit()
+        };
+        if !fits {
+            self.begun.clear();
+            return;
+        }
+        self.begun.push(byte);
+        if at == whole + decimals {
+            let begun = std::mem::take(&mut self.begun);
+            let text: String = begun[1..].iter().map(|byte| char::from(*byte)).collect();
+            if let Ok(value) = text.parse::<f64>() {
+                self.set(begun[0], value * 1e-3 * self.unit());
+            }
+        }
+    }
+
+    fn set(&mut self, letter: u8, metres: f64) {
+        match letter {
+            b'g' => self.limits[0] = Some(metres),
+            b'h' => self.limits[1] = Some(metres),
+            _ if metres > 0.0 => self.set_speed = metres / 60.0,
+            _ => {}
+        }
+    }
+
+    /// A limit (m) in the unit that is set.
+    fn said_limit(&self, limit: f64) -> String {
+        format!("{:.2}\r\n", limit / self.unit() * 1e3)
+    }
+
+    /// mm per unit of length.
+    fn unit(&self) -> f64 {
+        if self.inch { MILLIMETRES_PER_INCH } else { 1.0 }
+    }
+
+    fn go(&self, side: Side, bench: &mut Bench) {
+        let speed = if self.use_set_speed {
+            self.set_speed
+        } else {
+            PANEL_SPEED * 1e-3 / 60.0
+        };
+        let (limit, end) = match side {
+            Side::Down => (self.limits[0], -END_OF_TRAVEL),
+            Side::Up => (self.limits[1], END_OF_TRAVEL),
+        };
+        let target = limit
+            .filter(|_| self.limit_mode)
+            .map_or(end, |limit| limit + self.zero);
+        let here = bench.commanded();
+        let ahead = if side == Side::Up {
+            target > here
+        } else {
+            target < here
+        };
+        if ahead {
+            bench.go(target, speed);
+        } else {
+            bench.hold();
+        }
+    }
+
+    /// m
+    fn travel(&self, bench: &mut Bench) -> f64 {
+        let hundredth = 1e-5;
+        ((bench.displacement() - self.zero) / hundredth).round() * hundredth + 0.0
+    }
+
+    fn status(&self, bench: &Bench) -> String {
+        let here = bench.commanded() - self.zero;
+        let left = bench
+            .moves()
+            .last()
+            .filter(|_| bench.moving())
+            .map_or(0.0, |sent| sent.targets[0] - bench.commanded());
+        let moving = if left > 0.0 {
+            "U"
+        } else if left < 0.0 {
+            "D"
+        } else {
+            "S"
+        };
+        // Nearer than a tenth of what the travel shows.
+        let at = |limit: Option<f64>| limit.is_some_and(|limit| (here - limit).abs() < 1e-6);
+        let limit = match self.limits {
+            [_, upper] if self.limit_mode && at(upper) => "UL",
+            [lower, _] if self.limit_mode && at(lower) => "DL",
+            _ => "",
+        };
+        format!("{moving}{}{limit}", if self.limit_mode { "L" } else { "M" })
+    }
+}
+
+impl Firmware for Mark10 {
+    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+        bytes
+            .iter()
+            .flat_map(|byte| self.byte(*byte, bench).into_bytes())
+            .collect()
+    }
+
+    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
+        self.gauge.tick(bench)
+    }
+
+    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
+        bench.hold();
+        *self = Self::new(self.polarity);
+        // Travel counts from where the power came on.
+        self.stand.zero = bench.commanded();
+        Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emulator::firmware::testing::spring;
+
+    fn said(stand: &mut Mark10, bench: &mut Bench, bytes: &[u8]) -> String {
+        String::from_utf8(stand.receive(bytes, bench)).unwrap()
+    }
+
+    #[test]
+    fn in_limit_mode_it_stops_exactly_at_the_limit() {
+        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
+        // 600 mm/min is 10 mm/s: 2.5 mm in a quarter of a second.
+        assert_eq!(said(&mut stand, &mut bench, b"ile0600.0oh002.50u"), "");
+        assert_eq!(said(&mut stand, &mut bench, b"p"), "UL\r\n");
+        bench.advance(0.1);
+        assert_eq!(said(&mut stand, &mut bench, b"xp"), "1.00\r\nUL\r\n");
+        bench.advance(3.0);
+        assert_eq!(said(&mut stand, &mut bench, b"xp"), "2.50\r\nSLUL\r\n");
+        assert_eq!(
+            said(&mut stand, &mut bench, b"ug-001.25dp"),
+            "DLUL\r\n",
+            "still there"
+        );
+        bench.advance(6.0);
+        assert_eq!(said(&mut stand, &mut bench, b"xp"), "-1.25\r\nSLDL\r\n");
+        assert_eq!(bench.targets(), [0.0025, -0.00125]);
+        assert!(bench.violations().is_empty());
+    }
+
+    #[test]
+    fn the_set_speed_counts_only_when_told_to() {
+        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
+        said(&mut stand, &mut bench, b"le0600.0h+005.00u");
+        bench.advance(6.0);
+        // The panel's 10 mm/min.
+        assert_eq!(said(&mut stand, &mut bench, b"xsou"), "1.00\r\n");
+        bench.advance(6.2);
+        assert_eq!(said(&mut stand, &mut bench, b"xs"), "3.00\r\n");
+        bench.advance(9.0);
+        assert_eq!(said(&mut stand, &mut bench, b"xp"), "3.00\r\nSL\r\n");
+    }
+
+    #[test]
+    fn in_manual_mode_nothing_stops_it_before_its_end() {
+        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
+        said(&mut stand, &mut bench, b"h005.00up");
+        assert_eq!(
+            bench.violations(),
+            [0.3],
+            "who drives by hand must stop by hand"
+        );
+        bench.advance(1.0);
+        assert_eq!(said(&mut stand, &mut bench, b"psp"), "UM\r\nSM\r\n");
+    }
+
+    #[test]
+    fn the_gauge_is_heard_between_the_slashes_only() {
+        let (mut stand, mut bench) = (Mark10::new(-1.0), spring());
+        said(&mut stand, &mut bench, b"le0600.0oh001.00u");
+        bench.advance(1.0);
+        assert_eq!(
+            said(&mut stand, &mut bench, b"/?\r\\x"),
+            "-100.00 N\r\n1.00\r\n"
+        );
+        assert_eq!(said(&mut stand, &mut bench, b"/?"), "");
+        assert_eq!(
+            said(&mut stand, &mut bench, b"\\/u\\p"),
+            "-100.00 N\r\n*10\r\nSLUL\r\n"
+        );
+        assert_eq!(
+            said(&mut stand, &mut bench, b"?\rn"),
+            "",
+            "outside they are nothing to the stand"
+        );
+    }
+
+    #[test]
+    fn travel_is_zeroed_and_inches_are_inches() {
+        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
+        said(&mut stand, &mut bench, b"le0600.0oh002.00u");
+        bench.advance(1.0);
+        assert_eq!(said(&mut stand, &mut bench, b"zxp"), "0.00\r\nSL\r\n");
+        said(&mut stand, &mut bench, b"h001.00u");
+        bench.advance(2.0);
+        assert_eq!(said(&mut stand, &mut bench, b"x"), "1.00\r\n");
+        assert_eq!(bench.targets().last(), Some(&0.003));
+        assert_eq!(
+            said(&mut stand, &mut bench, b"bh001.00ux"),
+            "0.04\r\n",
+            "1 mm"
+        );
+        assert!((bench.targets().last().unwrap() - 0.0274).abs() < 1e-12);
+    }
+
+    #[test]
+    fn its_limits_can_be_asked_for() {
+        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
+        assert_eq!(said(&mut stand, &mut bench, b"vw"), "300.00\r\n-300.00\r\n");
+        assert_eq!(
+            said(&mut stand, &mut bench, b"ilh002.50g-001.25vw"),
+            "2.50\r\n-1.25\r\n"
+        );
+    }
+
+    #[test]
+    fn a_broken_number_is_dropped_and_the_next_letter_is_heard() {
+        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
+        assert_eq!(said(&mut stand, &mut bench, b"lh2.50"), "");
+        assert_eq!(said(&mut stand, &mut bench, b"p"), "SL\r\n");
+        assert_eq!(said(&mut stand, &mut bench, b"e0000.0oh000.10"), "");
+        said(&mut stand, &mut bench, b"u");
+        bench.advance(1.0);
+        assert_eq!(
+            said(&mut stand, &mut bench, b"x"),
+            "0.10\r\n",
+            "a speed of nothing is not taken"
+        );
+        stand.reboot(&mut bench);
+        assert_eq!(said(&mut stand, &mut bench, b"xp"), "0.00\r\nSM\r\n");
+    }
+}

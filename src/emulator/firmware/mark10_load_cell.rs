@@ -1,0 +1,126 @@
+//! A Mark-10 force gauge: `?` the reading, `?C` the live one, `?PT` and `?PC` the peaks, `Z` zero. In: commands ended
+//! by CR. Out: a number, a blank and its unit, CR LF; `*10` for what it does not know.
+//!
+//! Where the published words leave it open, this gauge does so: `?` and `?C` are the same; a reading has two digits after
+//! the point and the unit N; a peak is since zero, as a size; `Z` has no answer.
+
+use super::line_buffer::LineBuffer;
+use crate::emulator::{Bench, Firmware};
+
+/// A gauge that stands alone on a port.
+#[derive(Debug)]
+pub struct Mark10Gauge {
+    /// +1 or −1: what a compression reads as.
+    polarity: f64,
+    lines: LineBuffer,
+    /// N, of the bench's force.
+    zero: f64,
+    /// Largest reading to either side since zero, N.
+    peaks: [f64; 2],
+}
+
+impl Mark10Gauge {
+    /// A gauge that gives the bench's force with this sign.
+    #[must_use]
+    pub fn new(polarity: f64) -> Self {
+        Self {
+            polarity,
+            lines: LineBuffer::default(),
+            zero: 0.0,
+            peaks: [0.0; 2],
+        }
+    }
+
+    /// What it reads now, N.
+    pub(super) fn reading(&mut self, bench: &mut Bench) -> f64 {
+        let reading = self.polarity * (bench.force() - self.zero);
+        let [compression, tension] = &mut self.peaks;
+        *compression = compression.max(reading);
+        *tension = tension.max(-reading);
+        reading
+    }
+
+    /// Answers one command without its CR.
+    pub(super) fn command(&mut self, command: &str, bench: &mut Bench) -> String {
+        let reading = self.reading(bench);
+        match command {
+            "?" | "?C" => format!("{}\r\n", bench.shown(newtons(reading))),
+            "?PC" => format!("{}\r\n", newtons(self.peaks[0])),
+            "?PT" => format!("{}\r\n", newtons(-self.peaks[1])),
+            "Z" => {
+                self.zero = bench.force();
+                self.peaks = [0.0; 2];
+                String::new()
+            }
+            _ => "*10\r\n".to_owned(),
+        }
+    }
+}
+
+/// Minus zero is not shown.
+fn newtons(value: f64) -> String {
+    format!("{:.2} N", (value * 100.0).round() / 100.0 + 0.0)
+}
+
+impl Firmware for Mark10Gauge {
+    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+        let commands = self.lines.take(bytes);
+        commands
+            .iter()
+            .flat_map(|command| self.command(command, bench).into_bytes())
+            .collect()
+    }
+
+    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
+        self.reading(bench);
+        Vec::new()
+    }
+
+    fn reboot(&mut self, _: &mut Bench) -> Vec<u8> {
+        *self = Self::new(self.polarity);
+        Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emulator::firmware::testing::spring;
+
+    fn said(gauge: &mut Mark10Gauge, bench: &mut Bench, bytes: &[u8]) -> String {
+        String::from_utf8(gauge.receive(bytes, bench)).unwrap()
+    }
+
+    #[test]
+    fn it_reads_zeroes_and_keeps_its_peaks() {
+        let (mut gauge, mut bench) = (Mark10Gauge::new(1.0), spring());
+        assert_eq!(said(&mut gauge, &mut bench, b"?\r\n?"), "0.00 N\r\n");
+        bench.go(0.005_123_4, 0.01);
+        bench.advance(1.0);
+        // 100 N/mm × 5.1234 mm.
+        assert_eq!(said(&mut gauge, &mut bench, b"\r"), "512.34 N\r\n");
+        bench.go(-0.002, 0.01);
+        bench.advance(2.0);
+        assert_eq!(
+            said(&mut gauge, &mut bench, b"?C\r?PC\r?PT\rZ\r?\r?PC\r"),
+            { "-200.00 N\r\n512.34 N\r\n-200.00 N\r\n0.00 N\r\n0.00 N\r\n" }
+        );
+        assert_eq!(said(&mut gauge, &mut bench, b"?Q\r"), "*10\r\n");
+    }
+
+    #[test]
+    fn its_polarity_is_a_setting_and_peaks_are_seen_between_questions() {
+        let (mut gauge, mut bench) = (Mark10Gauge::new(-1.0), spring());
+        bench.go(0.001, 0.01);
+        bench.advance(1.0);
+        gauge.tick(&mut bench);
+        bench.go(0.0, 0.01);
+        bench.advance(2.0);
+        assert_eq!(
+            said(&mut gauge, &mut bench, b"?\r?PT\r"),
+            "0.00 N\r\n-100.00 N\r\n"
+        );
+        gauge.reboot(&mut bench);
+        assert_eq!(said(&mut gauge, &mut bench, b"?PT\r"), "0.00 N\r\n");
+    }
+}

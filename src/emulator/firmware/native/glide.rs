@@ -1,0 +1,84 @@
+//! `GLIDE` of the native firmware: smooth ways one behind the other. In: the words of the request. Out: how long it is to the
+//! end of the way, or the code it is refused with. The whole way is held against the limits of the run before it begins.
+
+use super::{AxisBounds, Native, decimal, of_axis};
+use crate::emulator::{Bench, NoWay, WayEnd};
+use crate::physics::tracking::trajectory::Path;
+
+/// How long it goes on behind a way that no other follows, s; then it holds.
+const GOES_ON: f64 = 0.25;
+/// What is beyond a limit by no more is on it, mm or mm/s: the last bits of a cubic.
+const ROUNDING: f64 = 1e-6;
+
+impl Native {
+    /// s to the end of the way.
+    pub(super) fn glide(
+        &mut self,
+        id: &str,
+        ends: &[&str],
+        time: &str,
+        bench: &mut Bench,
+    ) -> Result<f64, String> {
+        let id: u64 = id.parse().ok().filter(|id| *id > 0).ok_or("ARG")?;
+        let words: Option<Vec<f64>> = ends.iter().map(|word| decimal(word)).collect();
+        let (words, time) = words.zip(decimal(time)).ok_or("ARG")?;
+        if time <= 0.0 {
+            return Err("ARG".to_owned());
+        }
+        if self.last_move.as_ref().is_some_and(|(last, _)| id <= *last) {
+            return Err("ID".to_owned());
+        }
+        let end = |pair: &[f64]| WayEnd {
+            place: pair[0] / 1e3,
+            velocity: pair[1] / 1e3,
+        };
+        let ends: Vec<WayEnd> = words.chunks_exact(2).map(end).collect();
+        for (refused, code) in [(!self.referenced, "REF"), (self.held, "HELD")] {
+            if refused {
+                return Err(code.to_owned());
+            }
+        }
+        let seconds = time / 1e3;
+        let paths = bench.paths_to(&ends, seconds).map_err(|why| match why {
+            NoWay::Busy => "BUSY".to_owned(),
+            NoWay::Late => "LATE".to_owned(),
+        })?;
+        let outside = |(axis, path): (&AxisBounds, &Path)| {
+            let ((low, high), (least, most)) = (path.reach(), axis.displacement);
+            !(least - ROUNDING <= low * 1e3 && high * 1e3 <= most + ROUNDING)
+        };
+        if let Some(axis) = self.run.axes.iter().zip(&paths).position(outside) {
+            let farthest = |path: &Path| {
+                if path.reach().1.abs() > path.reach().0.abs() {
+                    path.reach().1
+                } else {
+                    path.reach().0
+                }
+            };
+            bench.refuse_all(&paths.iter().map(farthest).collect::<Vec<f64>>());
+            return Err(of_axis("LIMIT", axis, paths.len()));
+        }
+        if !paths
+            .iter()
+            .all(|path| path.fastest() * 1e3 <= self.run.top_speed + ROUNDING)
+        {
+            return Err("RATE".to_owned());
+        }
+        self.last_move = Some((id, words.chunks_exact(2).map(|pair| pair[0]).collect()));
+        Ok(bench.follow(Some(id), &paths, &ends, seconds))
+    }
+
+    /// Behind a way that no other follows it goes on for a while, and no farther than its limits; then it holds.
+    pub(super) fn coast(&mut self, bench: &mut Bench) {
+        let Some(gone_on) = bench.gone_on().filter(|_| self.has_all_of(bench)) else {
+            return;
+        };
+        let inside = |(ram, axis): (usize, &AxisBounds)| {
+            let (place, (low, high)) = (bench.commanded_of(ram) * 1e3, axis.displacement);
+            low - ROUNDING <= place && place <= high + ROUNDING
+        };
+        if gone_on > GOES_ON || !self.run.axes.iter().enumerate().all(inside) {
+            self.hold(bench);
+        }
+    }
+}

@@ -1,0 +1,518 @@
+//! Emulated controller for psd's own protocol, with one axis or several. In: frames such as `>MOVE
+//! 41 17 1.250000 0.500000*6858`. Out: one reply per frame, the same reply for the same sequence
+//! number. It never clamps: it refuses a command that it cannot carry out exactly.
+
+use rand::RngExt as _;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::SeedableRng as _;
+
+use crate::emulator::{Bench, Firmware};
+use crate::plan::Interval;
+
+/// Longest frame with its ending, bytes: of one axis, of several.
+const LONGEST: usize = 96;
+const LONGEST_OF_SEVERAL: usize = 512;
+/// Most readings of one `MEAS`.
+const MOST_READINGS: usize = 1000;
+/// What stands for a limit there is none of: mm and mm/s, N.
+const NO_LIMIT_MM: f64 = 999.0;
+const NO_LIMIT_N: f64 = 99_999.0;
+
+/// What a native rig is beside its bench.
+#[derive(Clone, Debug)]
+pub struct NativeSettings {
+    pub serial_number: String,
+    /// The rams that its axes are, by place; None: all of the bench.
+    pub rams: Option<Vec<usize>>,
+    /// One an axis, N; an axis without an entry has none.
+    pub force_limits: Vec<Interval>,
+    /// Silence after which it holds, s.
+    pub watchdog: f64,
+    /// Word of its first power-up; None: drawn.
+    pub boot: Option<u16>,
+}
+
+impl Default for NativeSettings {
+    fn default() -> Self {
+        Self {
+            serial_number: "0042".to_owned(),
+            rams: None,
+            force_limits: Vec::new(),
+            watchdog: 3.0,
+            boot: None,
+        }
+    }
+}
+
+/// Limits in the units of the wire.
+#[derive(Clone, Debug)]
+struct Bounds {
+    axes: Vec<AxisBounds>,
+    /// mm/s
+    top_speed: f64,
+}
+
+/// mm and N
+#[derive(Clone, Copy, Debug)]
+struct AxisBounds {
+    displacement: (f64, f64),
+    force: (f64, f64),
+}
+
+impl AxisBounds {
+    /// Of the four words of an axis.
+    fn of(words: &[&str]) -> Option<Self> {
+        let [low, high, least, most] = words else {
+            return None;
+        };
+        Some(Self {
+            displacement: (decimal(low)?, decimal(high)?),
+            force: (decimal(least)?, decimal(most)?),
+        })
+    }
+
+    fn narrower_than(&self, own: &Self) -> bool {
+        let within = |(low, high): (f64, f64), (least, most): (f64, f64)| {
+            least <= low && low <= high && high <= most
+        };
+        within(self.displacement, own.displacement) && within(self.force, own.force)
+    }
+}
+
+/// The firmware.
+#[derive(Debug)]
+pub struct Native {
+    settings: NativeSettings,
+    /// Which ram each axis is.
+    rams: Vec<usize>,
+    generator: Pcg64,
+    boot: u16,
+    /// What has come of the line; one that fills it is no frame.
+    line: Vec<u8>,
+    /// Sequence number of the last request, and what was answered.
+    last: Option<(u32, Vec<u8>)>,
+    own: Bounds,
+    /// Those of the run, within its own.
+    run: Bounds,
+    /// Number and targets (mm) of the last move it began.
+    last_move: Option<(u64, Vec<f64>)>,
+    referenced: bool,
+    held: bool,
+    watchdog_tripped: bool,
+    /// When a valid frame last came, s.
+    heard: Option<f64>,
+}
+
+impl Native {
+    #[must_use]
+    pub fn new(settings: NativeSettings, bench: &Bench) -> Self {
+        let mut generator = Pcg64::seed_from_u64(bench.settings().seed ^ 0xb007);
+        let boot = settings.boot.unwrap_or_else(|| generator.random());
+        let known = |value: f64, otherwise: f64, per: f64, decimals: i32| {
+            let wire = if value.is_finite() {
+                value * per
+            } else {
+                otherwise.copysign(value)
+            };
+            let scale = 10_f64.powi(decimals);
+            (wire * scale).round() / scale
+        };
+        let rams = settings
+            .rams
+            .clone()
+            .unwrap_or_else(|| (0..bench.rams()).collect());
+        let axis = |(axis, ram): (usize, &usize)| {
+            let (place, force) = (
+                bench.limits_of(*ram),
+                settings
+                    .force_limits
+                    .get(axis)
+                    .copied()
+                    .unwrap_or(Interval::ALL),
+            );
+            AxisBounds {
+                displacement: (
+                    known(place.low, NO_LIMIT_MM, 1e3, 6),
+                    known(place.high, NO_LIMIT_MM, 1e3, 6),
+                ),
+                force: (
+                    known(force.low, NO_LIMIT_N, 1.0, 3),
+                    known(force.high, NO_LIMIT_N, 1.0, 3),
+                ),
+            }
+        };
+        let own = Bounds {
+            axes: rams.iter().enumerate().map(axis).collect(),
+            top_speed: known(bench.settings().top_speed, NO_LIMIT_MM, 1e3, 6),
+        };
+        Self {
+            rams,
+            settings,
+            generator,
+            boot,
+            line: Vec::new(),
+            last: None,
+            run: own.clone(),
+            own,
+            last_move: None,
+            referenced: true,
+            held: false,
+            watchdog_tripped: false,
+            heard: None,
+        }
+    }
+
+    fn hold(&mut self, bench: &mut Bench) {
+        self.stand_still(bench);
+        self.held = true;
+    }
+
+    fn stand_still(&self, bench: &mut Bench) {
+        if self.has_all_of(bench) {
+            bench.hold();
+        } else {
+            bench.hold_those(&self.rams);
+        }
+    }
+
+    /// Of a part of the bench it follows no way: another controller moves it.
+    const fn has_all_of(&self, bench: &Bench) -> bool {
+        self.rams.len() == bench.rams()
+    }
+
+    fn moves(&self, bench: &Bench) -> bool {
+        bench.any_moving(&self.rams)
+    }
+
+    /// One line without its ending → the answer, if it was a frame.
+    fn frame(&mut self, line: &[u8], bench: &mut Bench) -> Option<Vec<u8>> {
+        let text = std::str::from_utf8(line.strip_prefix(b">")?).ok()?;
+        let (body, stated) = text.rsplit_once('*')?;
+        if stated != format!("{:04X}", crc(body.as_bytes())) {
+            return None;
+        }
+        self.heard = Some(bench.time());
+        let mut words = body.split(' ');
+        let verb = words.next()?;
+        let sequence: u32 = words
+            .next()
+            .filter(|word| word.bytes().all(|byte| byte.is_ascii_digit()))?
+            .parse()
+            .ok()?;
+        let arguments: Vec<&str> = words.collect();
+        if verb != "HELLO" {
+            match &self.last {
+                Some((last, reply)) if *last == sequence => return Some(reply.clone()),
+                Some((last, _)) if last.wrapping_add(1) == sequence => {}
+                _ => return Some(self.reply("ERR", sequence, "SEQ")),
+            }
+        }
+        let reply = match self.carry_out(verb, &arguments, bench) {
+            Ok((kind, words)) => self.reply(kind, sequence, &words),
+            Err(code) => self.reply("ERR", sequence, &code),
+        };
+        self.last = Some((sequence, reply.clone()));
+        Some(reply)
+    }
+
+    fn reply(&self, kind: &str, sequence: u32, words: &str) -> Vec<u8> {
+        let body = format!("{kind} {sequence} {:04X} {words}", self.boot);
+        format!("<{body}*{:04X}\n", crc(body.as_bytes())).into_bytes()
+    }
+
+    fn carry_out(
+        &mut self,
+        verb: &str,
+        arguments: &[&str],
+        bench: &mut Bench,
+    ) -> Result<(&'static str, String), String> {
+        let axes = self.rams.len();
+        match (verb, arguments) {
+            ("HELLO", []) => {
+                self.run = self.own.clone();
+                return Ok(("ACK", self.hello()));
+            }
+            ("LIM", [limits @ .., speed]) if limits.len() == 4 * axes => {
+                let given: Option<Vec<AxisBounds>> = limits.chunks(4).map(AxisBounds::of).collect();
+                let (given, top_speed) = given.zip(decimal(speed)).ok_or("ARG")?;
+                let wider = given
+                    .iter()
+                    .zip(&self.own.axes)
+                    .position(|(given, own)| !given.narrower_than(own));
+                if let Some(axis) = wider {
+                    return Err(of_axis("LIMIT", axis, axes));
+                }
+                if !(0.0..=self.own.top_speed).contains(&top_speed) {
+                    return Err("LIMIT".to_owned());
+                }
+                self.run = Bounds {
+                    axes: given,
+                    top_speed,
+                };
+            }
+            ("MOVE", [id, targets @ .., rate]) if targets.len() == axes => {
+                self.move_to(id, targets, rate, bench)?;
+            }
+            ("GLIDE", _) if !self.has_all_of(bench) => return Err("VERB".to_owned()),
+            ("GLIDE", [id, ends @ .., time]) if ends.len() == 2 * axes => {
+                let left = self.glide(id, ends, time, bench)?;
+                return Ok(("ACK", format!("{} {:.3}", self.state(bench), left * 1e3)));
+            }
+            ("MEAS", [count]) => {
+                let count = count
+                    .parse()
+                    .ok()
+                    .filter(|count| (1..=MOST_READINGS).contains(count))
+                    .ok_or("ARG")?;
+                return Ok(("DATA", self.measure(count, bench)));
+            }
+            ("STAT", []) => {
+                return Ok((
+                    "ACK",
+                    format!("{} 0x{:04X}", self.state(bench), self.all_flags(bench)),
+                ));
+            }
+            ("STOP", []) => self.hold(bench),
+            ("CLR", []) => (self.held, self.watchdog_tripped) = (false, false),
+            ("REF", [_]) => self.referenced = true,
+            ("HELLO" | "LIM" | "MOVE" | "GLIDE" | "MEAS" | "STAT" | "STOP" | "CLR" | "REF", _) => {
+                return Err("ARG".to_owned());
+            }
+            _ => return Err("VERB".to_owned()),
+        }
+        Ok(("ACK", self.state(bench).to_owned()))
+    }
+
+    fn hello(&self) -> String {
+        let axis = |AxisBounds {
+                        displacement,
+                        force,
+                    }: &AxisBounds| {
+            format!(
+                "{:.6} {:.6} {:.3} {:.3}",
+                displacement.0, displacement.1, force.0, force.1
+            )
+        };
+        let limits: Vec<String> = self.own.axes.iter().map(axis).collect();
+        let (id, targets) = self
+            .last_move
+            .clone()
+            .unwrap_or_else(|| (0, vec![0.0; limits.len()]));
+        let targets: Vec<String> = targets
+            .iter()
+            .map(|target| format!("{target:.6}"))
+            .collect();
+        let (serial_number, top_speed) = (&self.settings.serial_number, self.own.top_speed);
+        format!(
+            "PSD-SIM {serial_number} 1.3 {} {top_speed:.6} {id} {}",
+            limits.join(" "),
+            targets.join(" ")
+        )
+    }
+
+    /// All axes go, or none.
+    fn move_to(
+        &mut self,
+        id: &str,
+        targets: &[&str],
+        rate: &str,
+        bench: &mut Bench,
+    ) -> Result<(), String> {
+        let id: u64 = id.parse().ok().filter(|id| *id > 0).ok_or("ARG")?;
+        let targets: Option<Vec<f64>> = targets.iter().map(|target| decimal(target)).collect();
+        let (targets, rate) = targets.zip(decimal(rate)).ok_or("ARG")?;
+        if let Some((last, where_to)) = &self.last_move {
+            if id == *last && targets == *where_to {
+                return Ok(());
+            }
+            if id <= *last {
+                return Err("ID".to_owned());
+            }
+        }
+        let metres: Vec<f64> = targets.iter().map(|target| target / 1e3).collect();
+        let inside = |(axis, target): (&AxisBounds, &f64)| {
+            axis.displacement.0 <= *target && *target <= axis.displacement.1
+        };
+        if let Some(axis) = self
+            .run
+            .axes
+            .iter()
+            .zip(&targets)
+            .position(|axis| !inside(axis))
+        {
+            for (ram, target) in self.rams.iter().zip(&metres) {
+                bench.refuse_of(*ram, *target);
+            }
+            return Err(of_axis("LIMIT", axis, targets.len()));
+        }
+        let refused = [
+            (!(0.0 < rate && rate <= self.run.top_speed), "RATE"),
+            (!self.referenced, "REF"),
+            (self.held, "HELD"),
+            (self.moves(bench), "BUSY"),
+        ];
+        if let Some((_, code)) = refused.into_iter().find(|(refused, _)| *refused) {
+            return Err(code.to_owned());
+        }
+        self.last_move = Some((id, targets));
+        bench.go_those(Some(id), &self.rams, &metres, rate / 1e3);
+        Ok(())
+    }
+
+    /// The medians of some readings.
+    fn measure(&self, count: usize, bench: &mut Bench) -> String {
+        let told = |(axis, ram): (usize, &usize)| {
+            let ram = *ram;
+            let mut forces: Vec<f64> = (0..count).map(|_| bench.force_of(ram)).collect();
+            forces.sort_by(f64::total_cmp);
+            let force = f64::midpoint(forces[(count - 1) / 2], forces[count / 2]);
+            let raw = bench.counts_of(force);
+            let displacement = bench.displacement_of(ram) * 1e3;
+            let shown = bench.shown_force(ram, format!("{force:.3}"));
+            let flags = self.flags(axis, !(-8_388_607..8_388_607).contains(&raw), bench);
+            format!("{displacement:.6} {shown} {raw} 0x{flags:04X}")
+        };
+        let axes: Vec<String> = self.rams.iter().enumerate().map(told).collect();
+        format!(
+            "{:.0} {} {}",
+            (bench.time() * 1e3).floor(),
+            axes.join(" "),
+            self.state(bench)
+        )
+    }
+
+    fn state(&self, bench: &Bench) -> &'static str {
+        match (self.held, self.moves(bench)) {
+            (true, _) => "HELD",
+            (false, true) => "MOVING",
+            (false, false) => "IDLE",
+        }
+    }
+
+    /// Those of any axis.
+    fn all_flags(&self, bench: &Bench) -> u16 {
+        (0..self.run.axes.len()).fold(0, |flags, axis| flags | self.flags(axis, false, bench))
+    }
+
+    fn flags(&self, axis: usize, saturated: bool, bench: &Bench) -> u16 {
+        let (position, (low, high)) = (
+            bench.commanded_of(self.rams[axis]) * 1e3,
+            self.run.axes[axis].displacement,
+        );
+        // Standing on a limit is within it, also for the last bits of a turn to mm.
+        let beyond = |excess: f64| excess > 1e-6;
+        let bits = [
+            saturated,
+            false,
+            beyond(position - high),
+            beyond(low - position),
+            false,
+            !self.referenced,
+            self.moves(bench),
+            self.watchdog_tripped,
+        ];
+        bits.iter()
+            .rev()
+            .fold(0, |word, bit| word << 1 | u16::from(*bit))
+    }
+}
+
+mod glide;
+
+impl Firmware for Native {
+    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+        let mut said = self.tick(bench);
+        let longest = if self.rams.len() > 1 {
+            LONGEST_OF_SEVERAL
+        } else {
+            LONGEST
+        };
+        for byte in bytes {
+            match byte {
+                b'!' => self.hold(bench),
+                b'\n' => {
+                    let line = std::mem::take(&mut self.line);
+                    if line.len() < longest {
+                        said.extend(self.frame(&line, bench).unwrap_or_default());
+                    }
+                }
+                _ if self.line.len() < longest => self.line.push(*byte),
+                _ => {}
+            }
+        }
+        said
+    }
+
+    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
+        self.coast(bench);
+        if self
+            .heard
+            .is_some_and(|heard| bench.time() - heard > self.settings.watchdog)
+            && !self.watchdog_tripped
+        {
+            self.watchdog_tripped = true;
+            self.hold(bench);
+        }
+        Vec::new()
+    }
+
+    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
+        self.stand_still(bench);
+        let was = self.boot;
+        *self = Self::new(
+            NativeSettings {
+                boot: None,
+                ..self.settings.clone()
+            },
+            bench,
+        );
+        while self.boot == was {
+            self.boot = self.generator.random();
+        }
+        self.referenced = false;
+        Vec::new()
+    }
+}
+
+/// A code with the axis it is of, from 1, where there are several.
+fn of_axis(code: &str, axis: usize, axes: usize) -> String {
+    if axes > 1 {
+        format!("{code} {}", axis + 1)
+    } else {
+        code.to_owned()
+    }
+}
+
+/// A number as the wire has it: digits, at most one point with digits on both sides, no exponent.
+fn decimal(word: &str) -> Option<f64> {
+    let digits = word.strip_prefix('-').unwrap_or(word);
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, "0"));
+    let all_digits =
+        |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    if all_digits(whole) && all_digits(fraction) {
+        word.parse().ok()
+    } else {
+        None
+    }
+}
+
+/// CRC-16/CCITT-FALSE by table-free byte steps.
+fn crc(bytes: &[u8]) -> u16 {
+    let mut crc = 0xffff_u16;
+    for byte in bytes {
+        // The classical byte-wise form, other than the driver's shift register.
+        let mut mixed = crc >> 8 ^ u16::from(*byte);
+        mixed ^= mixed >> 4;
+        crc = crc << 8 ^ mixed << 12 ^ mixed << 5 ^ mixed;
+    }
+    crc
+}
+
+/// A request with its checksum, for tests that stand in for a host.
+#[cfg(test)]
+pub fn sealed(body: &str) -> Vec<u8> {
+    format!(">{body}*{:04X}\n", crc(body.as_bytes())).into_bytes()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,395 @@
+//! A rig that speaks the NEES "LabVIEW plugin" protocol: it listens, a coordinator proposes, executes and asks. In: lines,
+//! ended with LF or CR LF. Out: one answer a line, ended as the client ends its own; that to `execute` comes when the
+//! motion is done.
+//!
+//! Where the published words leave it open, this rig does so: nothing is answered `OK` before `open-session`, and a
+//! second `open-session` is refused; a control point may have a `:name` behind it; the axis is x; `cancel` during a
+//! motion holds the rig, its `execute` is then answered `NOT OK`; a reading may be asked for during a motion. A control point that
+//! a proposal does not name stays where it was sent.
+
+use super::line_buffer::LineBuffer;
+use crate::emulator::{Bench, Firmware};
+use crate::remote::nees_message;
+use crate::remote::nees_message::{Point, Refusal, Request, Why};
+
+const AXIS: &str = "x";
+
+#[derive(Debug)]
+pub struct Nees {
+    /// One for each of its rams.
+    control_points: Vec<String>,
+    /// The rams of the bench that are its own, by place.
+    rams: Vec<usize>,
+    /// m/s
+    speed: f64,
+    lines: LineBuffer,
+    session: Session,
+}
+
+/// What is forgotten when the power goes.
+#[derive(Debug, Default)]
+struct Session {
+    open: bool,
+    /// The client ends its lines with CR LF.
+    carriage_return: bool,
+    /// Transaction and targets (m, one a ram; None: it moves nothing).
+    proposed: Option<(String, Option<Vec<f64>>)>,
+    /// The transaction that is being carried out.
+    executing: Option<String>,
+}
+
+impl Nees {
+    /// A rig with a control point for each ram, of which the one with the farthest way moves at `speed` (m/s). It refuses what
+    /// lies outside the bench's limits.
+    #[must_use]
+    pub fn new(control_points: Vec<String>, rams: Vec<usize>, speed: f64) -> Self {
+        Self {
+            control_points,
+            rams,
+            speed,
+            lines: LineBuffer::default(),
+            session: Session::default(),
+        }
+    }
+
+    /// The answers to one line.
+    fn answer(&mut self, line: &str, bench: &mut Bench) -> Vec<String> {
+        let answered = nees_message::parse(line).and_then(|request| self.request(&request, bench));
+        answered.unwrap_or_else(|refusal| vec![refusal.line()])
+    }
+
+    fn request<'a>(
+        &mut self,
+        request: &Request<'a>,
+        bench: &mut Bench,
+    ) -> Result<Vec<String>, Refusal<'a>> {
+        let session = &mut self.session;
+        if session.open == (*request == Request::OpenSession) {
+            return Err(Refusal::new(
+                Why::Order,
+                "",
+                if session.open {
+                    "a session is open"
+                } else {
+                    "no session is open"
+                },
+            ));
+        }
+        match request {
+            Request::OpenSession => {
+                session.open = true;
+                Ok(vec!["OK\t0\tsession opened".to_owned()])
+            }
+            Request::SetParameter => Ok(vec!["OK\t0\tparameter set".to_owned()]),
+            Request::CloseSession => {
+                bench.hold_those(&self.rams);
+                *session = Session {
+                    carriage_return: session.carriage_return,
+                    ..Session::default()
+                };
+                Ok(vec!["OK\t0\tsession closed".to_owned()])
+            }
+            Request::Propose {
+                transaction,
+                points,
+            } => {
+                if session.executing.is_some() {
+                    return Err(Refusal::new(Why::Order, transaction, "still moving"));
+                }
+                session.proposed = None;
+                let target = self
+                    .targets(points, bench)
+                    .map_err(|(why, reason)| Refusal::new(why, transaction, reason))?;
+                self.session.proposed = Some(((*transaction).to_owned(), target));
+                Ok(vec![nees_message::done(transaction)])
+            }
+            Request::Execute { transaction } => {
+                let proposed = session
+                    .proposed
+                    .take_if(|(proposed, _)| proposed == transaction);
+                let Some((_, target)) = proposed else {
+                    return Err(Refusal::new(
+                        Why::Order,
+                        transaction,
+                        "not the transaction that was proposed last",
+                    ));
+                };
+                if let Some(targets) = target {
+                    bench.go_those(None, &self.rams, &targets, self.speed);
+                }
+                session.executing = Some((*transaction).to_owned());
+                Ok(self.arrived(bench))
+            }
+            Request::GetControlPoint { transaction, point } => {
+                let Some(ram) = nees_message::place_of(&self.control_points, point)
+                    .map(|place| self.rams[place])
+                else {
+                    return Err(Refusal::new(
+                        Why::Message,
+                        transaction,
+                        "no such control point",
+                    ));
+                };
+                let (displacement, force) = (bench.displacement_of(ram), bench.force_of(ram));
+                let line =
+                    nees_message::control_point(transaction, point, AXIS, displacement, force);
+                // The force is the last word.
+                let (before, ordinary) = line.rsplit_once('\t').unwrap_or((&line, ""));
+                Ok(vec![format!(
+                    "{before}\t{}",
+                    bench.shown_force(ram, ordinary.to_owned())
+                )])
+            }
+            Request::Cancel { transaction } => {
+                session
+                    .proposed
+                    .take_if(|(proposed, _)| proposed == transaction);
+                let stopped = session
+                    .executing
+                    .take_if(|executing| executing == transaction);
+                let stopped = stopped.map(|_| {
+                    bench.hold_those(&self.rams);
+                    Refusal::new(Why::Order, transaction, "cancelled").line()
+                });
+                Ok(stopped
+                    .into_iter()
+                    .chain([nees_message::done(transaction)])
+                    .collect())
+            }
+        }
+    }
+
+    /// Where the proposal sends each ram, m; None: nowhere, it is for an auxiliary device.
+    fn targets(
+        &self,
+        points: &[Point<'_>],
+        bench: &mut Bench,
+    ) -> Result<Option<Vec<f64>>, (Why, &'static str)> {
+        let refused = |reason| (Why::Message, reason);
+        let place_of = |name: &str| nees_message::place_of(&self.control_points, name);
+        let wishes = nees_message::wishes(points, place_of).map_err(refused)?;
+        if wishes.iter().any(|(_, wish)| wish.axis != AXIS) {
+            return Err(refused("this rig knows the direction x only"));
+        }
+        if wishes.is_empty() {
+            return Ok(None);
+        }
+        let mut targets: Vec<f64> = self
+            .rams
+            .iter()
+            .map(|ram| bench.commanded_of(*ram))
+            .collect();
+        for (ram, wish) in &wishes {
+            targets[*ram] = wish.value;
+        }
+        let own = || self.rams.iter().zip(&targets);
+        if own().all(|(ram, target)| bench.limits_of(*ram).contains(*target)) {
+            return Ok(Some(targets));
+        }
+        for (ram, target) in own() {
+            bench.refuse_of(*ram, *target);
+        }
+        Err((Why::Limit, "beyond the limits of this rig"))
+    }
+
+    /// The answer to `execute`, once the motion is done.
+    fn arrived(&mut self, bench: &Bench) -> Vec<String> {
+        let done = self
+            .session
+            .executing
+            .take_if(|_| !bench.any_moving(&self.rams));
+        done.map(|transaction| nees_message::done(&transaction))
+            .into_iter()
+            .collect()
+    }
+
+    fn sent(&self, answers: Vec<String>) -> Vec<u8> {
+        let end = if self.session.carriage_return {
+            "\r\n"
+        } else {
+            "\n"
+        };
+        answers
+            .into_iter()
+            .flat_map(|answer| (answer + end).into_bytes())
+            .collect()
+    }
+}
+
+impl Firmware for Nees {
+    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+        let lines = self.lines.take(bytes);
+        self.session.carriage_return |= bytes.contains(&b'\r');
+        let answers = lines
+            .iter()
+            .flat_map(|line| self.answer(line, bench))
+            .collect();
+        self.sent(answers)
+    }
+
+    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
+        let answers = self.arrived(bench);
+        self.sent(answers)
+    }
+
+    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
+        bench.hold_those(&self.rams);
+        self.lines.clear();
+        self.session = Session::default();
+        Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emulator::firmware::testing::spring;
+
+    fn said(rig: &mut Nees, bench: &mut Bench, bytes: &str) -> String {
+        String::from_utf8(rig.receive(bytes.as_bytes(), bench)).unwrap()
+    }
+
+    fn opened() -> (Nees, Bench) {
+        let (mut rig, mut bench) = (
+            Nees::new(vec!["MDL-00-01".to_owned()], vec![0], 0.01),
+            spring(),
+        );
+        assert_eq!(
+            said(&mut rig, &mut bench, "open-session\tpsd\n"),
+            "OK\t0\tsession opened\n"
+        );
+        (rig, bench)
+    }
+
+    #[test]
+    fn a_session_from_open_to_close() {
+        let (mut rig, mut bench) = opened();
+        assert_eq!(
+            said(&mut rig, &mut bench, "set-parameter\tdummy\tnstep\t10\n"),
+            "OK\t0\tparameter set\n"
+        );
+        assert_eq!(
+            said(
+                &mut rig,
+                &mut bench,
+                "propose\tt1\tMDL-00-01\tx\tdisplacement\t5.0000000000E-03\n"
+            ),
+            "OK\t0\tt1\n"
+        );
+        assert!(bench.targets().is_empty(), "a proposal moves nothing");
+        assert_eq!(said(&mut rig, &mut bench, "execute\tt1\n"), "");
+        bench.advance(0.4);
+        assert!(rig.tick(&mut bench).is_empty(), "still moving");
+        bench.advance(0.5);
+        assert_eq!(rig.tick(&mut bench), b"OK\t0\tt1\n");
+        assert!(rig.tick(&mut bench).is_empty(), "answered once");
+        let reading =
+            "OK\t0\tt1\tMDL-00-01\tx\tdisplacement\t5.0000000000E-03\tx\tforce\t5.0000000000E+02\n";
+        assert_eq!(
+            said(&mut rig, &mut bench, "get-control-point\tt1\tMDL-00-01\n"),
+            reading
+        );
+        assert_eq!(
+            said(&mut rig, &mut bench, "execute\tt1\n")
+                .split('\t')
+                .next(),
+            Some("NOT OK"),
+            "not twice"
+        );
+        assert_eq!(
+            said(&mut rig, &mut bench, "close-session\tpsd\n"),
+            "OK\t0\tsession closed\n"
+        );
+        let refused = said(
+            &mut rig,
+            &mut bench,
+            "propose\tt2\tMDL-00-01\tx\tdisplacement\t0\n",
+        );
+        assert_eq!(refused, "NOT OK\t3\t\tno session is open\n");
+        assert_eq!(bench.targets(), [0.005]);
+    }
+
+    #[test]
+    fn what_it_cannot_do_it_refuses_and_does_not_move() {
+        let (mut rig, mut bench) = opened();
+        for (wish, code) in [
+            ("MDL-00-01\tx\tdisplacement\t0.0601", 1),
+            ("MDL-00-01\tx\tdisplacement\tnan", 1),
+            ("MDL-00-02\tx\tdisplacement\t0.001", 2),
+            ("MDL-00-01\tx\tforce\t10", 2),
+            ("MDL-00-01\ty\tdisplacement\t0.001", 2),
+            (
+                "MDL-00-01\tx\tdisplacement\t0.001\tx\tdisplacement\t0.001",
+                2,
+            ),
+        ] {
+            let answer = said(&mut rig, &mut bench, &format!("propose\tt1\t{wish}\n"));
+            assert!(
+                answer.starts_with(&format!("NOT OK\t{code}\tt1\t")),
+                "{wish}: {answer}"
+            );
+            assert!(said(&mut rig, &mut bench, "execute\tt1\n").starts_with("NOT OK\t3\tt1\t"));
+        }
+        assert!(bench.targets().is_empty());
+        assert_eq!(
+            bench.violations().len(),
+            2,
+            "whoever asked for it is found out"
+        );
+    }
+
+    #[test]
+    fn ui_simcor_ends_its_lines_with_both_and_triggers_cameras() {
+        let (mut rig, mut bench) = opened();
+        let trigger =
+            "propose\ttrans1 0001\tMDL-AUX\tdisplacement\tz\t3500\r\nexecute\ttrans1 0001\r\n";
+        assert_eq!(
+            said(&mut rig, &mut bench, trigger),
+            "OK\t0\ttrans1 0001\r\nOK\t0\ttrans1 0001\r\n"
+        );
+        let asked = said(
+            &mut rig,
+            &mut bench,
+            "get-control-point\tdummy\tMDL-00-01:LBCB1\r\n",
+        );
+        assert!(
+            asked.starts_with("OK\t0\tdummy\tMDL-00-01:LBCB1\tx\tdisplacement\t0.0000000000E+00\t")
+                && asked.ends_with("\r\n")
+        );
+        assert!(bench.targets().is_empty());
+    }
+
+    #[test]
+    fn a_cancelled_motion_holds_where_it_is() {
+        let (mut rig, mut bench) = opened();
+        said(
+            &mut rig,
+            &mut bench,
+            "propose\tt1\tMDL-00-01\tx\tdisplacement\t0.005\nexecute\tt1\n",
+        );
+        bench.advance(0.1);
+        assert!(
+            said(
+                &mut rig,
+                &mut bench,
+                "propose\tt2\tMDL-00-01\tx\tdisplacement\t0\n"
+            )
+            .starts_with("NOT OK\t3\tt2")
+        );
+        assert_eq!(
+            said(&mut rig, &mut bench, "cancel\tt1\n"),
+            "NOT OK\t3\tt1\tcancelled\nOK\t0\tt1\n"
+        );
+        bench.advance(5.0);
+        assert!((bench.displacement() - 0.001).abs() < 1e-12);
+        said(
+            &mut rig,
+            &mut bench,
+            "propose\tt3\tMDL-00-01\tx\tdisplacement\t0.005\nexecute\tt3\n",
+        );
+        rig.reboot(&mut bench);
+        bench.advance(9.0);
+        assert!((bench.displacement() - 0.001).abs() < 1e-12);
+        assert!(said(&mut rig, &mut bench, "execute\tt3\n").starts_with("NOT OK\t3"));
+    }
+}

@@ -1,0 +1,95 @@
+//! A meter that speaks SCPI: `*IDN?` and `READ?`. In: lines. Out: who it is; a number in its own unit.
+
+use crate::emulator::{Bench, Firmware};
+
+/// The firmware.
+#[derive(Debug)]
+pub struct Scpi {
+    serial_number: String,
+    /// The ram and the force of a unit of each channel, N.
+    channels: Vec<(usize, f64)>,
+    line: Vec<u8>,
+}
+
+impl Scpi {
+    /// A meter with a channel for each of these rams, whose unit is so many N.
+    #[must_use]
+    pub const fn new(serial_number: String, channels: Vec<(usize, f64)>) -> Self {
+        Self {
+            serial_number,
+            channels,
+            line: Vec::new(),
+        }
+    }
+
+    fn answer(&self, line: &[u8], bench: &mut Bench) -> Vec<u8> {
+        match line.trim_ascii().to_ascii_uppercase().as_slice() {
+            b"*IDN?" => format!("PSD,PSD-SIM,{},1.3\n", self.serial_number).into_bytes(),
+            b"READ?" => {
+                let channel = |(ram, newtons): &(usize, f64)| {
+                    let shown = scientific(bench.force_of(*ram) / newtons);
+                    bench.shown_force(*ram, shown)
+                };
+                let words: Vec<String> = self.channels.iter().map(channel).collect();
+                format!("{}\n", words.join(",")).into_bytes()
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// `+5.12375000E+02`
+fn scientific(value: f64) -> String {
+    let text = format!("{value:+.8E}");
+    let (digits, exponent) = text.split_once('E').unwrap_or((&text, "0"));
+    let (sign, exponent) = exponent
+        .strip_prefix('-')
+        .map_or(('+', exponent), |exponent| ('-', exponent));
+    format!("{digits}E{sign}{exponent:0>2}")
+}
+
+impl Firmware for Scpi {
+    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+        let mut said = Vec::new();
+        for byte in bytes {
+            if *byte == b'\n' {
+                let line = std::mem::take(&mut self.line);
+                said.extend(self.answer(&line, bench));
+            } else if self.line.len() < 256 {
+                self.line.push(*byte);
+            }
+        }
+        said
+    }
+
+    fn tick(&mut self, _: &mut Bench) -> Vec<u8> {
+        Vec::new()
+    }
+
+    fn reboot(&mut self, _: &mut Bench) -> Vec<u8> {
+        self.line.clear();
+        Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::testing::bench;
+    use super::*;
+
+    #[test]
+    fn it_answers_with_its_own_unit() {
+        let (mut meter, mut bench) = (Scpi::new("77".to_owned(), vec![(0, 2.0)]), bench());
+        assert_eq!(
+            meter.receive(b"*IDN?\nREAD", &mut bench),
+            b"PSD,PSD-SIM,77,1.3\n"
+        );
+        bench.go(0.005, 0.01);
+        bench.advance(1.0);
+        assert_eq!(meter.receive(b"?\r\n", &mut bench), b"+2.50000000E+02\n");
+        assert!(meter.receive(b"*RST\n", &mut bench).is_empty());
+        assert_eq!(scientific(-0.00125), "-1.25000000E-03");
+        bench.strike(0, crate::emulator::BenchFault::Number("9.91E37".to_owned()));
+        assert_eq!(meter.receive(b"READ?\n", &mut bench), b"9.91E37\n");
+    }
+}

@@ -1,0 +1,22 @@
+//! What the tests of firmware stand on: a bench with a spring, no noise and no quanta.
+
+use crate::emulator::{Bench, BenchSettings};
+use crate::plan::{Behaviour, Interval};
+
+/// 100 kN/m, −20 … 60 mm, 50 mm/s at most.
+pub fn spring() -> Bench {
+    Bench::new(BenchSettings {
+        behaviour: Behaviour::Elastic { stiffness: 1e5 },
+        damping: 0.0,
+        noise: 0.0,
+        resolution: 0.0,
+        newtons_per_count: 0.01,
+        zero_count: 0.0,
+        seed: 1,
+        limits: Interval {
+            low: -0.02,
+            high: 0.06,
+        },
+        top_speed: 0.05,
+    })
+}

@@ -1,0 +1,134 @@
+//! A stand in real time, for a program on the other side of a real line: reads what hosts send, writes what controllers
+//! say, until it is told to stop. It knows no dialect, and of a line only what [`Carrier`] says.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use crate::emulator::Stand;
+
+/// Between two looks at the lines.
+const NAP: Duration = Duration::from_millis(1);
+/// What is kept for a host that does not read, bytes; more is lost, as it is on a wire.
+const OUTBOX: usize = 4 << 20;
+
+/// What carries the bytes of one line. No call waits.
+pub trait Carrier: Send {
+    /// Whether a host is there now; lets in one that knocks.
+    ///
+    /// # Errors
+    /// The line cannot be served any more.
+    fn host(&mut self) -> io::Result<bool>;
+
+    /// Bytes that have come; 0: none.
+    ///
+    /// # Errors
+    /// The host went away.
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
+
+    /// Sends what the line takes, and says how much.
+    ///
+    /// # Errors
+    /// The host went away.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
+
+    /// Ends with this host, and is ready for the next.
+    ///
+    /// # Errors
+    /// The line cannot be served any more.
+    fn renew(&mut self) -> io::Result<()>;
+}
+
+/// When serving is over.
+#[derive(Clone, Copy)]
+pub struct Until<'a> {
+    /// As soon as hosts were there and the last of them is gone.
+    pub last_host_left: bool,
+    /// Asked again and again.
+    pub stopped: &'a dyn Fn() -> bool,
+}
+
+struct Served<'a> {
+    carrier: &'a mut dyn Carrier,
+    present: bool,
+    outbox: Vec<u8>,
+}
+
+/// Serves a stand, one carrier a line.
+///
+/// # Errors
+/// A line cannot be served any more.
+pub fn serve(
+    stand: &mut Stand,
+    carriers: &mut [Box<dyn Carrier>],
+    until: Until<'_>,
+) -> io::Result<()> {
+    let start = Instant::now();
+    let mut lines: Vec<Served<'_>> = carriers
+        .iter_mut()
+        .map(|carrier| Served {
+            carrier: &mut **carrier,
+            present: false,
+            outbox: Vec::new(),
+        })
+        .collect();
+    let mut anybody = false;
+    while !(until.stopped)() {
+        stand.advance(start.elapsed().as_secs_f64());
+        let mut busy = false;
+        for (at, line) in lines.iter_mut().enumerate() {
+            busy |= line.turn(stand, at)?;
+            anybody |= line.present;
+        }
+        if until.last_host_left && anybody && lines.iter().all(|line| !line.present) {
+            return Ok(());
+        }
+        if !busy {
+            std::thread::sleep(NAP);
+        }
+    }
+    Ok(())
+}
+
+impl Served<'_> {
+    /// One look at a line; whether anything was there.
+    fn turn(&mut self, stand: &mut Stand, at: usize) -> io::Result<bool> {
+        if !self.present {
+            // Nobody hears what is said to nobody.
+            while stand.take(at).is_some() {}
+            self.present = self.carrier.host()?;
+            if self.present {
+                stand.connect(at);
+            }
+            return Ok(self.present);
+        }
+        let mut buffer = [0; 4096];
+        let read = if stand.reads(at) {
+            self.carrier.read(&mut buffer)
+        } else {
+            Ok(0)
+        };
+        let came = *read.as_ref().unwrap_or(&0);
+        stand.give(at, &buffer[..came]);
+        while self.outbox.len() < OUTBOX {
+            let Some(piece) = stand.take(at) else { break };
+            self.outbox.extend(piece);
+        }
+        let written = if self.outbox.is_empty() {
+            Ok(0)
+        } else {
+            self.carrier.write(&self.outbox)
+        };
+        let went = *written.as_ref().unwrap_or(&0);
+        self.outbox.drain(..went);
+        let left = read.is_err() || written.is_err() || (came == 0 && !self.carrier.host()?);
+        if left {
+            stand.host_left(at);
+        }
+        if left || (stand.hung_up(at) && self.outbox.is_empty()) {
+            self.present = false;
+            self.outbox.clear();
+            self.carrier.renew()?;
+        }
+        Ok(came > 0 || went > 0)
+    }
+}

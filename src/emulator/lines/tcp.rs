@@ -1,0 +1,162 @@
+//! A line over TCP: listens on this machine only, for one host after the other. In: an address. Out: a [`Carrier`]. It
+//! knows nothing of what is said.
+
+use std::io::{self, Error, ErrorKind, Read as _, Write as _};
+use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs as _};
+
+use super::real_time::Carrier;
+
+/// A listener, and the host it talks to.
+pub struct TcpLine {
+    listener: TcpListener,
+    stream: Option<TcpStream>,
+}
+
+impl TcpLine {
+    /// Listens at `host:port`, which must be this machine's own loopback: a rig on a network has no lock on its door.
+    ///
+    /// # Errors
+    /// The address is another machine's, or is taken.
+    pub fn at(address: &str) -> io::Result<Self> {
+        let loopback = address
+            .to_socket_addrs()?
+            .find(|address| address.ip().is_loopback());
+        let address = loopback.ok_or_else(|| {
+            Error::new(
+                ErrorKind::AddrNotAvailable,
+                "a simulator listens on 127.0.0.1 or ::1 only",
+            )
+        })?;
+        let listener = TcpListener::bind(address)?;
+        listener.set_nonblocking(true)?;
+        Ok(Self {
+            listener,
+            stream: None,
+        })
+    }
+
+    /// Where it listens.
+    ///
+    /// # Errors
+    /// The listener is gone.
+    pub fn address(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+}
+
+impl Carrier for TcpLine {
+    fn host(&mut self) -> io::Result<bool> {
+        if let Some(stream) = &self.stream {
+            return match stream.peek(&mut [0]) {
+                Ok(count) => Ok(count > 0),
+                Err(error) => Ok(matches!(
+                    error.kind(),
+                    ErrorKind::WouldBlock | ErrorKind::Interrupted
+                )),
+            };
+        }
+        match self.listener.accept() {
+            Ok((stream, _)) => {
+                stream.set_nonblocking(true)?;
+                stream.set_nodelay(true)?;
+                self.stream = Some(stream);
+                Ok(true)
+            }
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    ErrorKind::WouldBlock | ErrorKind::Interrupted | ErrorKind::ConnectionAborted
+                ) =>
+            {
+                Ok(false)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let Some(stream) = &mut self.stream else {
+            return Err(ErrorKind::NotConnected.into());
+        };
+        match stream.read(buffer) {
+            Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+            moved => nothing_is_none(moved),
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let Some(stream) = &mut self.stream else {
+            return Err(ErrorKind::NotConnected.into());
+        };
+        nothing_is_none(stream.write(bytes))
+    }
+
+    fn renew(&mut self) -> io::Result<()> {
+        self.stream = None;
+        Ok(())
+    }
+}
+
+fn nothing_is_none(moved: io::Result<usize>) -> io::Result<usize> {
+    match moved {
+        Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
+            Ok(0)
+        }
+        moved => moved,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::BufRead as _;
+
+    use super::*;
+    use crate::emulator::firmware::{Native, NativeSettings, sealed};
+    use crate::emulator::lines::real_time::{Until, serve};
+    use crate::emulator::testing::bench;
+    use crate::emulator::{Log, Script, Stand};
+
+    #[test]
+    fn it_serves_until_its_only_host_leaves() {
+        let bench = bench();
+        let firmware = Native::new(NativeSettings::default(), &bench);
+        let mut stand = Stand::of(
+            bench,
+            Log::none(),
+            &Script::default(),
+            vec![("actuator".to_owned(), Box::new(firmware))],
+        );
+        let line = TcpLine::at("127.0.0.1:0").expect("a free port");
+        let address = line.address().expect("an address");
+        let mut carriers: Vec<Box<dyn Carrier>> = vec![Box::new(line)];
+        let host = std::thread::spawn(move || {
+            let mut stream = TcpStream::connect(address).expect("it listens");
+            stream.write_all(&sealed("HELLO 5")).expect("sent");
+            let mut answer = String::new();
+            io::BufReader::new(stream)
+                .read_line(&mut answer)
+                .expect("an answer");
+            answer
+        });
+        serve(
+            &mut stand,
+            &mut carriers,
+            Until {
+                last_host_left: true,
+                stopped: &|| false,
+            },
+        )
+        .expect("served");
+        let answer = host.join().expect("no panic");
+        assert!(
+            answer.starts_with("<ACK 5 ") && answer.contains(" PSD-SIM "),
+            "{answer}"
+        );
+    }
+
+    #[test]
+    fn it_listens_to_this_machine_only() {
+        let refusal = TcpLine::at("0.0.0.0:0").err().expect("refused");
+        assert!(refusal.to_string().contains("127.0.0.1"));
+    }
+}

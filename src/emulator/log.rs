@@ -1,0 +1,182 @@
+//! The log of a simulated rig: what went over its lines and where its bench was sent, so that it can be held against
+//! the journal of who drove it. In: bytes and moves with their times. Out: text, one event a line.
+//!
+//! ```text
+//! 0.012000 actuator > >MOVE 41 17 1.250000 0.500000*6858\n          bytes from the host
+//! 0.012000 actuator < <ACK 41 7F3A MOVING*1F01\n                    bytes to the host
+//! 0.012000 bench move 17 to 0.00125 m at 0.0005 m/s                 or `move -` where the dialect has no numbers
+//! 0.012000 bench move 17 to 0.00125 m, -0.002 m at 0.0005 m/s       of several rams
+//! 9.000000 bench outside 0.0300000 m                                a target outside the limits
+//! 9.500000 actuator (hung up)
+//! 9.600000 end: 1 target outside the limits: FAILED                 or `end: 12 moves, all within the limits: ok`
+//! ```
+
+use std::io::{self, Write};
+
+use super::Bench;
+
+/// Writes the events of one stand.
+pub struct Log {
+    sink: Option<Box<dyn Write + Send>>,
+    /// The first failure to write, kept until someone asks.
+    failure: Option<io::Error>,
+    /// Moves and violations of the bench that are written.
+    moves: usize,
+    violations: usize,
+}
+
+impl Log {
+    #[must_use]
+    pub fn to(sink: Box<dyn Write + Send>) -> Self {
+        Self {
+            sink: Some(sink),
+            failure: None,
+            moves: 0,
+            violations: 0,
+        }
+    }
+
+    /// A log nobody reads.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self {
+            sink: None,
+            failure: None,
+            moves: 0,
+            violations: 0,
+        }
+    }
+
+    /// Bytes from the host.
+    pub fn from_host(&mut self, time: f64, line: &str, bytes: &[u8]) {
+        self.event(time, format_args!("{line} > {}", bytes.escape_ascii()));
+    }
+
+    /// Bytes to the host.
+    pub fn to_host(&mut self, time: f64, line: &str, bytes: &[u8]) {
+        self.event(time, format_args!("{line} < {}", bytes.escape_ascii()));
+    }
+
+    /// Anything else that happened to a line.
+    pub fn happened(&mut self, time: f64, line: &str, what: &str) {
+        self.event(time, format_args!("{line} ({what})"));
+    }
+
+    /// Moves and violations since the last call.
+    pub fn follow(&mut self, bench: &Bench) {
+        for sent in &bench.moves()[self.moves..] {
+            let id = sent.id.map_or_else(|| "-".to_owned(), |id| id.to_string());
+            let targets: Vec<String> = sent
+                .targets
+                .iter()
+                .map(|target| format!("{target} m"))
+                .collect();
+            self.event(
+                sent.time,
+                format_args!(
+                    "bench move {id} to {} at {} m/s",
+                    targets.join(", "),
+                    sent.speed
+                ),
+            );
+        }
+        for target in &bench.violations()[self.violations..] {
+            self.event(bench.time(), format_args!("bench outside {target} m"));
+        }
+        (self.moves, self.violations) = (bench.moves().len(), bench.violations().len());
+    }
+
+    /// The result, and whether it is a good one.
+    pub fn end(&mut self, bench: &Bench) -> bool {
+        self.follow(bench);
+        let (moves, violations) = (bench.moves().len(), bench.violations().len());
+        if violations == 0 {
+            self.event(
+                bench.time(),
+                format_args!(
+                    "end: {moves} move{}, all within the limits: ok",
+                    plural(moves)
+                ),
+            );
+        } else {
+            self.event(
+                bench.time(),
+                format_args!(
+                    "end: {violations} target{} outside the limits: FAILED",
+                    plural(violations)
+                ),
+            );
+        }
+        violations == 0
+    }
+
+    /// What kept it from being written, if anything.
+    pub const fn failure(&mut self) -> Option<io::Error> {
+        self.failure.take()
+    }
+
+    fn event(&mut self, time: f64, what: std::fmt::Arguments<'_>) {
+        let Some(sink) = &mut self.sink else { return };
+        // At once: who kills the simulator still finds all that happened.
+        if let Err(error) = writeln!(sink, "{time:.6} {what}").and_then(|()| sink.flush()) {
+            self.failure = Some(error);
+            self.sink = None;
+        }
+    }
+}
+
+const fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{SharedText, bench};
+    use super::*;
+
+    #[test]
+    fn every_event_is_one_line_with_its_time() {
+        let text = SharedText::default();
+        let (mut log, mut bench) = (Log::to(Box::new(text.clone())), bench());
+        log.from_host(0.5, "actuator", b">HELLO 1*\xff\n");
+        log.to_host(0.5, "actuator", b"<\0");
+        bench.advance(1.25);
+        bench.go_as(Some(17), &[0.005], 0.002);
+        bench.go(0.006, 1.0);
+        log.follow(&bench);
+        log.happened(2.0, "load cell", "hung up");
+        assert!(log.end(&bench));
+        bench.refuse(0.03);
+        assert!(!log.end(&bench));
+        let expected = "\
+            0.500000 actuator > >HELLO 1*\\xff\\n\n\
+            0.500000 actuator < <\\x00\n\
+            1.250000 bench move 17 to 0.005 m at 0.002 m/s\n\
+            1.250000 bench move - to 0.006 m at 0.01 m/s\n\
+            2.000000 load cell (hung up)\n\
+            1.250000 end: 2 moves, all within the limits: ok\n\
+            1.250000 bench outside 0.03 m\n\
+            1.250000 end: 1 target outside the limits: FAILED\n";
+        assert_eq!(text.text(), expected);
+    }
+
+    #[test]
+    fn a_log_that_cannot_be_written_is_told_once() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let mut log = Log::to(Box::new(Full));
+        log.happened(0.0, "actuator", "opened");
+        assert_eq!(
+            log.failure().map(|error| error.kind()),
+            Some(io::ErrorKind::StorageFull)
+        );
+        assert!(log.failure().is_none());
+    }
+}

@@ -1,0 +1,475 @@
+//! A checked plan → the stand that is in place of its real rig. In: the plan, a script of faults. Out: a [`Stand`] whose
+//! controllers speak what the plan's rig speaks, on a bench with the plan's specimen, limits and noise. It opens no line.
+
+use super::firmware::{
+    Grbl, Hx711, Indicator, Instron, Mark10, Mark10Gauge, Modbus, Native, NativeSettings, Nees,
+    Scpi,
+};
+use super::of_ram::OfRam;
+use super::script::Script;
+use super::{Bench, BenchSettings, Firmware, Log, RamSettings, Stand};
+use crate::plan::{Behaviour, Behind, Datum, Dialect, Interval, Plan, RealLink, Specimen};
+
+/// How a simulated controller says that it is one.
+const SIMULATED: &str = "PSD-SIM";
+/// Counts of a converter with a sign in 24 bits.
+const COUNTS: f64 = 8_388_608.0;
+/// What a cell carries of which nothing is said, N.
+const CAPACITY: f64 = 100_000.0;
+/// What a console's transducer spans of which nothing is said, m.
+const STROKE: f64 = 1.0;
+/// Conversions a second of an HX711.
+const HX711_RATE: f64 = 80.0;
+
+/// Where a Grbl stands by its own count when it has been homed, m: it pulls off its end switch, whose place is 0 (`$27`).
+const PULLED_OFF: f64 = -1e-3;
+
+/// Why there is nothing to stand in for the rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoStandIn {
+    #[error("the rig of this plan is a virtual one: it needs no stand-in")]
+    Virtual,
+    #[error("the specimen has no `behaviour`, so that there is nothing to bend")]
+    NoBehaviour,
+    #[error("the script names axis {named}, and the rig has {axes}")]
+    NoSuchAxis { named: usize, axes: usize },
+    #[error("the script names a device of axis {axis} alone, and that has none of this role")]
+    NoOwnDevice { axis: usize },
+}
+
+/// The stand in place of the plan's rig; its lines are the actuator's and, where it has one of its own, the load cell's.
+/// `boot` is the word of this power-up; None: drawn from the seed.
+///
+/// # Errors
+/// The plan's rig is virtual, or its specimen has no behaviour.
+pub fn of_plan(
+    plan: &Plan,
+    script: &Script,
+    log: Log,
+    seed: u64,
+    boot: Option<u16>,
+) -> Result<Stand, NoStandIn> {
+    let link = plan.rig.link.as_real().ok_or(NoStandIn::Virtual)?;
+    let starts = starts(plan, link, script);
+    let bench = bench(plan, link, seed, &starts)?.standing_at(&starts);
+    let axes = bench.rams();
+    let named = script
+        .faults
+        .iter()
+        .map(|fault| fault.ram)
+        .chain(script.starts.iter().map(|(ram, _)| *ram));
+    if let Some(named) = named.map(|ram| ram + 1).find(|named| *named > axes) {
+        return Err(NoStandIn::NoSuchAxis { named, axes });
+    }
+    let of_role = |role: &str, behind: Vec<Behind<'_>>| -> Vec<(String, Box<dyn Firmware>)> {
+        let one = |behind: Behind<'_>| {
+            (
+                behind.name(role),
+                controller(plan, link, &behind, &bench, boot),
+            )
+        };
+        behind.into_iter().map(one).collect()
+    };
+    let mut controllers = of_role("actuator", link.actuators());
+    controllers.extend(of_role("load cell", link.load_cells()));
+    let names: Vec<String> = controllers.iter().map(|(name, _)| name.clone()).collect();
+    let nobody = |fault: &&super::script::Fault| {
+        fault.own_of.is_some() && fault.place_among(&names).is_none()
+    };
+    if let Some(axis) = script
+        .faults
+        .iter()
+        .find(nobody)
+        .and_then(|fault| fault.own_of)
+    {
+        return Err(NoStandIn::NoOwnDevice { axis: axis + 1 });
+    }
+    Ok(Stand::of(bench, log, script, controllers))
+}
+
+/// Where each ram stands when it is switched on, m.
+fn starts(plan: &Plan, link: &RealLink, script: &Script) -> Vec<f64> {
+    let mut starts = vec![0.0; plan.rig.axes().unwrap_or(1)];
+    for behind in link
+        .actuators()
+        .iter()
+        .filter(|behind| behind.link.dialect == Dialect::Grbl)
+    {
+        behind
+            .axes
+            .iter()
+            .for_each(|axis| starts[*axis] = PULLED_OFF);
+    }
+    for (ram, place) in &script.starts {
+        if let Some(start) = starts.get_mut(*ram) {
+            *start = *place;
+        }
+    }
+    starts
+}
+
+/// Limits of displacement as a ram has them that stands at `start` (m): those of a plan whose zero is there go with it.
+fn places_at_rig(link: &RealLink, sign: f64, limits: Interval, start: f64) -> Interval {
+    let Interval { low, high } = at_rig(sign, limits);
+    if link.datum == Datum::Machine {
+        Interval { low, high }
+    } else {
+        Interval {
+            low: low + start,
+            high: high + start,
+        }
+    }
+}
+
+fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Bench, NoStandIn> {
+    let specimen = specimen(plan).ok_or(NoStandIn::NoBehaviour)?;
+    let settings = |behaviour| BenchSettings {
+        behaviour,
+        damping: specimen.damping,
+        noise: link.readings.noise,
+        resolution: link.readings.resolution,
+        newtons_per_count: plan
+            .rig
+            .calibration
+            .newtons_per_count
+            .unwrap_or_else(|| capacity(link) / COUNTS),
+        zero_count: plan.rig.calibration.zero_count,
+        seed,
+        limits: places_at_rig(link, plan.rig.sign, plan.limits.displacement, starts[0]),
+        top_speed: plan.limits.speed.high,
+    };
+    if let Some(frame) = &specimen.frame {
+        // The storeys stand in place of it.
+        let nothing = Behaviour::Elastic { stiffness: 0.0 };
+        let rams: Vec<RamSettings> = (0..frame.degrees_of_freedom())
+            .map(|axis| ram(plan, link, axis, starts.get(axis).copied().unwrap_or(0.0)))
+            .collect();
+        let converter = |axis| {
+            let own = plan.rig.calibration_of(axis);
+            (
+                own.newtons_per_count
+                    .unwrap_or_else(|| capacity(link) / COUNTS),
+                own.zero_count,
+            )
+        };
+        let converters = (0..rams.len()).map(converter).collect();
+        return Ok(Bench::of_frame(settings(nothing), frame, &rams).with_converters(converters));
+    }
+    let behaviour = specimen.behaviour.clone().ok_or(NoStandIn::NoBehaviour)?;
+    Ok(Bench::new(settings(behaviour)).with_friction(specimen.coulomb))
+}
+
+/// The ram of a frame's floor.
+fn ram(plan: &Plan, link: &RealLink, axis: usize, start: f64) -> RamSettings {
+    let (sign, readings) = (plan.rig.sign_of(axis), link.readings_of(axis));
+    let limits = places_at_rig(
+        link,
+        sign,
+        plan.rig.limits_of(axis, &plan.limits).displacement,
+        start,
+    );
+    RamSettings {
+        sign,
+        noise: readings.noise,
+        resolution: readings.resolution,
+        limits,
+    }
+}
+
+/// The specimen that the first procedure names.
+fn specimen(plan: &Plan) -> Option<&Specimen> {
+    plan.specimen_on_the_rig()
+}
+
+/// What the cell carries, N.
+fn capacity(link: &RealLink) -> f64 {
+    let of_axis = |axis| {
+        let Interval { low, high } = link.readings_of(axis).force_range;
+        low.abs().max(high.abs())
+    };
+    let capacity = (0..link.axes.len().max(1)).map(of_axis).fold(0.0, f64::max);
+    if capacity.is_finite() && capacity > 0.0 {
+        capacity
+    } else {
+        CAPACITY
+    }
+}
+
+/// The rig's own directions may be the other way round than the plan's.
+fn at_rig(sign: f64, interval: Interval) -> Interval {
+    if sign < 0.0 {
+        Interval {
+            low: -interval.high,
+            high: -interval.low,
+        }
+    } else {
+        interval
+    }
+}
+
+fn controller(
+    plan: &Plan,
+    link: &RealLink,
+    behind: &Behind<'_>,
+    bench: &Bench,
+    boot: Option<u16>,
+) -> Box<dyn Firmware> {
+    let firmware = firmware(plan, link, behind, bench, boot);
+    match behind.axes.first() {
+        // What has one channel knows one ram.
+        Some(axis) if *axis > 0 && behind.link.dialect.most_channels() == 1 => Box::new(OfRam {
+            ram: *axis,
+            firmware,
+        }),
+        _ => firmware,
+    }
+}
+
+fn firmware(
+    plan: &Plan,
+    link: &RealLink,
+    behind: &Behind<'_>,
+    bench: &Bench,
+    boot: Option<u16>,
+) -> Box<dyn Firmware> {
+    let (device, rams) = (behind.link, behind.axes.clone());
+    let serial_number = device
+        .serial_number
+        .clone()
+        .unwrap_or_else(|| "0042".to_owned());
+    match &device.dialect {
+        Dialect::Native => {
+            let of_axis = |axis| {
+                at_rig(
+                    plan.rig.sign_of(axis),
+                    plan.rig.limits_of(axis, &plan.limits).force,
+                )
+            };
+            let force_limits = rams.iter().copied().map(of_axis).collect();
+            let settings = NativeSettings {
+                serial_number,
+                rams: Some(rams),
+                force_limits,
+                watchdog: link.watchdog,
+                boot,
+            };
+            Box::new(Native::new(settings, bench))
+        }
+        Dialect::Grbl => Box::new(Grbl::new(SIMULATED)),
+        Dialect::Hx711 => Box::new(Hx711::new(HX711_RATE)),
+        Dialect::Indicator => Box::new(Indicator::default()),
+        Dialect::Scpi { newtons_per_unit } => Box::new(Scpi::new(
+            serial_number,
+            rams.into_iter()
+                .zip(newtons_per_unit.iter().copied())
+                .collect(),
+        )),
+        Dialect::Instron => Box::new(Instron::new(STROKE, capacity(link))),
+        Dialect::Mark10 => Box::new(Mark10::new(1.0)),
+        Dialect::Mark10Gauge => Box::new(Mark10Gauge::new(1.0)),
+        Dialect::Modbus(map) => Box::new(Modbus::new(*map)),
+        Dialect::Nees { control_points } => {
+            Box::new(Nees::new(control_points.clone(), rams, link.own_speed))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::InProcess;
+    use super::super::firmware::sealed;
+    use super::*;
+    use crate::language::check::{LoadFault, Loader, Options, check};
+    use crate::plan::{
+        Calibration, Datum, DeviceLink, Gate, Link, PortPlan, ReadingRules, SafeState,
+    };
+    use crate::rig::transport::{Clock as _, Port as _};
+    use std::time::Duration;
+
+    const PLAN: &str = "
+specimen beam {
+  mass      = 1 kg
+  behaviour = elastic(stiffness: 100 kN/m)
+}
+
+limits {
+  displacement = -1 mm .. 25 mm
+  force        = -2 kN .. 12 kN
+  speed        = 10 mm/s
+}
+
+move to_half {
+  to    = 0.5 mm
+  speed = 1 mm/s
+}
+";
+
+    struct NoFiles;
+
+    impl Loader for NoFiles {
+        fn load(&self, _: &str) -> Result<String, LoadFault> {
+            unreachable!("the plan uses no file")
+        }
+    }
+
+    fn device(dialect: Dialect) -> DeviceLink {
+        let port = PortPlan::Serial {
+            path: "/dev/none".to_owned(),
+            baud: 115_200,
+        };
+        DeviceLink {
+            port,
+            dialect,
+            reply_timeout: 0.2,
+            serial_number: None,
+        }
+    }
+
+    /// The plan above on a real rig of these devices.
+    fn plan(actuator: Dialect, load_cell: Option<Dialect>) -> Plan {
+        let checked = check("plan.psd", PLAN, &NoFiles, &Options::default());
+        let mut plan = checked
+            .plan
+            .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+        plan.rig.link = Link::Real(RealLink {
+            actuator: device(actuator),
+            load_cell: load_cell.map(device),
+            safe_state: SafeState::Hold,
+            datum: Datum::Machine,
+            gate: Gate {
+                zero: 1.0,
+                probe: 1e-4,
+                stiffness: Interval::ALL,
+            },
+            readings: ReadingRules {
+                samples: 1,
+                rate: 50.0,
+                resolution: 0.0,
+                noise: 0.0,
+                force_range: Interval {
+                    low: -15e3,
+                    high: 15e3,
+                },
+                frozen_after: 10,
+            },
+            watchdog: 3.0,
+            own_speed: 1e-3,
+            axes: Vec::new(),
+        });
+        plan
+    }
+
+    fn stand(plan: &Plan) -> InProcess {
+        InProcess::new(of_plan(plan, &Script::default(), Log::none(), 1, None).expect("a stand"))
+    }
+
+    /// All that comes within a second.
+    fn heard(shared: &InProcess, line: usize, sent: &[u8]) -> String {
+        let mut port = shared.port(line);
+        port.write(sent, Duration::from_secs(1)).expect("sent");
+        let mut text = String::new();
+        let mut buffer = [0; 256];
+        let until = shared.clock().now() + 1.0;
+        while shared.clock().now() < until {
+            if let Ok(count) = port.read(&mut buffer, Duration::from_millis(10)) {
+                text.push_str(&String::from_utf8_lossy(&buffer[..count]));
+            }
+        }
+        text
+    }
+
+    #[test]
+    fn an_axis_and_a_cell_hang_on_one_specimen() {
+        let mut plan = plan(Dialect::Grbl, Some(Dialect::Hx711));
+        plan.rig.calibration = Calibration {
+            newtons_per_count: Some(0.01),
+            zero_count: 500.0,
+            ..Calibration::default()
+        };
+        let shared = stand(&plan);
+        assert!(heard(&shared, 0, b"$J=G21G90G53X-3.000F600\n").starts_with("ok\r\n"));
+        let counts = heard(&shared, 1, b"");
+        assert_eq!(
+            counts.lines().last(),
+            Some("-19500"),
+            "−200 N, 2 mm from where it stood homed"
+        );
+    }
+
+    #[test]
+    fn a_rig_that_counts_the_other_way_has_its_limits_turned() {
+        let mut plan = plan(Dialect::Native, None);
+        plan.rig.sign = -1.0;
+        let hello = heard(&stand(&plan), 0, &sealed("HELLO 1"));
+        assert!(
+            hello.contains(" -25.000000 1.000000 -12000.000 2000.000 10.000000 0 "),
+            "{hello}"
+        );
+    }
+
+    #[test]
+    fn every_dialect_has_a_stand_in() {
+        let map = crate::plan::ModbusMap {
+            unit: 1,
+            number: crate::plan::ModbusNumber::Int16,
+            target: Some(0),
+            speed: None,
+            position: Some(1),
+            force: Some(2),
+            status: None,
+            moving_mask: 0,
+            command: None,
+            start_word: 0,
+            stop_word: 0,
+            length_unit: 1e-6,
+            speed_unit: 1e-6,
+            force_unit: 1.0,
+        };
+        let asked: [(Dialect, &[u8], &str); 8] = [
+            (Dialect::Grbl, b"?", "<Idle|MPos:-1.000,"),
+            (Dialect::Indicator, b"", "ST,GS,+0000.00,kg\r\n"),
+            (
+                Dialect::Scpi {
+                    newtons_per_unit: vec![1.0],
+                },
+                b"READ?\n",
+                "E+00\n",
+            ),
+            (Dialect::Instron, b"Q1\r\n", "0"),
+            (Dialect::Mark10, b"p", "S"),
+            (Dialect::Mark10Gauge, b"?\r\n", "N"),
+            (
+                Dialect::Modbus(map),
+                &[1, 3, 0, 0, 0, 2, 0xc4, 0x0b],
+                "\u{1}\u{3}\u{4}",
+            ),
+            (
+                Dialect::Nees {
+                    control_points: vec!["MDL-00-01".to_owned()],
+                },
+                b"open-session\tpsd\n",
+                "OK\t0\t",
+            ),
+        ];
+        for (dialect, question, answer) in asked {
+            let plan = plan(dialect.clone(), None);
+            let said = heard(&stand(&plan), 0, question);
+            assert!(
+                said.contains(answer),
+                "{dialect:?}: `{}`",
+                said.escape_debug()
+            );
+        }
+    }
+
+    #[test]
+    fn a_virtual_rig_and_a_specimen_of_nothing_need_none() {
+        let mut plan = plan(Dialect::Native, None);
+        let reason = |plan: &Plan| of_plan(plan, &Script::default(), Log::none(), 1, None).err();
+        assert_eq!(reason(&plan), None);
+        plan.specimens[0].behaviour = None;
+        assert_eq!(reason(&plan), Some(NoStandIn::NoBehaviour));
+        plan.rig.link = Link::Virtual(crate::plan::VirtualLink::default());
+        assert_eq!(reason(&plan), Some(NoStandIn::Virtual));
+    }
+}

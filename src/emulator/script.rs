@@ -1,0 +1,517 @@
+//! A script of faults: text → what goes wrong, and when. In: lines such as `after 12 moves: drop replies 3`. Out: a
+//! [`Script`], or the line and the reason why there is none. It makes nothing go wrong itself.
+//!
+//! A line is `WHEN: WHAT`; `#` begins a comment. WHEN is `at 4.5 s`, `after 12 moves`, `after 20 readings`, `after 3
+//! replies`, `each reply` or `each reading`; the last two may end with a probability, `with 0.01`. WHAT may begin with
+//! `load cell`, which is then the line it befalls, and that or `actuator` with `of axis 2` where an axis has one of its own; or
+//! with `axis 2`, which is then the ram, of what befalls one. WHAT is one of
+//!
+//! ```text
+//! drop REPLIES                     split REPLIES at 5 bytes        split REPLIES every 1 bytes
+//! cut REPLIES at 5 bytes           repeat REPLIES                  replay REPLIES (the one before in its place)
+//! delay REPLIES 0.4 s              flip a bit [of REPLIES]         flip bit 17 [of REPLIES]
+//! garbage 20 bytes before [REPLIES]      (or inside, or after)     fill 1048576 bytes of 41 before [REPLIES]
+//! hang up                          hang up before reply            hang up after reply
+//! reboot                           stop reading                    freeze firmware 5 s
+//! freeze force                     freeze displacement             scale force by -1
+//! scale displacement by 25.4       clip force at 900 N             drift force 2 N/s
+//! spike 500 N                      number 9.91E37                  number ""
+//! reach 40 %                       stick                           lag 0.2 s
+//! drift displacement 0.001 mm/s    fracture at 3 mm to 10 %
+//! ```
+//!
+//! A line without WHEN, `stands at 3 mm` or `axis 2 stands at 3 mm`, says where a ram stands from the first, by its controller, with
+//! its specimen not bent.
+//!
+//! Above, REPLIES is `reply`, `replies 3` or `replies for ever`. What is counted in moves or readings befalls the reply
+//! to the last of them; `after 3 replies` befalls the fourth.
+
+use super::bench::fault::BenchFault;
+
+/// What is to go wrong, in the order of its lines.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Script {
+    pub faults: Vec<Fault>,
+    /// Rams by place, and where they stand from the first, m.
+    pub starts: Vec<(usize, f64)>,
+}
+
+/// One line of a script.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// On the line of the load cell rather than of the actuator.
+    pub on_load_cell: bool,
+    /// On the line of the device that this axis, by its place, has of its own.
+    pub own_of: Option<usize>,
+    /// Place of the ram it befalls, where it befalls one; 0: the first.
+    pub ram: usize,
+    pub when: When,
+    pub what: What,
+}
+
+/// When it strikes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// s since power-up.
+    At(f64),
+    AfterMoves(u64),
+    AfterReadings(u64),
+    AfterReplies(u64),
+    /// With a probability, 0 to 1.
+    EachReply(f64),
+    EachReading(f64),
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum What {
+    /// This many replies, or all from then on.
+    Replies(ReplyFault, Option<u64>),
+    Line(LineFault),
+    Bench(BenchFault),
+}
+
+/// What befalls a reply on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplyFault {
+    Drop,
+    /// In two pieces, the first of this many bytes.
+    SplitAt(usize),
+    SplitEvery(usize),
+    /// Only its first bytes come.
+    CutAt(usize),
+    /// The bit, counted from the first of the reply; None: any.
+    FlipBit(Option<usize>),
+    /// So many bytes more: of this value, or of any.
+    Garbage {
+        count: usize,
+        byte: Option<u8>,
+        place: Place,
+    },
+    Repeat,
+    Replay,
+    /// ms
+    Delay(u64),
+    HangUpBefore,
+    HangUpAfter,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    Before,
+    Inside,
+    After,
+}
+
+/// What befalls a line or its controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LineFault {
+    HangUp,
+    Reboot,
+    /// Takes no byte any more.
+    StopReading,
+    /// Does nothing for this long, s; what came meanwhile is heard afterwards.
+    FreezeFirmware(f64),
+}
+
+/// Why a text is no script.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {reason}")]
+pub struct ScriptError {
+    /// From 1.
+    pub line: usize,
+    pub reason: String,
+}
+
+impl Script {
+    /// Reads a script.
+    ///
+    /// # Errors
+    /// The first line that says nothing known.
+    pub fn parse(text: &str) -> Result<Self, ScriptError> {
+        let mut script = Self::default();
+        for (at, line) in text.lines().enumerate() {
+            let line = line.split('#').next().unwrap_or_default().trim();
+            if !line.is_empty() {
+                script.add(line).map_err(|reason| ScriptError {
+                    line: at + 1,
+                    reason,
+                })?;
+            }
+        }
+        Ok(script)
+    }
+
+    fn add(&mut self, line: &str) -> Result<(), String> {
+        let mut words = Words(line.split_whitespace().collect());
+        let ram = if words.take(&["axis"]) {
+            words.axis()?
+        } else {
+            0
+        };
+        if words.take(&["stands", "at"]) {
+            self.starts.push((ram, words.amount("mm")? * 1e-3));
+            return words.end();
+        }
+        self.faults.push(fault(line)?);
+        Ok(())
+    }
+}
+
+fn fault(line: &str) -> Result<Fault, String> {
+    let (when, what) = line.split_once(':').ok_or("no `:` between when and what")?;
+    let mut words = Words(what.split_whitespace().collect());
+    let probability = words.probability()?;
+    let when = self::when(when, probability)?;
+    let on_load_cell = words.take(&["load", "cell"]);
+    let on_a_line = on_load_cell || words.take(&["actuator"]);
+    let own_of = if on_a_line && words.take(&["of", "axis"]) {
+        Some(words.axis()?)
+    } else {
+        None
+    };
+    let ram = if words.take(&["axis"]) {
+        words.axis()?
+    } else {
+        0
+    };
+    let what = self::what(&mut words)?;
+    words.end()?;
+    if ram > 0 && !matches!(what, What::Bench(_)) {
+        return Err("only what befalls a ram, its specimen or its sensors has an axis".to_owned());
+    }
+    match (&when, &what) {
+        (When::EachReading(_), What::Bench(BenchFault::Spike(_) | BenchFault::Number(_)))
+        | (When::EachReply(_), What::Replies(..)) => {}
+        (When::EachReading(_), _) => {
+            return Err("each reading can have a spike or a bad number only".to_owned());
+        }
+        (When::EachReply(_), _) => {
+            return Err("each reply can have only what befalls a reply".to_owned());
+        }
+        _ => {}
+    }
+    Ok(Fault {
+        on_load_cell,
+        own_of,
+        ram,
+        when,
+        what,
+    })
+}
+
+impl Fault {
+    /// The one of these controllers that it befalls: None where there is no such one.
+    #[must_use]
+    pub fn place_among(&self, names: &[String]) -> Option<usize> {
+        let role = if self.on_load_cell {
+            "load cell"
+        } else {
+            "actuator"
+        };
+        match self.own_of {
+            Some(axis) => names
+                .iter()
+                .position(|name| *name == format!("{role} of axis {}", axis + 1)),
+            None => names.iter().position(|name| name.starts_with(role)),
+        }
+    }
+}
+
+fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
+    let mut words = Words(text.split_whitespace().collect());
+    let when = if words.take(&["at"]) {
+        When::At(words.amount("s")?)
+    } else if words.take(&["after"]) {
+        let count = words.count()?;
+        match words.next()? {
+            "move" | "moves" => When::AfterMoves(count),
+            "reading" | "readings" => When::AfterReadings(count),
+            "reply" | "replies" => When::AfterReplies(count),
+            other => {
+                return Err(format!(
+                    "`{other}` is not counted: moves, readings and replies are"
+                ));
+            }
+        }
+    } else if words.take(&["each", "reply"]) {
+        When::EachReply(probability.unwrap_or(1.0))
+    } else if words.take(&["each", "reading"]) {
+        When::EachReading(probability.unwrap_or(1.0))
+    } else {
+        return Err(format!(
+            "`{}` is no time: write `at`, `after`, `each reply` or `each reading`",
+            text.trim()
+        ));
+    };
+    words.end()?;
+    if probability.is_some() && !matches!(when, When::EachReply(_) | When::EachReading(_)) {
+        return Err("a probability goes with `each reply` and `each reading`".to_owned());
+    }
+    Ok(when)
+}
+
+fn what(words: &mut Words<'_>) -> Result<What, String> {
+    let verb = words.next()?;
+    let reply = |words: &mut Words<'_>, fault| Ok(What::Replies(fault, words.replies()?));
+    match verb {
+        "drop" => reply(words, ReplyFault::Drop),
+        "repeat" => reply(words, ReplyFault::Repeat),
+        "replay" => reply(words, ReplyFault::Replay),
+        "split" => {
+            let replies = words.replies()?;
+            let at = words.next()?;
+            let bytes = words.bytes()?;
+            match at {
+                "at" => Ok(What::Replies(ReplyFault::SplitAt(bytes), replies)),
+                "every" if bytes > 0 => Ok(What::Replies(ReplyFault::SplitEvery(bytes), replies)),
+                _ => Err("split at some bytes, or every so many".to_owned()),
+            }
+        }
+        "cut" => {
+            let replies = words.replies()?;
+            words.expect("at")?;
+            Ok(What::Replies(ReplyFault::CutAt(words.bytes()?), replies))
+        }
+        "delay" => {
+            let replies = words.replies()?;
+            let seconds = words.amount("s")?;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "bounded, and not negative"
+            )]
+            let milliseconds = (seconds.clamp(0.0, 1e6) * 1e3) as u64;
+            Ok(What::Replies(ReplyFault::Delay(milliseconds), replies))
+        }
+        "flip" => {
+            let bit = if words.take(&["a", "bit"]) {
+                None
+            } else {
+                words.expect("bit")?;
+                Some(words.size()?)
+            };
+            let replies = if words.take(&["of"]) {
+                words.replies()?
+            } else {
+                Some(1)
+            };
+            Ok(What::Replies(ReplyFault::FlipBit(bit), replies))
+        }
+        "garbage" | "fill" => {
+            let count = words.bytes()?;
+            let byte = if verb == "fill" {
+                words.expect("of")?;
+                let word = words.next()?;
+                Some(
+                    u8::from_str_radix(word, 16)
+                        .map_err(|_| format!("`{word}` is no byte in hexadecimal"))?,
+                )
+            } else {
+                None
+            };
+            let place = match words.next()? {
+                "before" => Place::Before,
+                "inside" => Place::Inside,
+                "after" => Place::After,
+                other => return Err(format!("`{other}` is no place: before, inside or after")),
+            };
+            let replies = if words.ended() {
+                Some(1)
+            } else {
+                words.replies()?
+            };
+            Ok(What::Replies(
+                ReplyFault::Garbage { count, byte, place },
+                replies,
+            ))
+        }
+        "hang" => {
+            words.expect("up")?;
+            if words.take(&["before", "reply"]) {
+                Ok(What::Replies(ReplyFault::HangUpBefore, Some(1)))
+            } else if words.take(&["after", "reply"]) {
+                Ok(What::Replies(ReplyFault::HangUpAfter, Some(1)))
+            } else {
+                Ok(What::Line(LineFault::HangUp))
+            }
+        }
+        "reboot" => Ok(What::Line(LineFault::Reboot)),
+        "stop" => {
+            words.expect("reading")?;
+            Ok(What::Line(LineFault::StopReading))
+        }
+        "freeze" if words.take(&["firmware"]) => {
+            Ok(What::Line(LineFault::FreezeFirmware(words.amount("s")?)))
+        }
+        _ => bench_fault(verb, words).map(What::Bench),
+    }
+}
+
+fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> {
+    match verb {
+        "freeze" => match words.next()? {
+            "force" => Ok(BenchFault::FreezeForce),
+            "displacement" => Ok(BenchFault::FreezeDisplacement),
+            other => Err(format!(
+                "`{other}` does not freeze: firmware, force and displacement do"
+            )),
+        },
+        "scale" => {
+            let of = words.next()?;
+            words.expect("by")?;
+            let factor = words.number()?;
+            match of {
+                "force" => Ok(BenchFault::ScaleForce(factor)),
+                "displacement" => Ok(BenchFault::ScaleDisplacement(factor)),
+                other => Err(format!(
+                    "`{other}` has no scale: force and displacement have"
+                )),
+            }
+        }
+        "clip" => {
+            words.expect("force")?;
+            words.expect("at")?;
+            Ok(BenchFault::ClipForce(words.amount("N")?))
+        }
+        "drift" => {
+            let of = words.next()?;
+            match of {
+                "force" => Ok(BenchFault::Drift(words.amount("N/s")?)),
+                "displacement" => Ok(BenchFault::DriftDisplacement(words.amount("mm/s")? * 1e-3)),
+                other => Err(format!(
+                    "`{other}` does not drift: force and displacement do"
+                )),
+            }
+        }
+        "spike" => Ok(BenchFault::Spike(words.amount("N")?)),
+        "number" => Ok(BenchFault::Number(
+            words.next()?.trim_matches('"').to_owned(),
+        )),
+        "reach" => Ok(BenchFault::Reach(words.amount("%")? / 100.0)),
+        "stick" => Ok(BenchFault::Reach(0.0)),
+        "lag" => Ok(BenchFault::Lag(words.amount("s")?)),
+        "fracture" => {
+            words.expect("at")?;
+            let displacement = words.amount("mm")? * 1e-3;
+            words.expect("to")?;
+            Ok(BenchFault::Fracture {
+                displacement,
+                left: words.amount("%")? / 100.0,
+            })
+        }
+        other => Err(format!("`{other}` is no fault that is known")),
+    }
+}
+
+/// The words of half a line that are not yet read.
+struct Words<'a>(std::collections::VecDeque<&'a str>);
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Result<&'a str, String> {
+        self.0
+            .pop_front()
+            .ok_or_else(|| "the line ends too early".to_owned())
+    }
+
+    fn take(&mut self, words: &[&str]) -> bool {
+        let found = self.0.iter().take(words.len()).eq(words);
+        if found {
+            self.0.drain(..words.len());
+        }
+        found
+    }
+
+    fn expect(&mut self, word: &str) -> Result<(), String> {
+        let found = self.next()?;
+        if found == word {
+            Ok(())
+        } else {
+            Err(format!("`{found}` stands where `{word}` is expected"))
+        }
+    }
+
+    fn ended(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn end(&self) -> Result<(), String> {
+        self.0
+            .front()
+            .map_or(Ok(()), |word| Err(format!("`{word}` is one word too many")))
+    }
+
+    fn count(&mut self) -> Result<u64, String> {
+        let word = self.next()?;
+        word.parse().map_err(|_| format!("`{word}` is no count"))
+    }
+
+    /// The place of an axis, which is counted from 1.
+    fn axis(&mut self) -> Result<usize, String> {
+        let word = self.next()?;
+        word.parse::<usize>()
+            .ok()
+            .and_then(|axis| axis.checked_sub(1))
+            .ok_or_else(|| format!("`{word}` is no axis: the first is 1"))
+    }
+
+    fn size(&mut self) -> Result<usize, String> {
+        let word = self.next()?;
+        word.parse().map_err(|_| format!("`{word}` is no count"))
+    }
+
+    fn bytes(&mut self) -> Result<usize, String> {
+        let count = self.size()?;
+        match self.next()? {
+            "byte" | "bytes" if count <= 16 << 20 => Ok(count),
+            "byte" | "bytes" => Err(format!("{count} bytes are too many: 16 MiB is the most")),
+            other => Err(format!("`{other}` stands where `bytes` is expected")),
+        }
+    }
+
+    fn number(&mut self) -> Result<f64, String> {
+        let word = self.next()?;
+        word.parse()
+            .ok()
+            .filter(|value: &f64| value.is_finite())
+            .ok_or_else(|| format!("`{word}` is no number"))
+    }
+
+    /// A number with its one unit.
+    fn amount(&mut self, unit: &str) -> Result<f64, String> {
+        let value = self.number()?;
+        self.expect(unit)?;
+        Ok(value)
+    }
+
+    /// `reply`, `replies 3`, `replies for ever`.
+    fn replies(&mut self) -> Result<Option<u64>, String> {
+        match self.next()? {
+            "reply" => Ok(Some(1)),
+            "replies" if self.take(&["for", "ever"]) => Ok(None),
+            "replies" => self.count().map(Some),
+            other => Err(format!(
+                "`{other}` stands where `reply` or `replies` is expected"
+            )),
+        }
+    }
+
+    /// `with 0.01` at the end.
+    fn probability(&mut self) -> Result<Option<f64>, String> {
+        let Some(at) = self.0.iter().position(|word| *word == "with") else {
+            return Ok(None);
+        };
+        let mut rest = Words(self.0.split_off(at));
+        rest.expect("with")?;
+        let probability = rest.number()?;
+        rest.end()?;
+        let sound = (0.0..=1.0).contains(&probability);
+        if sound {
+            Ok(Some(probability))
+        } else {
+            Err(format!("{probability} is no probability"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

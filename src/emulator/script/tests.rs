@@ -1,0 +1,170 @@
+//! Scripts: what each line says, and which line is none.
+
+use super::*;
+
+fn one(line: &str) -> Fault {
+    let script = Script::parse(line).unwrap_or_else(|error| panic!("{line}: {error}"));
+    script.faults.into_iter().next().expect("a fault")
+}
+
+#[test]
+fn a_line_says_when_and_what() {
+    let fault = one("after 12 moves: drop replies 3  # and why");
+    assert_eq!(
+        fault,
+        Fault {
+            on_load_cell: false,
+            own_of: None,
+            ram: 0,
+            when: When::AfterMoves(12),
+            what: What::Replies(ReplyFault::Drop, Some(3))
+        }
+    );
+    assert_eq!(one("at 4.5 s: hang up").when, When::At(4.5));
+    assert_eq!(
+        one("after 20 readings: spike 500 N").what,
+        What::Bench(BenchFault::Spike(500.0))
+    );
+    assert_eq!(
+        one("each reply: flip a bit with 0.01").when,
+        When::EachReply(0.01)
+    );
+    assert_eq!(
+        (one("at 0 s: axis 2 stick").ram, one("at 0 s: stick").ram),
+        (1, 0)
+    );
+    assert!(one("at 0 s: load cell split replies for ever every 1 bytes").on_load_cell);
+    let names = [
+        "actuator",
+        "actuator of axis 2",
+        "load cell of axis 1",
+        "load cell of axis 2",
+    ]
+    .map(str::to_owned);
+    let place = |text: &str| one(text).place_among(&names);
+    assert_eq!(
+        (place("at 0 s: hang up"), place("at 0 s: load cell hang up")),
+        (Some(0), Some(2))
+    );
+    assert_eq!(
+        (
+            place("at 0 s: actuator of axis 2 hang up"),
+            place("at 0 s: load cell of axis 2 hang up")
+        ),
+        (Some(1), Some(3))
+    );
+    assert_eq!(place("at 0 s: load cell of axis 3 hang up"), None);
+    assert_eq!(
+        one("at 1 s: number \"\"").what,
+        What::Bench(BenchFault::Number(String::new()))
+    );
+    let fill = ReplyFault::Garbage {
+        count: 3,
+        byte: Some(255),
+        place: Place::Inside,
+    };
+    assert_eq!(
+        one("after 1 reply: fill 3 bytes of ff inside").what,
+        What::Replies(fill, Some(1))
+    );
+    assert_eq!(
+        one("at 1 s: fracture at 3 mm to 10 %").what,
+        What::Bench(BenchFault::Fracture {
+            displacement: 0.003,
+            left: 0.1
+        })
+    );
+}
+
+#[test]
+fn every_line_of_the_description_is_read() {
+    let text = include_str!("../script.rs");
+    let described = text
+        .lines()
+        .skip_while(|line| *line != "//! ```text")
+        .skip(1)
+        .take_while(|line| *line != "//! ```");
+    let mut count = 0;
+    for phrase in described.flat_map(|line| line.trim_start_matches("//! ").split("  ")) {
+        let phrase = phrase.split('(').next().unwrap_or_default().trim();
+        if !phrase.is_empty() {
+            let plain = phrase
+                .replace("[of REPLIES]", "of REPLIES")
+                .replace("[REPLIES]", "REPLIES");
+            for replies in ["reply", "replies 3", "replies for ever"] {
+                one(&format!("at 1 s: {}", plain.replace("REPLIES", replies)));
+            }
+            count += 1;
+        }
+    }
+    assert_eq!(count, 31, "as many phrases as there are");
+}
+
+#[test]
+fn a_wrong_line_is_named_with_its_reason() {
+    let reason = |text: &str| Script::parse(text).expect_err(text).to_string();
+    assert_eq!(
+        reason("# fine\n\nat 1 s hang up"),
+        "line 3: no `:` between when and what"
+    );
+    assert_eq!(reason("at nan s: hang up"), "line 1: `nan` is no number");
+    assert_eq!(
+        reason("at 1 ms: hang up"),
+        "line 1: `ms` stands where `s` is expected"
+    );
+    assert_eq!(
+        reason("after 3 steps: reboot"),
+        "line 1: `steps` is not counted: moves, readings and replies are"
+    );
+    assert_eq!(
+        reason("at 1 s: explode"),
+        "line 1: `explode` is no fault that is known"
+    );
+    assert_eq!(
+        reason("at 1 s: reboot now"),
+        "line 1: `now` is one word too many"
+    );
+    assert_eq!(
+        reason("each reply: drop reply with 2"),
+        "line 1: 2 is no probability"
+    );
+    assert_eq!(
+        reason("at 1 s: drop reply with 0.5"),
+        "line 1: a probability goes with `each reply` and `each reading`"
+    );
+    assert_eq!(
+        reason("each reading: reboot"),
+        "line 1: each reading can have a spike or a bad number only"
+    );
+    assert_eq!(
+        reason("at 1 s: axis 0 stick"),
+        "line 1: `0` is no axis: the first is 1"
+    );
+    assert_eq!(
+        reason("at 1 s: axis 2 reboot"),
+        "line 1: only what befalls a ram, its specimen or its sensors has an axis"
+    );
+    assert_eq!(
+        reason("at 1 s: drop replies"),
+        "line 1: the line ends too early"
+    );
+}
+
+#[test]
+fn a_line_without_a_time_says_where_a_ram_stands() {
+    let script =
+        Script::parse("stands at 3 mm\naxis 2 stands at -41.7 mm  # unloaded\nat 0 s: stick")
+            .unwrap();
+    assert_eq!(
+        (script.starts, script.faults.len()),
+        (vec![(0, 0.003), (1, -0.0417)], 1)
+    );
+    for wrong in [
+        "stands at 3",
+        "stands at 3 um",
+        "stands at 3 mm now",
+        "axis 0 stands at 3 mm",
+    ] {
+        assert!(Script::parse(wrong).is_err(), "{wrong}");
+    }
+}

@@ -1,0 +1,249 @@
+//! A run folder held against what its record gives, against its manifest and against its signatures. In: the folder, the
+//! record played back, the keys that must have signed. Out: findings, one a part.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::folder::{Folder, MANIFEST};
+use super::issues;
+use super::keys::KnownKey;
+use super::rebuilt::{Rebuilt, Report};
+use super::sidecar;
+use super::signature;
+use crate::report::manifest_with;
+
+/// Most names told of one fault.
+const NAMED: usize = 6;
+
+/// What one part of the proof says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Finding {
+    pub part: &'static str,
+    pub sound: bool,
+    pub told: String,
+}
+
+impl Finding {
+    pub fn sound(part: &'static str, told: impl Into<String>) -> Self {
+        Self {
+            part,
+            sound: true,
+            told: told.into(),
+        }
+    }
+
+    pub fn wrong(part: &'static str, fault: impl Into<String>) -> Self {
+        Self {
+            part,
+            sound: false,
+            told: fault.into(),
+        }
+    }
+}
+
+/// Everything that can be said of a run folder. With keys, each of them must have signed, and nobody else.
+pub fn examine(folder: &Folder, rebuilt: &Rebuilt, keys: &[KnownKey]) -> Vec<Finding> {
+    let mut findings = rebuilt.findings.clone();
+    let sidecars = sidecars(folder, rebuilt.report.as_ref());
+    let own = folder
+        .listed()
+        .filter(|(name, _)| !sidecars.contains(name.as_str()));
+    let has_results = folder.files.contains_key(MANIFEST) || own.count() > folder.kept().len();
+    if let Some(report) = rebuilt.report.as_ref().filter(|_| has_results) {
+        results(folder, report, &sidecars, &mut findings);
+    }
+    let ended = rebuilt.report.as_ref().is_some_and(|report| report.ended);
+    findings.push(if has_results {
+        manifest(folder, rebuilt.report.as_ref(), &sidecars)
+    } else if ended {
+        Finding::wrong(
+            "results",
+            "the run came to its end, and its results are gone: `psd report` makes them again",
+        )
+    } else if let Some(fault) = foreign(folder).first() {
+        Finding::wrong("manifest", fault)
+    } else {
+        Finding::sound("manifest", "no results yet: there is none")
+    });
+    findings.extend(
+        sidecars
+            .iter()
+            .filter_map(|name| sidecar::examine(folder, name)),
+    );
+    findings.extend(signature::examine(folder, rebuilt.report.as_ref(), keys));
+    findings
+}
+
+/// What lies beside the files of the run and is of one of them: nothing that record or manifest name.
+fn sidecars<'a>(folder: &'a Folder, report: Option<&Report>) -> BTreeSet<&'a str> {
+    let listed = folder.bytes(MANIFEST).and_then(lines).unwrap_or_default();
+    let is_of_the_run = |name: &str| {
+        listed.contains_key(name)
+            || report.is_some_and(|report| report.files.iter().any(|(path, _)| path == name))
+    };
+    let named = folder.files.keys().map(String::as_str);
+    named
+        .filter(|name| sidecar::is_one(folder, name) && !is_of_the_run(name))
+        .collect()
+}
+
+/// The parts of the results, each with the paths that are its own.
+const PARTS: &[(&str, &str)] = &[
+    ("figures", "figures/"),
+    ("certificate", "certificate."),
+    ("plan", "plan/"),
+    ("results", ""),
+];
+
+fn part_of(path: &str) -> &'static str {
+    PARTS
+        .iter()
+        .find(|(_, prefix)| path.starts_with(prefix))
+        .map_or("results", |(part, _)| part)
+}
+
+/// Every file of the results against the one that the record gives.
+fn results(
+    folder: &Folder,
+    report: &Report,
+    sidecars: &BTreeSet<&str>,
+    findings: &mut Vec<Finding>,
+) {
+    let mut faults: BTreeMap<&'static str, Vec<String>> = BTreeMap::new();
+    let mut counts: BTreeMap<&'static str, usize> = BTreeMap::new();
+    for (path, digest) in &report.files {
+        *counts.entry(part_of(path)).or_default() += 1;
+        let fault = match folder.files.get(path) {
+            Some(held) if held.digest == *digest => continue,
+            Some(_) => format!("`{path}` is not what the record gives"),
+            None => format!("`{path}` is missing"),
+        };
+        faults.entry(part_of(path)).or_default().push(fault);
+    }
+    let expected: BTreeSet<&String> = report.files.iter().map(|(path, _)| path).collect();
+    let issue = issues::held(folder).map(|(name, _)| name.to_owned());
+    let kept: BTreeSet<String> = folder
+        .kept()
+        .into_iter()
+        .map(|(name, _)| name)
+        .chain(issue)
+        .collect();
+    let foreign = |name: &String| {
+        !expected.contains(name) && !kept.contains(name) && !sidecars.contains(name.as_str())
+    };
+    for (name, _) in folder.listed().filter(|(name, _)| foreign(name)) {
+        faults
+            .entry(part_of(name))
+            .or_default()
+            .push(format!("`{name}` is none of the run's files"));
+    }
+    for (part, _) in PARTS.iter().rev() {
+        if let Some(faults) = faults.get(part) {
+            let other = report
+                .other_build
+                .as_ref()
+                .map_or_else(String::new, |other| {
+                    format!("; the run was made by {other}")
+                });
+            let cut_off = if report.ended {
+                ""
+            } else {
+                "; the record has no end"
+            };
+            findings.push(Finding::wrong(
+                part,
+                format!("{}{cut_off}{other}", some_of(faults)),
+            ));
+        } else if let Some(count) = counts.get(part) {
+            let files = if *count == 1 {
+                "the file"
+            } else {
+                &format!("all {count} files")
+            };
+            findings.push(Finding::sound(
+                part,
+                format!("{files} came out of the record again, byte for byte"),
+            ));
+        }
+    }
+}
+
+/// What has no place in a run folder, whatever a manifest says.
+fn foreign(folder: &Folder) -> Vec<String> {
+    let odd = folder
+        .odd
+        .iter()
+        .map(|(name, reason)| format!("`{name}` {reason}"));
+    let reserve = (folder.reserve_is_ours() == Some(false))
+        .then(|| "the reserve holds what psd does not lay there".to_owned());
+    odd.chain(reserve).collect()
+}
+
+/// Every file of the folder against its manifest, and the manifest against the one that the record gives.
+fn manifest(folder: &Folder, report: Option<&Report>, sidecars: &BTreeSet<&str>) -> Finding {
+    let Some(bytes) = folder.bytes(MANIFEST) else {
+        return Finding::wrong("manifest", "there are results and no manifest");
+    };
+    let mut faults = foreign(folder);
+    let Some(lines) = lines(bytes) else {
+        return Finding::wrong("manifest", "it is no list of digests");
+    };
+    for (name, digest) in &lines {
+        match folder.files.get(*name) {
+            Some(held) if held.digest == *digest => {}
+            Some(_) => faults.push(format!("`{name}` is not the one of the manifest")),
+            None => faults.push(format!("`{name}` is missing")),
+        }
+    }
+    let known = |name: &str| lines.contains_key(name) || sidecars.contains(name);
+    let unlisted = folder.listed().filter(|(name, _)| !known(name));
+    faults.extend(unlisted.map(|(name, _)| format!("`{name}` is not in the manifest")));
+    if faults.is_empty()
+        && let Some(report) = report
+    {
+        let beside =
+            issues::held(folder).map(|(name, held)| (name.to_owned(), held.digest.clone()));
+        let all: Vec<(String, String)> = report
+            .files
+            .iter()
+            .cloned()
+            .chain(folder.kept())
+            .chain(beside)
+            .collect();
+        if manifest_with(&[], &all).bytes != bytes {
+            faults.push("it is not the one that the record gives".to_owned());
+        }
+    }
+    if faults.is_empty() {
+        Finding::sound("manifest", {
+            let other = if sidecars.is_empty() {
+                "there is no other"
+            } else {
+                "there is no other but sidecars"
+            };
+            format!("all {} files are those it lists, and {other}", lines.len())
+        })
+    } else {
+        Finding::wrong("manifest", some_of(&faults))
+    }
+}
+
+/// Name and digest of every line; None where it is no manifest, or names a file twice.
+fn lines(bytes: &[u8]) -> Option<BTreeMap<&str, &str>> {
+    let mut lines = BTreeMap::new();
+    for line in str::from_utf8(bytes).ok()?.lines() {
+        let (digest, name) = line.split_once("  ")?;
+        if lines.insert(name, digest).is_some() {
+            return None;
+        }
+    }
+    Some(lines)
+}
+
+fn some_of(faults: &[String]) -> String {
+    let told = faults[..faults.len().min(NAMED)].join("; ");
+    if faults.len() > NAMED {
+        format!("{told}; and {} more", faults.len() - NAMED)
+    } else {
+        told
+    }
+}

@@ -1,0 +1,219 @@
+//! No record, however it is damaged, panics what reads it or keeps it for ever: it is an error with its place, or a run that the
+//! record does not fit.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::rebuilt::PlayedBack;
+use super::standing;
+use super::tests::run;
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::JOURNAL;
+use crate::record::journal::EntryKind;
+use crate::record::journal::testing::{Vandal, records, written};
+use crate::report;
+use crate::rig::Reading;
+use crate::run::Unwatched;
+use crate::run::replay;
+use crate::run::replay::Bands;
+
+/// Changes the records of a journal.
+type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
+
+/// All that `verify`, `report` and `resume` do with a record before they write or move anything; what is wrong with it.
+fn played(journal: &[u8]) -> Result<(), String> {
+    let read = record_file::from_bytes(Path::new(JOURNAL), journal)
+        .map_err(|failure| failure.to_string())?;
+    let stands = standing::stands(&read);
+    // A refusal is as good as none.
+    let no_rig = || Err(replay::Refusal::NothingRecorded);
+    let _ = replay::resume(
+        &read.plan,
+        &read.played,
+        &mut Unwatched,
+        Box::new(|| None),
+        no_rig,
+    );
+    if let (Some(link), Some(rig)) = (read.plan.rig.link.as_real(), &read.played.last_rig) {
+        let nowhere = vec![0.0; read.plan.degrees_of_freedom()];
+        let stands = Reading {
+            time: 0.0,
+            displacement: nowhere.clone(),
+            force: nowhere,
+            raw: Vec::new(),
+        };
+        let bands = Bands::of(&read.plan.rig, link);
+        let _ = replay::decide(&read.played, rig, &stands, &bands, true);
+    }
+    let played = PlayedBack::of(read, None)?;
+    let PlayedBack {
+        plan,
+        provenance,
+        record,
+        assessment,
+        mismatch,
+        ..
+    } = &played;
+    let run = report::Run {
+        plan,
+        record,
+        assessment,
+        provenance,
+    };
+    report::numbers(&run).map_err(|error| error.to_string())?;
+    let _ = report::figure_data(&run);
+    stands?;
+    mismatch
+        .as_ref()
+        .map_or(Ok(()), |mismatch| Err(mismatch.to_string()))
+}
+
+/// Records that once panicked a replay, or kept it for ever: each is an error with its place.
+#[test]
+fn known_damage_is_an_error_with_its_place() {
+    let cases: [(&str, &[u8], &str); 10] = [
+        (
+            "schemes_245",
+            include_bytes!("../../tests/records/schemes_245.psdj"),
+            "record 15 (SAMPLE)",
+        ),
+        (
+            "session_296_force",
+            include_bytes!("../../tests/records/session_296_force.psdj"),
+            "record 5 (SAMPLE)",
+        ),
+        (
+            "session_296_place",
+            include_bytes!("../../tests/records/session_296_place.psdj"),
+            "record 16 (SAMPLE)",
+        ),
+        (
+            "solver_249",
+            include_bytes!("../../tests/records/solver_249.psdj"),
+            "record 7 (SAMPLE)",
+        ),
+        (
+            "solver_294",
+            include_bytes!("../../tests/records/solver_294.psdj"),
+            "record 7 (SAMPLE)",
+        ),
+        (
+            "stiffer_161",
+            include_bytes!("../../tests/records/stiffer_161.psdj"),
+            "record 8 (SAMPLE)",
+        ),
+        (
+            "tangents_51",
+            include_bytes!("../../tests/records/tangents_51.psdj"),
+            "record 10 (SAMPLE)",
+        ),
+        (
+            "zero_75",
+            include_bytes!("../../tests/records/zero_75.psdj"),
+            "record 13 (SAMPLE)",
+        ),
+        (
+            "zero_76",
+            include_bytes!("../../tests/records/zero_76.psdj"),
+            "record 14 (SAMPLE)",
+        ),
+        (
+            "waits_for_ever",
+            include_bytes!("../../tests/records/waits_for_ever.psdj"),
+            "record 31: the run calls for the end of a step",
+        ),
+    ];
+    for (name, journal, place) in cases {
+        let fault = played(journal).expect_err(name);
+        assert!(fault.contains(place), "{name}: {fault}");
+        assert_eq!(
+            fault.contains("is malformed: its `"),
+            name != "waits_for_ever",
+            "{name}: {fault}"
+        );
+    }
+}
+
+/// What else no run writes: each is told with its place.
+#[test]
+fn what_no_run_writes_is_malformed() {
+    let journal = &run()[JOURNAL];
+    let before_the_rig = |records: &mut Vec<(EntryKind, Value)>| {
+        let sample = position(records, EntryKind::Sample);
+        let sample = records.remove(sample);
+        records.insert(2, sample);
+    };
+    let alter = |kind, place: &'static str, value: Value| {
+        move |records: &mut Vec<(EntryKind, Value)>| {
+            let at = position(records, kind);
+            *records[at].1.pointer_mut(place).unwrap() = value.clone();
+        }
+    };
+    let failed_pause = |records: &mut Vec<(EntryKind, Value)>| {
+        let fault = json!({"t": 0.0, "call": "pause", "fault": {"device": "gone"}});
+        records.insert(5, (EntryKind::Fault, fault));
+    };
+    let gone_on = |from: u64| {
+        move |records: &mut Vec<(EntryKind, Value)>| {
+            let rig = records[position(records, EntryKind::Rig)].clone();
+            let resume = json!({
+                "from": from, "by": "R. T", "reason": "no power", "doubt": {"target": "none"}, "found": [[0.0], [0.0]],
+                "recorded": null, "t": 0.0,
+            });
+            records.splice(5..5, [rig, (EntryKind::Resume, resume)]);
+        }
+    };
+    let cases: [(Damage<'_>, &str); 7] = [
+        (
+            &before_the_rig,
+            "record 3 (SAMPLE) is malformed: no RIG stands before it",
+        ),
+        (
+            &alter(EntryKind::Rig, "/axes", json!(2)),
+            "is malformed: the plan moves 1 axis, and the rig has 2",
+        ),
+        (
+            &alter(EntryKind::Intent, "/to", json!([0.0, 0.0])),
+            "is malformed: its `to` has 2 entries, and the rig has 1 axis",
+        ),
+        (
+            &alter(EntryKind::Sample, "/r", json!([])),
+            "is malformed: its `r` has 0 entries, and the rig has 1 axis",
+        ),
+        (
+            &failed_pause,
+            "record 6 (FAULT) is malformed: no pause of a virtual rig fails",
+        ),
+        (
+            &gone_on(99),
+            "record 7 (RESUME) is malformed: it goes on from record 99",
+        ),
+        (
+            &gone_on(1),
+            "record 7 (RESUME) is malformed: it goes on from record 1,",
+        ),
+    ];
+    for (damage, told) in cases {
+        let mut damaged = records(journal);
+        damage(&mut damaged);
+        let fault = played(&written(damaged)).expect_err(told);
+        assert!(fault.contains(told), "{told}: {fault}");
+    }
+}
+
+fn position(records: &[(EntryKind, Value)], kind: EntryKind) -> usize {
+    records.iter().position(|(of, _)| *of == kind).unwrap()
+}
+
+/// Random damage, the same each time; what comes of it is of no matter, as long as it comes.
+#[test]
+fn no_vandal_makes_a_record_that_panics() {
+    const ROUNDS: u64 = 150;
+    let real: &[u8] = include_bytes!("../../tests/records/waits_for_ever.psdj");
+    let journal = &run()[JOURNAL];
+    for seed in 0..ROUNDS {
+        let _ = played(&Vandal::new(seed).mangled(journal, real));
+        let _ = played(&Vandal::new(seed).mangled(real, journal));
+    }
+}

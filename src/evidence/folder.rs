@@ -1,0 +1,292 @@
+//! A run folder as it lies there: every file by its name, with its digest, and what has no place in such a folder. In: a
+//! path. Out: [`Folder`]. It follows no link and does not know what a file means.
+
+use std::collections::BTreeMap;
+use std::fs::OpenOptions;
+use std::io::Read as _;
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
+
+use rustix::fs::OFlags;
+use sha2::{Digest as _, Sha256};
+
+use crate::cli::exit::Failure;
+use crate::cli::files::loader::plain;
+use crate::cli::files::record_file::JOURNAL;
+use crate::record::journal::{MOST_BYTES, is_part_of_a_reserve};
+use crate::text::digest::{hex, sha256};
+
+use super::issues::{ISSUE, OLDER_ISSUE};
+use super::{sidecar, signature};
+
+/// Name of the manifest; it does not list itself.
+pub const MANIFEST: &str = "manifest.sha256";
+
+/// The largest file of a run folder that is read, bytes: the record is the longest.
+const LISTED_BYTES: u64 = MOST_BYTES;
+/// The largest sidecar whose bytes are held.
+const SIDECAR_BYTES: u64 = 64 << 20;
+
+/// The deepest that files of a run folder lie.
+const DEEPEST: usize = 64;
+
+/// The files of a run folder, by their names with `/`.
+#[derive(Clone, Debug, Default)]
+pub struct Folder {
+    pub files: BTreeMap<String, Held>,
+    /// What is no file, and why.
+    pub odd: Vec<(String, String)>,
+}
+
+/// One file.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// SHA-256, hex.
+    pub digest: String,
+    /// Only of files that are read: the record, the manifest, the issue, signatures, the report on paper, sidecars.
+    pub bytes: Option<Vec<u8>>,
+}
+
+impl Held {
+    /// A file of these bytes.
+    pub fn of(name: &str, bytes: Vec<u8>) -> Self {
+        Self {
+            digest: sha256(&bytes),
+            bytes: is_read(name).then_some(bytes),
+        }
+    }
+}
+
+impl Folder {
+    /// Reads the whole folder.
+    pub fn read(run: &Path) -> Result<Self, Failure> {
+        let mut folder = Self::default();
+        folder.walk(run, is_read, ("", 0))?;
+        Ok(folder)
+    }
+
+    /// The same of names and digests alone.
+    pub fn digests(run: &Path) -> Result<Self, Failure> {
+        let mut folder = Self::default();
+        folder.walk(run, |_| false, ("", 0))?;
+        Ok(folder)
+    }
+
+    /// The bytes of a file that is read.
+    pub fn bytes(&self, name: &str) -> Option<&[u8]> {
+        self.files.get(name)?.bytes.as_deref()
+    }
+
+    /// The same, no longer held.
+    pub fn take(&mut self, name: &str) -> Option<Vec<u8>> {
+        self.files.get_mut(name)?.bytes.take()
+    }
+
+    /// What psd keeps in a run folder whatever becomes of the results: the record, torn ends of it, the results before a
+    /// resumption. Names and digests.
+    pub fn kept(&self) -> Vec<(String, String)> {
+        let kept = self.files.iter().filter(|(name, _)| is_kept(name));
+        kept.map(|(name, held)| (name.clone(), held.digest.clone()))
+            .collect()
+    }
+
+    /// The files that a manifest lists: all but itself, the signatures over it, and the reserve of a run that was killed.
+    pub fn listed(&self) -> impl Iterator<Item = (&String, &Held)> {
+        self.files
+            .iter()
+            .filter(|(name, _)| *name != MANIFEST && !signature::is_name(name) && !is_reserve(name))
+    }
+
+    /// The reserve of a run that was killed holds what psd lays there and nothing else; None where there is none.
+    pub fn reserve_is_ours(&self) -> Option<bool> {
+        let (_, reserve) = self.files.iter().find(|(name, _)| is_reserve(name))?;
+        Some(reserve.bytes.as_deref().is_some_and(is_part_of_a_reserve))
+    }
+
+    /// The signatures, by name.
+    pub fn signatures(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        let named = self
+            .files
+            .iter()
+            .filter(|(name, _)| signature::is_name(name));
+        named.map(|(name, held)| (name.as_str(), held.bytes.as_deref().unwrap_or_default()))
+    }
+
+    fn walk(
+        &mut self,
+        folder: &Path,
+        is_read: fn(&str) -> bool,
+        (prefix, depth): (&str, usize),
+    ) -> Result<(), Failure> {
+        let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
+        for entry in std::fs::read_dir(folder).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let path = entry.path();
+            let Ok(own) = entry.file_name().into_string() else {
+                self.odd.push((
+                    path.display().to_string(),
+                    "has a name that is no text".to_owned(),
+                ));
+                continue;
+            };
+            let name = format!("{prefix}{own}");
+            let kind = entry.file_type().map_err(failed)?;
+            if kind.is_dir() && depth < DEEPEST {
+                let before = self.files.len() + self.odd.len();
+                self.walk(&path, is_read, (&format!("{name}/"), depth + 1))?;
+                if self.files.len() + self.odd.len() == before {
+                    self.odd.push((name, "is an empty folder".to_owned()));
+                }
+                continue;
+            }
+            match held(&path, &name, is_read(&name)) {
+                Ok(held) => drop(self.files.insert(name, held)),
+                Err(reason) => self.odd.push((name, reason)),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// One file: a regular one, through no link.
+fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
+    let said = |error: std::io::Error| plain(&error);
+    let metadata = path.symlink_metadata().map_err(said)?;
+    if metadata.is_symlink() {
+        return Err("is a link".to_owned());
+    }
+    if !metadata.is_file() {
+        return Err("is no file".to_owned());
+    }
+    if metadata.len() > LISTED_BYTES {
+        return Err("is larger than any run's".to_owned());
+    }
+    // What became a link or a pipe meanwhile is not followed, and not waited for.
+    let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
+    let file = OpenOptions::new()
+        .read(true)
+        .custom_flags(flags.cast_signed())
+        .open(path)
+        .map_err(said)?;
+    let mut file = file.take(LISTED_BYTES);
+    if is_read && (metadata.len() <= SIDECAR_BYTES || !sidecar::is_name(name)) {
+        // As long as it is: a record of a gigabyte is not to grow by doubling.
+        let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
+        file.read_to_end(&mut bytes).map_err(said)?;
+        return Ok(Held::of(name, bytes));
+    }
+    let mut digest = Sha256::new();
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut buffer).map_err(said)? {
+            0 => {
+                return Ok(Held {
+                    digest: hex(&digest.finalize()),
+                    bytes: None,
+                });
+            }
+            count => digest.update(&buffer[..count]),
+        }
+    }
+}
+
+fn is_read(name: &str) -> bool {
+    let own = matches!(name, JOURNAL | MANIFEST | ISSUE | OLDER_ISSUE)
+        || signature::is_name(name)
+        || is_reserve(name);
+    own || name == sidecar::PAPER || sidecar::is_name(name)
+}
+
+fn is_kept(name: &str) -> bool {
+    name == JOURNAL
+        || is_torn_end(name)
+        || name
+            .split_once('/')
+            .is_some_and(|(folder, _)| is_numbered(folder, "before-resume-"))
+}
+
+fn is_torn_end(name: &str) -> bool {
+    name.strip_prefix(JOURNAL)
+        .is_some_and(|rest| is_numbered(rest, ".torn-"))
+}
+
+fn is_numbered(name: &str, prefix: &str) -> bool {
+    name.strip_prefix(prefix).is_some_and(|number| {
+        !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())
+    })
+}
+
+fn is_reserve(name: &str) -> bool {
+    name.strip_prefix(JOURNAL) == Some(".reserve")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_folder_is_odd_also_inside_another() {
+        let run = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(run.path().join("tables/more")).unwrap();
+        std::fs::create_dir_all(run.path().join("notes")).unwrap();
+        std::fs::write(run.path().join("tables/k.csv"), "x").unwrap();
+        let mut odd = Folder::read(run.path()).unwrap().odd;
+        odd.sort();
+        assert_eq!(
+            odd,
+            ["notes", "tables/more"].map(|name| (name.to_owned(), "is an empty folder".to_owned()))
+        );
+    }
+
+    #[test]
+    fn a_folder_is_its_files_and_a_link_leads_nowhere() {
+        let root = tempfile::tempdir().unwrap();
+        let run = root.path().join("run");
+        std::fs::create_dir_all(run.join("before-resume-1/tables")).unwrap();
+        std::fs::write(root.path().join("secret"), "x").unwrap();
+        for name in [
+            "own",
+            JOURNAL,
+            "journal.psdj.torn-1",
+            "journal.psdj.reserve",
+            "before-resume-1/tables/k.csv",
+            MANIFEST,
+        ] {
+            std::fs::write(run.join(name), "abc").unwrap();
+        }
+        std::os::unix::fs::symlink(root.path().join("secret"), run.join("link")).unwrap();
+        let folder = Folder::read(&run).unwrap();
+        let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert!(
+            folder.files.len() == 6 && folder.files.values().all(|held| held.digest == abc),
+            "{folder:?}"
+        );
+        assert_eq!(folder.odd, [("link".to_owned(), "is a link".to_owned())]);
+        let kept: Vec<String> = folder.kept().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(
+            kept,
+            [
+                "before-resume-1/tables/k.csv",
+                "journal.psdj",
+                "journal.psdj.torn-1"
+            ]
+        );
+        let listed: Vec<&String> = folder.listed().map(|(name, _)| name).collect();
+        assert_eq!(
+            listed,
+            [
+                "before-resume-1/tables/k.csv",
+                "journal.psdj",
+                "journal.psdj.torn-1",
+                "own"
+            ]
+        );
+        assert_eq!(folder.reserve_is_ours(), Some(false));
+        assert_eq!(
+            (folder.bytes(JOURNAL), folder.bytes("own")),
+            (Some(b"abc".as_slice()), None)
+        );
+        let alone = Folder::digests(&run).unwrap();
+        assert_eq!((alone.kept(), alone.bytes(JOURNAL)), (folder.kept(), None));
+    }
+}

@@ -1,0 +1,559 @@
+//! `issue.json`: what was stated of a report after the test. In: the particulars, the day, by whom and, of an amendment,
+//! why. Out: the file, its report's id, and plan and provenance with what it states. Particulars of the `plan` block alone:
+//! the record lies in the issued folder as it was, and every number comes from it.
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use super::folder::{Folder, Held};
+use crate::language::syntax::limits::TEXT_BYTES;
+use crate::plan::Plan;
+use crate::report::days::{day, days_after, last_day};
+use crate::report::{Change, Issue, IssueKind, Issues, Provenance};
+use crate::schema::{self, FieldType, Kind};
+use crate::text::digest::sha256;
+use crate::text::sanitize;
+use crate::text::sanitize::one_line;
+use crate::text::suggest::nearest;
+
+/// Its name in the issued folder.
+pub const ISSUE: &str = "issue.json";
+/// The same of a folder that an older version made: amendments without a day.
+pub const OLDER_ISSUE: &str = "amendment.json";
+
+/// Name and version of the format.
+const SCHEMA: &str = "psd.issue/1";
+const OLDER_SCHEMA: &str = "psd.amendment/1";
+
+/// The day of the test stays as it is on record.
+const FIXED: &[&str] = &["date"];
+
+/// The file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IssueFile {
+    schema: String,
+    /// In order: each is made from the report before it.
+    issues: Vec<One>,
+}
+
+/// One issue.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct One {
+    pub kind: OneKind,
+    /// Id of the report that it is made from.
+    pub replaces: String,
+    /// SHA-256 of that report's manifest, hex: which it was, to the last byte.
+    pub manifest_sha256: String,
+    /// `YYYY-MM-DD`; missing only where an older version made the amendment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+    pub by: String,
+    /// Of an amendment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// Field and text; an empty text: not given any more.
+    pub particulars: Vec<(String, String)>,
+}
+
+/// What an issue is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OneKind {
+    Issue,
+    Amendment,
+}
+
+/// The file of an older version.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OlderFile {
+    schema: String,
+    amendments: Vec<OlderOne>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OlderOne {
+    replaces: String,
+    manifest_sha256: String,
+    by: String,
+    reason: String,
+    particulars: Vec<(String, String)>,
+}
+
+impl IssueFile {
+    /// The issues before, and one more.
+    pub fn after(before: Option<&Self>, one: One) -> Self {
+        let before = before.map_or_else(Vec::new, |file| file.issues.clone());
+        Self {
+            schema: SCHEMA.to_owned(),
+            issues: [before, vec![one]].concat(),
+        }
+    }
+
+    /// The file of a folder, where it has one.
+    pub fn of(folder: &Folder) -> Result<Option<Self>, String> {
+        let Some((name, held)) = held(folder) else {
+            return Ok(None);
+        };
+        let bytes = held.bytes.as_deref().unwrap_or_default();
+        let read = if name == ISSUE {
+            Self::read(bytes)
+        } else {
+            Self::read_older(bytes)
+        };
+        read.map(Some).map_err(|fault| format!("`{name}` {fault}"))
+    }
+
+    /// Reads the file. It has one way to be written.
+    pub fn read(bytes: &[u8]) -> Result<Self, String> {
+        let file: Self =
+            serde_json::from_slice(bytes).map_err(|error| format!("cannot be read: {error}"))?;
+        if file.schema != SCHEMA || file.issues.is_empty() || file.json().as_bytes() != bytes {
+            return Err("is none that this version of psd writes".to_owned());
+        }
+        Ok(file)
+    }
+
+    fn read_older(bytes: &[u8]) -> Result<Self, String> {
+        let OlderFile { schema, amendments } =
+            serde_json::from_slice(bytes).map_err(|error| format!("cannot be read: {error}"))?;
+        let one = |OlderOne {
+                       replaces,
+                       manifest_sha256,
+                       by,
+                       reason,
+                       particulars,
+                   }| One {
+            kind: OneKind::Amendment,
+            replaces,
+            manifest_sha256,
+            date: None,
+            by,
+            reason: Some(reason),
+            particulars,
+        };
+        let file = Self {
+            schema: SCHEMA.to_owned(),
+            issues: amendments.into_iter().map(one).collect(),
+        };
+        if schema != OLDER_SCHEMA
+            || file.issues.is_empty()
+            || older_json(&file.issues).as_bytes() != bytes
+        {
+            return Err("is none that a version of psd wrote".to_owned());
+        }
+        Ok(file)
+    }
+
+    /// Its bytes.
+    pub fn json(&self) -> String {
+        sanitize::json(&serde_json::to_string_pretty(self).unwrap_or_default()) + "\n"
+    }
+
+    /// Whether one of its issues is made from the report with this manifest.
+    pub fn replaces(&self, manifest_sha256: &str) -> bool {
+        self.issues
+            .iter()
+            .any(|one| one.manifest_sha256 == manifest_sha256)
+    }
+
+    /// The id of the report that is called `own` as it was made, with the first `count` issues.
+    fn id(&self, own: &str, count: usize) -> String {
+        if count == 0 {
+            return own.to_owned();
+        }
+        let issues = &self.issues[..count];
+        // What an older version amended keeps the id that it was given.
+        let text = if issues.iter().all(|one| one.date.is_none()) {
+            older_json(issues)
+        } else {
+            Self {
+                schema: self.schema.clone(),
+                issues: issues.to_vec(),
+            }
+            .json()
+        };
+        sha256(format!("{own}\n{text}").as_bytes())[..16].to_owned()
+    }
+}
+
+/// The file of a folder that says what was stated after the test, and its name.
+pub fn held(folder: &Folder) -> Option<(&'static str, &Held)> {
+    [ISSUE, OLDER_ISSUE]
+        .into_iter()
+        .find_map(|name| Some((name, folder.files.get(name)?)))
+}
+
+/// As an older version wrote its amendments.
+fn older_json(issues: &[One]) -> String {
+    let one = |one: &One| {
+        json!({ "replaces": one.replaces, "manifest_sha256": one.manifest_sha256, "by": one.by,
+            "reason": one.reason.as_deref().unwrap_or_default(), "particulars": one.particulars })
+    };
+    let file =
+        json!({ "schema": OLDER_SCHEMA, "amendments": issues.iter().map(one).collect::<Vec<_>>() });
+    sanitize::json(&serde_json::to_string_pretty(&file).unwrap_or_default()) + "\n"
+}
+
+/// The plan's own name of a particular that may be stated after the test.
+pub fn may_be_stated(field: &str) -> Result<&'static str, String> {
+    let texts = || {
+        let texts = schema::block(Kind::Plan)
+            .fields
+            .iter()
+            .filter(|known| matches!(known.ty, FieldType::Text));
+        texts.map(|known| known.name)
+    };
+    if FIXED.contains(&field) {
+        return Err(format!(
+            "`{field}` is when something was, and stays as it is on record"
+        ));
+    }
+    texts().find(|name| *name == field).ok_or_else(|| {
+        let near = nearest(field, texts().filter(|name| !FIXED.contains(name)));
+        let near = near.map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
+        format!("`{field}` is no particular that can be amended{near}")
+    })
+}
+
+/// Plan and provenance with what the issues state.
+pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> Result<(), String> {
+    let mut all = Vec::new();
+    // Older versions called the first report as its run.
+    let by_run = file
+        .issues
+        .first()
+        .is_some_and(|first| first.replaces == provenance.run_id);
+    let own = if by_run {
+        provenance.run_id.clone()
+    } else {
+        provenance.report_id().to_owned()
+    };
+    for (before, one) in file.issues.iter().enumerate() {
+        if one.replaces != file.id(&own, before) {
+            return Err(format!(
+                "an issue takes the place of report {}, which is none of this run",
+                one_line(&one.replaces)
+            ));
+        }
+        let issued = stated(plan, "issued");
+        if let (OneKind::Issue, Some(day)) = (one.kind, &issued) {
+            return Err(format!(
+                "report {} states that it was issued on {}",
+                one_line(&one.replaces),
+                one_line(day)
+            ));
+        }
+        let latest = [issued.as_deref(), last_day(provenance)];
+        in_order(one, latest, before)?;
+        let mut changes = Vec::new();
+        for (field, text) in &one.particulars {
+            let field = may_be_stated(field)?;
+            if text.len() > TEXT_BYTES {
+                return Err(format!("`{field}` is longer than {TEXT_BYTES} bytes"));
+            }
+            if field == "receipt_date" && !text.is_empty() && day(text).is_none() {
+                return Err(format!(
+                    "`{}` is no day; write it as 2026-05-31",
+                    one_line(text)
+                ));
+            }
+            let restated = all
+                .iter()
+                .flat_map(|issue: &Issue| &issue.changes)
+                .any(|change| change.field == field);
+            // Of a real rig the record says who stood by, whoever the plan names; and the record is not rewritten.
+            let recorded = provenance
+                .operator()
+                .filter(|_| field == "operator" && !restated);
+            changes.push(change(plan, recorded, field, text));
+        }
+        if one.kind == OneKind::Issue && stated(plan, "authorised_by").is_none() {
+            return Err("nobody authorises the report: `--authorised-by NAME`".to_owned());
+        }
+        all.push(Issue {
+            kind: if one.kind == OneKind::Issue {
+                IssueKind::First
+            } else {
+                IssueKind::Amendment
+            },
+            replaces: one.replaces.clone(),
+            date: one.date.clone(),
+            by: one.by.clone(),
+            reason: one.reason.clone(),
+            changes,
+        });
+    }
+    provenance.issues = Some(Issues {
+        report_id: file.id(&own, file.issues.len()),
+        all,
+    });
+    Ok(())
+}
+
+/// The day of an issue is one of the calendar, stands on the report as its day of issue, and is not before the end of the
+/// test and the issue before.
+fn in_order(one: &One, [issued, tested]: [Option<&str>; 2], before: usize) -> Result<(), String> {
+    let Some(date) = &one.date else {
+        let older = one.kind == OneKind::Amendment && one.reason.is_some();
+        return if older {
+            Ok(())
+        } else {
+            Err(format!("issue {} has no day", before + 1))
+        };
+    };
+    let as_stated = one
+        .particulars
+        .iter()
+        .any(|(field, text)| field == "issued" && text == date);
+    if day(date).is_none() || !as_stated {
+        return Err(format!("`{}` is not the day of issue", one_line(date)));
+    }
+    let late = |day: &str, slack: i64| days_after(date, day).is_some_and(|days| days > slack);
+    if let Some(issued) = issued.filter(|issued| late(issued, 0)) {
+        return Err(format!(
+            "a report of {date} cannot replace one that was issued on {}",
+            one_line(issued)
+        ));
+    }
+    // The record has days of UTC.
+    if let Some(tested) = tested.filter(|tested| late(tested, 1)) {
+        return Err(format!(
+            "a report cannot be issued on {date}: the test ended on {}",
+            one_line(tested)
+        ));
+    }
+    Ok(())
+}
+
+fn stated(plan: &Plan, field: &str) -> Option<String> {
+    let found = plan
+        .particulars
+        .iter()
+        .find(|(name, text)| *name == field && !text.trim().is_empty());
+    found.map(|(_, text)| text.clone())
+}
+
+fn change(plan: &mut Plan, recorded: Option<&str>, field: &'static str, text: &str) -> Change {
+    let place = |name: &str| {
+        schema::block(Kind::Plan)
+            .fields
+            .iter()
+            .position(|known| known.name == name)
+    };
+    let planned = plan.particulars.iter().position(|(name, _)| *name == field);
+    let planned = planned.map(|at| plan.particulars.remove(at).1);
+    let was = recorded.map(str::to_owned).or(planned).unwrap_or_default();
+    if !text.is_empty() {
+        let after = plan
+            .particulars
+            .iter()
+            .position(|(name, _)| place(name) > place(field));
+        plan.particulars.insert(
+            after.unwrap_or(plan.particulars.len()),
+            (field, text.to_owned()),
+        );
+    }
+    Change {
+        field,
+        was,
+        is: text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::RealRun;
+    use crate::tests::testing::empty_plan;
+
+    const TESTED: &str = "2026-11-22";
+
+    /// A run on a real rig that ended on that day.
+    fn provenance() -> Provenance {
+        let real = RealRun {
+            operator: Some("A. Engineer".to_owned()),
+            ended: Some(format!("{TESTED}T10:00:00.000Z")),
+            ..RealRun::default()
+        };
+        Provenance {
+            run_id: "run".to_owned(),
+            real: Some(real),
+            ..Provenance::default()
+        }
+    }
+
+    fn one(kind: OneKind, replaces: &str, date: &str, more: &[(&str, &str)]) -> One {
+        let own = [("issued", date), ("authorised_by", "Q. Head")];
+        let particulars = own
+            .iter()
+            .chain(more)
+            .map(|(field, text)| ((*field).to_owned(), (*text).to_owned()));
+        One {
+            kind,
+            replaces: replaces.to_owned(),
+            manifest_sha256: format!("manifest of {replaces}"),
+            date: Some(date.to_owned()),
+            by: "Q. Head".to_owned(),
+            reason: (kind == OneKind::Amendment).then(|| "a wrong name".to_owned()),
+            particulars: particulars.collect(),
+        }
+    }
+
+    fn applied(file: &IssueFile) -> Result<(Plan, Provenance), String> {
+        let (mut plan, mut provenance) = (empty_plan(), provenance());
+        apply(&mut plan, &mut provenance, file).map(|()| (plan, provenance))
+    }
+
+    /// Kind, date and particulars of an issue.
+    type Stated<'a> = (OneKind, &'a str, &'a [(&'a str, &'a str)]);
+
+    /// Issues in a chain, each made from the one before it.
+    fn chain(all: &[Stated<'_>]) -> IssueFile {
+        let mut file: Option<IssueFile> = None;
+        for (kind, date, more) in all {
+            let replaces = file
+                .as_ref()
+                .map_or("run".to_owned(), |file| file.id("run", file.issues.len()));
+            file = Some(IssueFile::after(
+                file.as_ref(),
+                one(*kind, &replaces, date, more),
+            ));
+        }
+        file.unwrap()
+    }
+
+    #[test]
+    fn only_particulars_can_be_stated_after_the_test() {
+        assert_eq!(may_be_stated("customer"), Ok("customer"));
+        assert_eq!(may_be_stated("temperature"), Ok("temperature"));
+        assert!(may_be_stated("date").unwrap_err().contains("on record"));
+        assert!(may_be_stated("decision_rule").is_err() && may_be_stated("edition").is_err());
+        assert!(
+            may_be_stated("custumer")
+                .unwrap_err()
+                .contains("`customer`")
+        );
+    }
+
+    #[test]
+    fn an_issue_states_and_an_amendment_replaces_it_and_the_record_stays_what_it_is() {
+        let file = chain(&[
+            (OneKind::Issue, "2026-11-23", &[("temperature", "21 °C")]),
+            (
+                OneKind::Amendment,
+                "2026-12-01",
+                &[("operator", "A. Enginer")],
+            ),
+            (
+                OneKind::Amendment,
+                "2026-12-01",
+                &[("operator", "A. B. Engineer")],
+            ),
+        ]);
+        let (plan, provenance) = applied(&file).unwrap();
+        let stated = |field| stated(&plan, field);
+        assert_eq!(
+            (
+                stated("temperature").as_deref(),
+                stated("issued").as_deref()
+            ),
+            (Some("21 °C"), Some("2026-12-01"))
+        );
+        assert_eq!(stated("operator").as_deref(), Some("A. B. Engineer"));
+        assert_eq!(
+            provenance.operator(),
+            Some("A. Engineer"),
+            "the record says who stood by"
+        );
+        let issues = provenance.issues.as_ref().unwrap();
+        assert_eq!(
+            issues
+                .all
+                .iter()
+                .map(|issue| issue.kind.name())
+                .collect::<Vec<_>>(),
+            ["issue", "amendment", "amendment"]
+        );
+        let was: Vec<&str> = issues.all[1..]
+            .iter()
+            .map(|issue| issue.changes[2].was.as_str())
+            .collect();
+        assert_eq!(was, ["A. Engineer", "A. Enginer"]);
+        assert!(issues.report_id.len() == 16 && provenance.report_id() == issues.report_id);
+    }
+
+    #[test]
+    fn days_must_be_in_order_and_a_report_is_issued_once() {
+        let fault = |all: &[Stated<'_>]| applied(&chain(all)).unwrap_err();
+        let issue = |date| (OneKind::Issue, date, &[][..]);
+        let amend = |date| (OneKind::Amendment, date, &[][..]);
+        assert!(fault(&[issue("2026-11-20")]).contains("the test ended on 2026-11-22"));
+        assert!(
+            applied(&chain(&[issue("2026-11-21")])).is_ok(),
+            "a laboratory's day may be the one before that of UTC"
+        );
+        assert!(
+            fault(&[issue("2026-11-24"), amend("2026-11-23")]).contains("issued on 2026-11-24")
+        );
+        assert!(
+            fault(&[issue("2026-11-24"), issue("2026-11-25")]).contains("issued on 2026-11-24")
+        );
+        assert!(fault(&[issue("2026-11-31")]).contains("is not the day of issue"));
+        assert!(
+            fault(&[(
+                OneKind::Issue,
+                "2026-11-24",
+                &[("receipt_date", "last week")]
+            )])
+            .contains("is no day")
+        );
+        let mut other = chain(&[issue("2026-11-24")]);
+        other.issues[0].date = Some("2026-11-25".to_owned());
+        assert!(
+            applied(&other)
+                .unwrap_err()
+                .contains("is not the day of issue")
+        );
+        other.issues[0].date = None;
+        assert!(applied(&other).unwrap_err().contains("has no day"));
+    }
+
+    #[test]
+    fn the_file_has_one_way_to_be_written_and_an_id_that_hangs_on_all_of_it() {
+        let file = chain(&[(OneKind::Issue, "2026-11-23", &[])]);
+        assert_eq!(IssueFile::read(file.json().as_bytes()), Ok(file.clone()));
+        assert!(IssueFile::read(file.json().trim_end().as_bytes()).is_err());
+        assert!(IssueFile::read(file.json().replace("\"by\"", "\"bye\"").as_bytes()).is_err());
+        let other = chain(&[(OneKind::Issue, "2026-11-24", &[])]);
+        assert_eq!(file.id("run", 0), "run");
+        assert!(
+            file.id("run", 1) != other.id("run", 1) && file.id("run", 1) != file.id("other", 1)
+        );
+        assert!(file.replaces("manifest of run") && !file.replaces("manifest of another"));
+    }
+
+    #[test]
+    fn what_an_older_version_amended_keeps_its_id_and_can_be_amended_again() {
+        let older = "{\n  \"schema\": \"psd.amendment/1\",\n  \"amendments\": [\n    {\n      \"replaces\": \"run\",\n      \
+            \"manifest_sha256\": \"00\",\n      \"by\": \"B. Editor\",\n      \"reason\": \"a wrong name\",\n      \
+            \"particulars\": [\n        [\n          \"customer\",\n          \"Other Ltd\"\n        ]\n      ]\n    }\n  ]\n}\n";
+        let file = IssueFile::read_older(older.as_bytes()).unwrap();
+        let id = sha256(format!("run\n{older}").as_bytes())[..16].to_owned();
+        let (plan, provenance) = applied(&file).unwrap();
+        assert_eq!(
+            (provenance.report_id(), stated(&plan, "customer").as_deref()),
+            (id.as_str(), Some("Other Ltd"))
+        );
+        let again = IssueFile::after(Some(&file), one(OneKind::Amendment, &id, "2026-12-01", &[]));
+        assert_eq!(IssueFile::read(again.json().as_bytes()), Ok(again.clone()));
+        assert!(applied(&again).is_ok());
+        assert!(
+            IssueFile::read(older.as_bytes()).is_err()
+                && IssueFile::read_older(file.json().as_bytes()).is_err()
+        );
+    }
+}

@@ -1,0 +1,212 @@
+//! Keys in minisign's format: read, made, kept out of run folders. In: paths and passwords. Out: keys. A secret key is
+//! never told, and no password is ever shown or taken from the command line.
+
+use std::fs::{File, OpenOptions};
+use std::io::{Read as _, Write as _};
+use std::os::unix::fs::{OpenOptionsExt as _, PermissionsExt as _};
+use std::path::{Path, PathBuf};
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use minisign::{KeyPair, PublicKey, SecretKey, SecretKeyBox};
+
+use crate::cli::exit::Failure;
+use crate::cli::files::loader::plain;
+use crate::cli::files::record_file::JOURNAL;
+use crate::cli::settings::Settings;
+
+/// The largest key file that is read, bytes.
+const KEY_BYTES: u64 = 4096;
+/// The longest password that minisign takes, bytes.
+const PASSWORD_BYTES: usize = 1024;
+
+/// A public key that somebody vouches for, and what it is called here.
+#[derive(Clone, Debug)]
+pub struct KnownKey {
+    pub name: String,
+    pub key: PublicKey,
+}
+
+/// A key's number as minisign shows it.
+pub fn number(keynum: &[u8]) -> String {
+    keynum
+        .iter()
+        .rev()
+        .fold(String::new(), |text, byte| text + &format!("{byte:02X}"))
+}
+
+/// Reads a public key: a file with a comment and the key, as minisign writes them.
+pub fn public(path: &Path) -> Result<KnownKey, Failure> {
+    let text = text_of(path)?;
+    let key = text
+        .lines()
+        .nth(1)
+        .and_then(|key| PublicKey::from_base64(key).ok());
+    let key = key.ok_or_else(|| {
+        Failure::file(path, "is no public key").help("name the file that ends with `.pub`")
+    })?;
+    Ok(KnownKey {
+        name: path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned(),
+        key,
+    })
+}
+
+/// Reads a secret key, with its password if it has one. The word is told where it has none.
+pub fn secret(
+    path: &Path,
+    password_file: Option<&Path>,
+    settings: Settings,
+) -> Result<(SecretKey, Protection), Failure> {
+    let failed = |error: minisign::PError| {
+        Failure::file(path, format!("is no secret key that can be used: {error}"))
+    };
+    let text = text_of(path)?;
+    let kept = SecretKeyBox::from_string(&text).map_err(failed)?;
+    let open = SecretKey::from_unencrypted_box(kept.clone())
+        .ok()
+        .or_else(|| without_checksum(&text));
+    if let Some(key) = open {
+        return Ok((key, Protection::None));
+    }
+    let password = password(password_file, "password of the key: ", settings)?;
+    SecretKey::from_box(kept, Some(password))
+        .map(|key| (key, Protection::Password))
+        .map_err(failed)
+}
+
+/// A key without password as minisign's own program writes it: with zeros for a checksum. Whether its halves belong
+/// together is seen when it signs.
+fn without_checksum(text: &str) -> Option<SecretKey> {
+    let bytes = STANDARD.decode(text.lines().nth(1)?).ok()?;
+    // Algorithms of the signature, of the password and of the checksum, two bytes each; 32 bytes of checksum at the end.
+    let (head, checksum) = (bytes.get(..6)?, bytes.last_chunk::<32>()?);
+    let is_open = head == b"Ed\0\0B2" && *checksum == [0; 32];
+    if is_open {
+        SecretKey::from_bytes(&bytes).ok()
+    } else {
+        None
+    }
+}
+
+/// How a secret key is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Protection {
+    Password,
+    /// Whoever reads the file can sign with it.
+    None,
+}
+
+/// Whether others than its owner may read a key's file.
+pub fn is_readable_by_others(path: &Path) -> bool {
+    path.metadata()
+        .is_ok_and(|metadata| metadata.is_file() && metadata.permissions().mode() & 0o077 != 0)
+}
+
+/// Makes a pair of keys: the secret one in a new file that only its owner reads, the public one beside it with `.pub`.
+pub fn make(path: &Path, password: Option<String>) -> Result<(PathBuf, PublicKey), Failure> {
+    let failed = |error: minisign::PError| Failure::file(path, error.to_string());
+    refuse_run_folder(path)?;
+    let protection = if password.is_some() {
+        "encrypted"
+    } else {
+        "unencrypted"
+    };
+    let pair = match password {
+        Some(password) => KeyPair::generate_encrypted_keypair(Some(password)),
+        None => KeyPair::generate_unencrypted_keypair(),
+    };
+    let KeyPair { pk, sk } = pair.map_err(failed)?;
+    let public_path = PathBuf::from(format!("{}.pub", path.display()));
+    let public = pk.to_box().map_err(failed)?.into_string();
+    let comment = format!("psd {protection} secret key {}", number(pk.keynum()));
+    let secret = sk.to_box(Some(&comment)).map_err(failed)?.into_string();
+    // The public one first: a secret key without it is of no use. Nor is it without the secret one.
+    new_file(&public_path, public.as_bytes(), 0o644)?;
+    new_file(path, secret.as_bytes(), 0o600)
+        .inspect_err(|_| drop(std::fs::remove_file(&public_path)))?;
+    Ok((public_path, pk))
+}
+
+/// A secret key beside the evidence it signs goes wherever the evidence goes.
+pub fn refuse_inside(key: &Path, run: &Path) -> Result<(), Failure> {
+    let place = |path: &Path| {
+        path.canonicalize()
+            .map_err(|error| Failure::file(path, plain(&error)))
+    };
+    if place(key)?.starts_with(place(run)?) {
+        return Err(
+            Failure::file(key, "a secret key must not lie in the run folder")
+                .help("keep it where only you can read it"),
+        );
+    }
+    Ok(())
+}
+
+/// The password in a file, or asked for at the terminal without being shown.
+pub fn password(file: Option<&Path>, prompt: &str, settings: Settings) -> Result<String, Failure> {
+    let password = match file {
+        Some(path) => text_of(path)?.lines().next().unwrap_or_default().to_owned(),
+        None if settings.can_ask => rpassword::prompt_password(prompt)
+            .map_err(|error| Failure::file("/dev/tty", plain(&error)))?,
+        None => {
+            return Err(Failure::command_line(
+                "the key has a password, and nobody can be asked for it",
+            )
+            .help("put it into a file and name that with `--password-file`"));
+        }
+    };
+    if password.is_empty() || password.len() > PASSWORD_BYTES {
+        return Err(Failure::command_line(format!(
+            "a password has 1 to {PASSWORD_BYTES} bytes"
+        )));
+    }
+    Ok(password)
+}
+
+/// A run folder is told by its record.
+fn refuse_run_folder(path: &Path) -> Result<(), Failure> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let folder = folder
+        .canonicalize()
+        .map_err(|error| Failure::file(folder, plain(&error)))?;
+    match folder
+        .ancestors()
+        .find(|folder| folder.join(JOURNAL).exists())
+    {
+        Some(run) => refuse_inside(&folder, run),
+        None => Ok(()),
+    }
+}
+
+fn text_of(path: &Path) -> Result<String, Failure> {
+    let failed = |error: std::io::Error| Failure::file(path, plain(&error));
+    // Also a pipe, so that another program can hand over a password.
+    let mut text = String::new();
+    File::open(path)
+        .and_then(|file| file.take(KEY_BYTES + 1).read_to_string(&mut text))
+        .map_err(failed)?;
+    if text.len() as u64 > KEY_BYTES {
+        return Err(Failure::file(path, "is no key and no password"));
+    }
+    Ok(text)
+}
+
+fn new_file(path: &Path, bytes: &[u8], mode: u32) -> Result<(), Failure> {
+    let write = || {
+        let mut file = OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .mode(mode)
+            .open(path)?;
+        file.write_all(bytes)?;
+        file.sync_all()
+    };
+    write().map_err(|error: std::io::Error| Failure::file(path, plain(&error)))
+}

@@ -1,0 +1,273 @@
+//! What a record gives when it is played back: record, verdict, every file of the results. In: the journal of a run
+//! folder, and what was stated after the test beside it. Out: the results, and what the playing back itself proves.
+
+use std::borrow::Cow;
+
+use super::check::Finding;
+use super::folder::Folder;
+use super::issues::{IssueFile, apply};
+use super::standing;
+use crate::cli::files::finish_run::made_of;
+use crate::cli::files::provenance::BUILD;
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::{JOURNAL, ReadRecord};
+use crate::plan::Plan;
+use crate::record::journal::EntryKind;
+use crate::record::{Outcome, Record};
+use crate::remote::control::DrivenStep;
+use crate::report::{Issue, IssueKind, Listed, Nowhere, OutputError, Provenance, Shelf};
+use crate::run::replay;
+use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
+use crate::verdict::{self, Assessment};
+
+/// A run, done again from its record alone.
+pub struct PlayedBack {
+    pub plan: Plan,
+    pub provenance: Provenance,
+    pub record: Record,
+    pub assessment: Assessment,
+    pub mismatch: Option<Mismatch>,
+    /// Of a rig that a client drove.
+    pub steps: Option<Vec<DrivenStep>>,
+}
+
+impl PlayedBack {
+    /// Plays a record back, with what was stated of its report after the test.
+    pub fn of(read: ReadRecord, issues: Option<&IssueFile>) -> Result<Self, String> {
+        let ReadRecord {
+            mut plan,
+            mut provenance,
+            played,
+            recovered,
+        } = read;
+        // What is played is done with line by line: nobody else holds them.
+        drop(recovered);
+        let Replayed {
+            mut record,
+            mismatch,
+            steps,
+        } = replay::replay(&plan, played);
+        if let Outcome::Faulted { reason }
+        | Outcome::Aborted { reason }
+        | Outcome::NotReleased { reason } = &mut record.outcome
+            && reason.contains(CUT_OFF)
+        {
+            *reason = format!("INCOMPLETE: {reason}");
+        }
+        let assessment = verdict::assess(&plan, &record);
+        if let Some(file) = issues {
+            apply(&mut plan, &mut provenance, file)?;
+        }
+        Ok(Self {
+            plan,
+            provenance,
+            record,
+            assessment,
+            mismatch,
+            steps,
+        })
+    }
+
+    /// Puts every file of the results on a shelf; not the manifest.
+    pub fn results(&self, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
+        made_of(
+            &self.plan,
+            &self.record,
+            &self.assessment,
+            &self.provenance,
+            self.steps.as_deref(),
+            shelf,
+        )
+    }
+}
+
+/// What a record proves, and what the folder must hold.
+#[derive(Clone, Debug)]
+pub struct Rebuilt {
+    /// Of the record itself, and of its targets.
+    pub findings: Vec<Finding>,
+    /// None where the record gives nothing.
+    pub report: Option<Report>,
+}
+
+/// What a report says of itself, and its files.
+#[derive(Clone, Debug)]
+pub struct Report {
+    pub run_id: String,
+    pub id: String,
+    /// Who signs it, as the plan says.
+    pub roles: Vec<String>,
+    /// Path and SHA-256 of every file of the results, in hex; not the manifest.
+    pub files: Vec<Listed>,
+    /// Which program made the run, where it was another.
+    pub other_build: Option<String>,
+    /// The record came to its end.
+    pub ended: bool,
+}
+
+impl Rebuilt {
+    /// Plays the record of a folder back.
+    pub fn of(folder: &Folder) -> Self {
+        Self::read(folder.bytes(JOURNAL).map(Cow::Borrowed), folder)
+    }
+
+    /// The same, and the folder lets go of the bytes of its record: nobody holds them beside what they say.
+    pub fn taking(folder: &mut Folder) -> Self {
+        let bytes = folder.take(JOURNAL);
+        Self::read(bytes.map(Cow::Owned), folder)
+    }
+
+    fn read(journal: Option<Cow<'_, [u8]>>, folder: &Folder) -> Self {
+        let nothing = |part, fault: String| Self {
+            findings: vec![Finding::wrong(part, fault)],
+            report: None,
+        };
+        let Some(bytes) = journal else {
+            return nothing("record", format!("`{JOURNAL}` is missing"));
+        };
+        let read = match record_file::from_bytes(JOURNAL.as_ref(), &bytes) {
+            Ok(read) => read,
+            Err(failure) => return nothing("record", failure.to_string()),
+        };
+        drop(bytes);
+        match IssueFile::of(folder) {
+            Ok(issues) => Self::played(read, issues.as_ref()),
+            Err(fault) => nothing("issue", fault),
+        }
+    }
+
+    fn played(read: ReadRecord, issues: Option<&IssueFile>) -> Self {
+        let count = |kind| {
+            read.recovered
+                .lines
+                .iter()
+                .filter(|line| line.kind == kind)
+                .count()
+        };
+        let (targets, steps) = (count(EntryKind::Intent), count(EntryKind::Step));
+        let torn = read.recovered.torn.as_ref();
+        let torn = torn.map_or(String::new(), |torn| {
+            format!(", {} bytes torn at its end", torn.end - torn.start)
+        });
+        let (records, head) = (read.recovered.lines.len(), read.recovered.head());
+        let remarks = standing::remarks(&read.recovered, &read.played.header);
+        let mut findings = vec![match standing::stands(&read) {
+            Ok(()) => Finding::sound(
+                "record",
+                format!(
+                    "run {}, {records} records{torn}{remarks}, head {head}",
+                    read.provenance.run_id
+                ),
+            ),
+            Err(fault) => Finding::wrong("record", fault),
+        }];
+        let ended = read.played.ended;
+        let header = &read.played.header;
+        let other_build =
+            (header.build != BUILD).then(|| format!("psd {} build {}", header.psd, header.build));
+        let played = match PlayedBack::of(read, issues) {
+            Ok(played) => played,
+            Err(fault) => {
+                return Self {
+                    findings: vec![Finding::wrong("issue", fault)],
+                    report: None,
+                };
+            }
+        };
+        let built = if other_build.is_some() {
+            " by another build of psd"
+        } else {
+            ""
+        };
+        let again = || format!("all {targets} came out again bit for bit");
+        findings.push(match (&played.mismatch, &played.record.outcome) {
+            (Some(mismatch), _) => Finding::wrong("targets", mismatch.to_string()),
+            (None, Outcome::Completed) if ended => {
+                Finding::sound("targets", format!("{}, and {steps} steps{built}", again()))
+            }
+            (None, Outcome::Completed) => Finding::wrong(
+                "targets",
+                "the run came to its end, and the record has none".to_owned(),
+            ),
+            (None, _) if ended => Finding::wrong(
+                "targets",
+                "the record has an end that the run does not come to".to_owned(),
+            ),
+            (
+                None,
+                Outcome::Aborted { reason }
+                | Outcome::NotReleased { reason }
+                | Outcome::Blocked { reason }
+                | Outcome::Faulted { reason },
+            ) => {
+                let told = if reason.contains("INCOMPLETE") {
+                    reason.clone()
+                } else {
+                    format!("INCOMPLETE: {reason}")
+                };
+                Finding::sound("targets", format!("{}; {told}{built}", again()))
+            }
+        });
+        if played.mismatch.is_some() {
+            return Self {
+                findings,
+                report: None,
+            };
+        }
+        let issues = played.provenance.issues.as_ref();
+        findings.extend(issues.and_then(|issues| {
+            Some(Finding::sound(
+                "issue",
+                told(&issues.report_id, issues.all.last()?),
+            ))
+        }));
+        Self::with_results(findings, &played, other_build, ended)
+    }
+
+    fn with_results(
+        mut findings: Vec<Finding>,
+        played: &PlayedBack,
+        other_build: Option<String>,
+        ended: bool,
+    ) -> Self {
+        let files = match played.results(&mut Nowhere) {
+            Ok(files) => files,
+            Err(error) => {
+                findings.push(Finding::wrong("results", error.to_string()));
+                return Self {
+                    findings,
+                    report: None,
+                };
+            }
+        };
+        let report = Report {
+            run_id: played.provenance.run_id.clone(),
+            id: played.provenance.report_id().to_owned(),
+            roles: played.plan.report.sign.clone(),
+            files,
+            other_build,
+            ended,
+        };
+        Self {
+            findings,
+            report: Some(report),
+        }
+    }
+}
+
+/// Which report this is, and what it was made from.
+fn told(report_id: &str, last: &Issue) -> String {
+    let (by, replaces) = (&last.by, &last.replaces);
+    let date = last
+        .date
+        .as_ref()
+        .map_or_else(String::new, |date| format!(" on {date}"));
+    match last.kind {
+        IssueKind::First => {
+            format!("report {report_id}, issued{date} by {by} from report {replaces}")
+        }
+        IssueKind::Amendment => {
+            format!("report {report_id} amends report {replaces},{date} by {by}")
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Sidecars: what others lay beside the files of a run, and no manifest lists. Time-stamp tokens (RFC 3161), OpenTimestamps
+//! proofs, and the report in a sealed PDF. In: a folder. Out: findings, one a sidecar. A sidecar says something of a file that
+//! lies here, takes the place of none, and is wrong where it is not of that file as it is.
+
+use sha2::{Digest as _, Sha384, Sha512};
+
+use super::check::Finding;
+use super::folder::Folder;
+use crate::text::digest::unhex;
+
+/// The report on paper, which may lie here a second time with a seal at its end.
+pub const PAPER: &str = "certificate.pdf";
+/// How the file of a proof of OpenTimestamps begins.
+const OPEN_TIMESTAMPS: &[u8] =
+    b"\x00OpenTimestamps\x00\x00Proof\x00\xbf\x89\xe2\xe8\x84\xe8\x92\x94";
+
+/// What a sidecar is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// `FILE.tsr`, `FILE.tst`
+    Token,
+    /// `FILE.ots`
+    Proof,
+    /// `certificate….pdf`
+    SealedPaper,
+}
+
+/// Whether a file may be a sidecar by its name: its bytes are then read.
+pub fn is_name(name: &str) -> bool {
+    kind(name).is_some()
+}
+
+/// Whether a file is a sidecar of another one that lies here.
+pub fn is_one(folder: &Folder, name: &str) -> bool {
+    kind(name).is_some_and(|(_, of)| folder.files.contains_key(of))
+}
+
+/// What a sidecar of this name is, and of which file.
+fn kind(name: &str) -> Option<(Kind, &str)> {
+    let kinds = [
+        (".tsr", Kind::Token),
+        (".tst", Kind::Token),
+        (".ots", Kind::Proof),
+    ];
+    let of = kinds
+        .into_iter()
+        .find_map(|(ending, kind)| Some((kind, name.strip_suffix(ending)?)));
+    let sealed = || {
+        let own = name
+            .strip_prefix("certificate")
+            .and_then(|rest| rest.strip_suffix(".pdf"));
+        own.is_some_and(|own| !own.is_empty() && !own.contains('/'))
+    };
+    of.or_else(|| sealed().then_some((Kind::SealedPaper, PAPER)))
+}
+
+/// What one sidecar says of its file.
+pub fn examine(folder: &Folder, name: &str) -> Option<Finding> {
+    let (kind, of) = kind(name)?;
+    let bytes = folder.bytes(name).unwrap_or_default();
+    let told = match kind {
+        Kind::Token if !is_der(bytes) => Err("is no time-stamp token".to_owned()),
+        Kind::Proof if !bytes.starts_with(OPEN_TIMESTAMPS) => {
+            Err("is no proof of OpenTimestamps".to_owned())
+        }
+        Kind::Token | Kind::Proof if !names(folder, bytes, of) => {
+            Err(format!("does not name `{of}` as it is here"))
+        }
+        Kind::Token => Ok(format!(
+            "is a time-stamp token that names `{of}`; by whom and when, `openssl ts -verify` proves"
+        )),
+        Kind::Proof => Ok(format!(
+            "is a proof that names `{of}`; since when, `ots verify` proves"
+        )),
+        Kind::SealedPaper => {
+            let own = folder
+                .bytes(of)
+                .filter(|own| bytes.len() > own.len() && bytes.starts_with(own));
+            own.map(|_| format!("is `{of}` with more after its end; by whom and when, a reader of sealed PDFs proves"))
+                .ok_or_else(|| format!("does not begin with `{of}`, byte for byte"))
+        }
+    };
+    Some(match told {
+        Ok(told) => Finding::sound("sidecar", format!("`{name}` {told}")),
+        Err(fault) => Finding::wrong("sidecar", format!("`{name}` {fault}")),
+    })
+}
+
+/// Whether a digest of a file stands in the bytes; of a file that is not held in memory, its SHA-256 alone.
+fn names(folder: &Folder, bytes: &[u8], of: &str) -> bool {
+    let Some(held) = folder.files.get(of) else {
+        return false;
+    };
+    let contains = |digest: &[u8]| {
+        !digest.is_empty() && bytes.windows(digest.len()).any(|window| window == digest)
+    };
+    let longer = |own: &Vec<u8>| contains(&Sha384::digest(own)) || contains(&Sha512::digest(own));
+    contains(&unhex(&held.digest).unwrap_or_default()) || held.bytes.as_ref().is_some_and(longer)
+}
+
+/// Whether the bytes are one DER sequence and nothing else.
+fn is_der(bytes: &[u8]) -> bool {
+    let [0x30, first, rest @ ..] = bytes else {
+        return false;
+    };
+    if *first < 0x80 {
+        return rest.len() == usize::from(*first);
+    }
+    let count = usize::from(*first & 0x7f);
+    let Some((length, content)) = rest
+        .split_at_checked(count)
+        .filter(|_| (1..=4).contains(&count))
+    else {
+        return false;
+    };
+    length
+        .iter()
+        .fold(0, |length, byte| length << 8 | usize::from(*byte))
+        == content.len()
+}

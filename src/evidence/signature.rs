@@ -1,0 +1,360 @@
+//! Signatures over the manifest of a run folder, in minisign's format: Ed25519 over the BLAKE2b digest of the file, with a
+//! trusted comment that says of which run, in which role and by whom. In: bytes and keys. Out: a signature, or what is
+//! wrong with one. `minisign -Vm manifest.sha256 -p KEY.pub` proves the same.
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use minisign::{PublicKey, SecretKey, SignatureBox};
+
+use super::check::Finding;
+use super::folder::{Folder, MANIFEST};
+use super::keys::{self, KnownKey};
+use super::rebuilt::Report;
+use crate::text::diagnostic::excerpt::one_line;
+
+const SUFFIX: &str = ".minisig";
+
+/// The line that no signature covers is one of these: so a changed one is seen too.
+const UNTRUSTED: &[&str] = &[
+    "signature by psd over manifest.sha256",
+    "signature from minisign secret key",
+    "signature from rsign secret key",
+];
+
+/// Characters of a role or a name that are told.
+const TOLD: usize = 200;
+
+/// What a signature says: its trusted comment, fields with tabs between.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Statement {
+    pub run: String,
+    pub report: String,
+    pub role: Option<String>,
+    pub name: Option<String>,
+    /// The public key, so that the signature can be held against the key that it names itself.
+    pub key: Option<String>,
+}
+
+impl Statement {
+    fn comment(&self) -> String {
+        let cut = |text: &String| one_line(text).chars().take(TOLD).collect::<String>();
+        let parts = [
+            ("run", Some(self.run.clone())),
+            (
+                "report",
+                Some(self.report.clone()).filter(|report| *report != self.run),
+            ),
+            ("role", self.role.as_ref().map(cut)),
+            ("name", self.name.as_ref().map(cut)),
+            ("key", self.key.clone()),
+        ];
+        let parts = parts
+            .into_iter()
+            .filter_map(|(word, text)| text.map(|text| format!("{word}:{text}")));
+        parts.collect::<Vec<_>>().join("\t")
+    }
+
+    /// None where psd did not write it.
+    fn read(comment: &str) -> Option<Self> {
+        let fields: BTreeMap<&str, &str> = comment
+            .split('\t')
+            .filter_map(|part| part.split_once(':'))
+            .collect();
+        let of = |word: &str| fields.get(word).map(|text| (*text).to_owned());
+        let run = of("run")?;
+        let report = of("report").unwrap_or_else(|| run.clone());
+        let read = Self {
+            run,
+            report,
+            role: of("role"),
+            name: of("name"),
+            key: of("key"),
+        };
+        (read.comment() == comment).then_some(read)
+    }
+}
+
+/// Whether a file of this name is a signature over the manifest.
+pub fn is_name(name: &str) -> bool {
+    let Some(role) = name
+        .strip_prefix(MANIFEST)
+        .and_then(|rest| rest.strip_suffix(SUFFIX))
+    else {
+        return false;
+    };
+    let is_plain = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-';
+    role.is_empty()
+        || role
+            .strip_prefix('.')
+            .is_some_and(|role| !role.is_empty() && role.bytes().all(is_plain))
+}
+
+/// The name of a signature's file: of no role `manifest.sha256.minisig`, else with the role's letters and digits in it.
+/// Roles that read the same so are told apart by their place in the plan.
+pub fn file_name(role: Option<&str>, roles: &[String]) -> String {
+    let Some(role) = role else {
+        return format!("{MANIFEST}{SUFFIX}");
+    };
+    let own = plain(role);
+    let place = roles
+        .iter()
+        .position(|other| one_line(other) == one_line(role));
+    let twin = roles
+        .iter()
+        .enumerate()
+        .any(|(at, other)| Some(at) != place && plain(other) == own);
+    let middle = match place {
+        _ if own.is_empty() => format!("role-{}", place.unwrap_or(0) + 1),
+        Some(place) if twin => format!("{own}-{}", place + 1),
+        _ => own,
+    };
+    format!("{MANIFEST}.{middle}{SUFFIX}")
+}
+
+/// `Test engineer` → `test-engineer`, of at most 60 letters.
+fn plain(role: &str) -> String {
+    let letters = role.chars().map(|c| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_lowercase()
+        } else {
+            '-'
+        }
+    });
+    let parts: String = letters.take(60).collect();
+    parts
+        .split('-')
+        .filter(|part| !part.is_empty())
+        .collect::<Vec<_>>()
+        .join("-")
+}
+
+/// Signs a manifest.
+pub fn sign(
+    manifest: &[u8],
+    key: &SecretKey,
+    statement: &Statement,
+) -> Result<String, minisign::PError> {
+    let public = PublicKey::from_secret_key(key)?;
+    let statement = Statement {
+        key: Some(public.to_base64()),
+        ..statement.clone()
+    };
+    let signed = minisign::sign(
+        Some(&public),
+        key,
+        Cursor::new(manifest),
+        Some(&statement.comment()),
+        Some(UNTRUSTED[0]),
+    )?;
+    Ok(signed.into_string())
+}
+
+/// Every signature of a folder, and who of those that the plan names has not signed. With keys, each of them must have signed, in
+/// every role that the plan names, and nobody else.
+pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut signed: Vec<Vec<u8>> = Vec::new();
+    let mut places: Vec<&str> = Vec::new();
+    for (name, bytes) in folder.signatures() {
+        findings.push(match one(folder, name, bytes, report, keys) {
+            Ok((told, keynum)) => {
+                signed.push(keynum);
+                places.push(name);
+                Finding::sound("signature", told)
+            }
+            Err(fault) => Finding::wrong("signature", format!("`{name}`: {fault}")),
+        });
+    }
+    for key in keys
+        .iter()
+        .filter(|key| !signed.iter().any(|signed| signed == key.key.keynum()))
+    {
+        findings.push(Finding::wrong(
+            "signature",
+            format!(
+                "none by key {} of `{}`",
+                keys::number(key.key.keynum()),
+                key.name
+            ),
+        ));
+    }
+    // Where nobody has signed, that alone is told.
+    let roles = report
+        .filter(|_| !signed.is_empty())
+        .map_or(&[][..], |report| &report.roles);
+    for role in roles
+        .iter()
+        .filter(|role| !places.contains(&file_name(Some(role), roles).as_str()))
+    {
+        let told = format!("{} has not signed", one_line(role));
+        findings.push(if keys.is_empty() {
+            Finding::sound("signature", told)
+        } else {
+            Finding::wrong("signature", told)
+        });
+    }
+    if findings.is_empty() {
+        findings.push(Finding::sound(
+            "signature",
+            "unsigned: nobody vouches for this folder",
+        ));
+    }
+    findings
+}
+
+/// What one signature says, and the number of its key.
+fn one(
+    folder: &Folder,
+    name: &str,
+    bytes: &[u8],
+    report: Option<&Report>,
+    keys: &[KnownKey],
+) -> Result<(String, Vec<u8>), String> {
+    let signature = strict(bytes)?;
+    let comment = signature
+        .trusted_comment()
+        .map_err(|error| error.to_string())?;
+    let statement = Statement::read(&comment);
+    let is_ours = signature
+        .untrusted_comment()
+        .is_ok_and(|untrusted| untrusted == UNTRUSTED[0]);
+    if is_ours
+        && statement
+            .as_ref()
+            .is_none_or(|statement| statement.key.is_none())
+    {
+        return Err("its comment is none that psd writes".to_owned());
+    }
+    let number = keys::number(signature.keynum());
+    let known = keys
+        .iter()
+        .find(|known| known.key.keynum() == signature.keynum());
+    if known.is_none() && !keys.is_empty() {
+        return Err(format!("by key {number}, which is none of those named"));
+    }
+    let named = statement.as_ref().and_then(|said| said.key.as_ref());
+    let named = named
+        .map(|key| PublicKey::from_base64(key).map_err(|_| "names no key".to_owned()))
+        .transpose()?;
+    let manifest = folder
+        .bytes(MANIFEST)
+        .ok_or("there is no manifest that it could be of")?;
+    let key = known.map(|known| &known.key).or(named.as_ref());
+    if let Some(key) = key {
+        minisign::verify(key, &signature, Cursor::new(manifest), true, false, false)
+            .map_err(|_| format!("it is not of this manifest, or not by key {number}"))?;
+    }
+    if let Some(statement) = &statement {
+        says_so(statement, name, report)?;
+    }
+    let who = statement.map_or_else(
+        || one_line(&comment),
+        |said| {
+            [said.name, said.role]
+                .map(Option::unwrap_or_default)
+                .join(", ")
+        },
+    );
+    let who = who.trim_matches([',', ' ']);
+    let who = if who.is_empty() {
+        String::new()
+    } else {
+        format!(" by {who}")
+    };
+    let told = match (known, key) {
+        (Some(known), _) => format!("good{who}, key {number} of `{}`", known.name),
+        (None, Some(_)) => {
+            format!("good{who}, by key {number}; whose key that is, only `--key` proves")
+        }
+        (None, None) => format!("not checked{who}, key {number}: name the key with `--key`"),
+    };
+    Ok((told, signature.keynum().to_vec()))
+}
+
+/// What it says must be true of this folder, and of the name of its own file.
+fn says_so(statement: &Statement, name: &str, report: Option<&Report>) -> Result<(), String> {
+    let Some(report) = report else { return Ok(()) };
+    if (&statement.run, &statement.report) != (&report.run_id, &report.id) {
+        return Err(format!("it is of report {}", one_line(&statement.report)));
+    }
+    if file_name(statement.role.as_deref(), &report.roles) != name {
+        return Err("it is in another's place".to_owned());
+    }
+    Ok(())
+}
+
+/// A signature that is written in the one way it can be. The parser of the library takes more.
+fn strict(bytes: &[u8]) -> Result<SignatureBox, String> {
+    let shape = || -> Option<SignatureBox> {
+        let text = str::from_utf8(bytes).ok()?;
+        let lines: Vec<&str> = text.split('\n').collect();
+        let [untrusted, signature, _, global, ""] = lines.as_slice() else {
+            return None;
+        };
+        let length = |text: &str| STANDARD.decode(text).map_or(0, |bytes| bytes.len());
+        let known = UNTRUSTED
+            .iter()
+            .any(|known| untrusted.strip_prefix("untrusted comment: ") == Some(*known));
+        // Algorithm, key number, signature; signature of signature and comment.
+        if !known || length(signature) != 2 + 8 + 64 || length(global) != 64 {
+            return None;
+        }
+        let read = SignatureBox::from_string(text).ok()?;
+        (read.is_prehashed() && read.to_string() == text).then_some(read)
+    };
+    shape().ok_or_else(|| "it is none as psd or minisign writes them".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_of_a_role_has_a_name_that_every_system_takes() {
+        let roles: Vec<String> = ["Test engineer", "../../CON", "A b", "a-B", "é", "質"]
+            .map(str::to_owned)
+            .to_vec();
+        let names: Vec<String> = roles
+            .iter()
+            .map(|role| file_name(Some(role), &roles))
+            .collect();
+        let middles = ["test-engineer", "con", "a-b-3", "a-b-4", "role-5", "role-6"];
+        assert_eq!(
+            names,
+            middles.map(|middle| format!("manifest.sha256.{middle}.minisig"))
+        );
+        assert!(names.iter().all(|name| is_name(name)) && is_name(&file_name(None, &roles)));
+        for other in [
+            "manifest.sha256",
+            "manifest.sha256.A.minisig",
+            "manifest.sha256..minisig",
+            "x/manifest.sha256.minisig",
+        ] {
+            assert!(!is_name(other), "{other}");
+        }
+    }
+
+    #[test]
+    fn a_statement_reads_back_and_nothing_in_it_makes_another_field() {
+        let statement = Statement {
+            run: "0123456789abcdef".to_owned(),
+            report: "0123456789abcdef".to_owned(),
+            role: Some("Quality\tkey:x\n\u{202e}".to_owned()),
+            name: None,
+            key: Some("RWQ".to_owned()),
+        };
+        let read = Statement::read(&statement.comment()).unwrap();
+        assert_eq!(
+            read.role.as_deref(),
+            Some("Quality\\u{9}key:x\\u{a}\\u{202e}")
+        );
+        assert_eq!((read.name, read.key.as_deref()), (None, Some("RWQ")));
+        assert_eq!(
+            Statement::read("timestamp:1\tfile:manifest.sha256\thashed"),
+            None
+        );
+    }
+}

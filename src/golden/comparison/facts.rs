@@ -1,0 +1,106 @@
+//! What is not the same about the runs: program, plan, parameters, rig, requirements.
+
+use serde_json::Value;
+use similar::{ChangeTag, TextDiff};
+
+use super::{Side, text};
+
+/// Lines of a plan shown that differ, at most.
+const LINES: usize = 40;
+
+/// Verdicts of every requirement in each run.
+pub(super) fn requirements(sides: &[Side]) -> Vec<(String, Vec<Option<String>>)> {
+    let mut found: Vec<(String, Vec<Option<String>>)> = Vec::new();
+    for (place, side) in sides.iter().enumerate() {
+        for requirement in side.summary["requirements"]
+            .as_array()
+            .into_iter()
+            .flatten()
+        {
+            let name = text(&requirement["name"]);
+            let known = found.iter().position(|(known, _)| *known == name);
+            let index = known.unwrap_or_else(|| {
+                found.push((name, vec![None; sides.len()]));
+                found.len() - 1
+            });
+            found[index].1[place] = Some(text(&requirement["verdict"]));
+        }
+    }
+    found
+}
+
+/// What differs: its name, and its text in each run.
+pub(super) fn facts(sides: &[Side]) -> Vec<(String, Vec<String>)> {
+    let mut names: Vec<Vec<String>> = ["psd", "date", "standing"]
+        .map(|name| vec![name.to_owned()])
+        .to_vec();
+    for block in ["plan", "rig", "parameters"] {
+        for side in sides {
+            for key in side.summary[block]
+                .as_object()
+                .into_iter()
+                .flatten()
+                .map(|(key, _)| key.clone())
+            {
+                let name = vec![block.to_owned(), key];
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+        }
+    }
+    let of = |side: &Side, path: &[String]| {
+        let value = path
+            .iter()
+            .fold(&side.summary, |value, key| &value[key.as_str()]);
+        quantity(value).unwrap_or_else(|| text(value))
+    };
+    let told = names.into_iter().map(|path| {
+        (
+            path.join("."),
+            sides.iter().map(|side| of(side, &path)).collect::<Vec<_>>(),
+        )
+    });
+    told.filter(|(_, texts)| texts.windows(2).any(|pair| pair[0] != pair[1]))
+        .collect()
+}
+
+/// `1.5 m/s` of a parameter.
+fn quantity(value: &Value) -> Option<String> {
+    let unit = value.get("unit")?.as_str()?;
+    Some(
+        format!("{} {unit}", text(&value["value"]))
+            .trim_end_matches(" 1")
+            .to_owned(),
+    )
+}
+
+/// Lines of the plans that differ, each run against the first.
+pub(super) fn plans(sides: &[Side]) -> Vec<(String, Vec<String>)> {
+    let Some((first, others)) = sides.split_first() else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    for side in others {
+        let (Some(was), Some(is)) = (&first.plan, &side.plan) else {
+            continue;
+        };
+        let diff = TextDiff::from_lines(was, is);
+        let changed = diff
+            .iter_all_changes()
+            .filter(|change| change.tag() != ChangeTag::Equal);
+        let line = |change: similar::Change<&str>| {
+            format!("{}{}", change.tag(), change.value().trim_end())
+        };
+        let mut lines: Vec<String> = changed.map(line).collect();
+        if lines.len() > LINES {
+            let more = lines.len() - LINES;
+            lines.truncate(LINES);
+            lines.push(format!("and {more} lines more"));
+        }
+        if !lines.is_empty() {
+            found.push((side.name.clone(), lines));
+        }
+    }
+    found
+}

@@ -1,0 +1,230 @@
+//! `golden { … }`: how near a rerun must come to the blessed results. Its tolerances are fixed before the run; a `%` is
+//! of the size of the number, as in `require … within`.
+
+use crate::language::check::checker::{Checker, Place, Reads};
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::messages::{golden as fault, names};
+use crate::language::check::scope::Meaning;
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::formula::{Part, ProcedureId};
+use crate::plan::{Golden, NearColumn, NearResult, Tolerance};
+use crate::procedures;
+use crate::schema::{Column, Kind};
+use crate::text::source::Span;
+use crate::units::Dimension;
+
+/// Above this nothing much is held: a tenth.
+const WIDE: f64 = 0.1;
+
+const CONSTANT: Place = Place {
+    entry: None,
+    reads: Reads::Nothing("a tolerance"),
+    critical: false,
+};
+const RESULTS: Place = Place {
+    entry: None,
+    reads: Reads::All,
+    critical: false,
+};
+
+pub fn golden(checker: &mut Checker) -> Option<Golden> {
+    let Some(block) = checker
+        .scope
+        .of_kind(Kind::Golden)
+        .map(|(index, _)| index)
+        .next()
+    else {
+        return Some(Golden::default());
+    };
+    let tolerance = checker.constant(block, "tolerance");
+    if let (Some(tolerance), Some((_, entry))) = (tolerance, checker.given(block, "tolerance"))
+        && tolerance > WIDE
+    {
+        checker
+            .faults
+            .push(fault::wide(tolerance, entry.value.span));
+    }
+    let mut said = Vec::new();
+    let results = each(checker, block, "results", |checker, chosen| {
+        near_result(checker, chosen, &mut said)
+    });
+    let mut said = Vec::new();
+    let columns = each(checker, block, "columns", |checker, chosen| {
+        near_column(checker, chosen, &mut said)
+    });
+    Some(Golden {
+        tolerance: tolerance?,
+        results: results?,
+        columns: columns?,
+    })
+}
+
+/// Every entry of a list, so that all that is wrong is said; none where the list is left out.
+fn each<'a, T>(
+    checker: &mut Checker<'a>,
+    block: usize,
+    field: &str,
+    mut read: impl FnMut(&mut Checker<'a>, &Chosen<'a>) -> Option<T>,
+) -> Option<Vec<T>> {
+    if checker.given(block, field).is_none() {
+        return Some(Vec::new());
+    }
+    let chosen = checker.choices(block, field)?;
+    let read: Vec<Option<T>> = chosen.iter().map(|chosen| read(checker, chosen)).collect();
+    read.into_iter().collect()
+}
+
+type Said<T> = Vec<(T, Span)>;
+
+/// `near(hit.stop_time, 1 us)`
+fn near_result<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    said: &mut Said<(ProcedureId, &'static str)>,
+) -> Option<NearResult> {
+    let of = chosen.find("result")?.1?;
+    let typed = checker.value(of, RESULTS)?;
+    let Some(reference) = typed
+        .formula
+        .as_result()
+        .filter(|reference| reference.part == Part::Value)
+    else {
+        return checker.fail(fault::result_wanted(of.span, checker.text(of.span)));
+    };
+    once(
+        checker,
+        said,
+        (reference.procedure, reference.name),
+        of.span,
+    )?;
+    let tolerance = tolerance(checker, chosen, typed.dimension)?;
+    Some(NearResult {
+        procedure: reference.procedure,
+        name: reference.name,
+        dimension: typed.dimension,
+        tolerance,
+    })
+}
+
+/// `near(hit.restoring_force_n, 0.1 N)`, `near(wall_time_s, 1 ms)`
+fn near_column<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    said: &mut Said<(Option<ProcedureId>, &'static str)>,
+) -> Option<NearColumn> {
+    let of = chosen.find("column")?.1?;
+    let (procedure, column) = column(checker, of)?;
+    once(checker, said, (procedure, column.name), of.span)?;
+    let tolerance = tolerance(checker, chosen, column.dimension)?;
+    Some(NearColumn {
+        procedure,
+        name: column.name,
+        dimension: column.dimension,
+        tolerance,
+    })
+}
+
+/// The column that is named, of one procedure or of all.
+fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Column)> {
+    let (procedure, kinds, name, span) = match &of.kind {
+        ExprKind::Name(name) => {
+            let kinds: Vec<Kind> = checker
+                .scope
+                .procedures()
+                .map(|(_, block)| block.kind.kind)
+                .collect();
+            (None, kinds, name, of.span)
+        }
+        ExprKind::Field { base, name } => {
+            let ExprKind::Name(owner) = &base.kind else {
+                return checker.fail(fault::column_wanted(of.span, checker.text(of.span)));
+            };
+            let block = match checker.scope.meaning(owner) {
+                Some(Meaning::Poisoned) => return None,
+                Some(Meaning::Block(block)) if checker.scope.blocks[block].procedure.is_some() => {
+                    block
+                }
+                None if checker.may_be_lost(owner)
+                    || checker.scope.nameless().any(|kind| kind.procedure) =>
+                {
+                    return None;
+                }
+                _ => {
+                    let known: Vec<&str> = checker
+                        .scope
+                        .procedures()
+                        .filter_map(|(_, block)| block.name)
+                        .map(|n| &*n.node)
+                        .collect();
+                    return checker.fail(names::unknown_procedure(owner, base.span, &known));
+                }
+            };
+            let declared = &checker.scope.blocks[block];
+            (
+                declared.procedure,
+                vec![declared.kind.kind],
+                &name.node,
+                name.span,
+            )
+        }
+        ExprKind::Faulty => return None,
+        _ => return checker.fail(fault::column_wanted(of.span, checker.text(of.span))),
+    };
+    let known: Vec<Column> = kinds
+        .into_iter()
+        .flat_map(procedures::columns)
+        .copied()
+        .collect();
+    match known.iter().find(|column| column.name == name) {
+        Some(column) => Some((procedure, *column)),
+        None => checker.fail(fault::unknown_column(
+            name,
+            span,
+            known.iter().map(|column| column.name),
+        )),
+    }
+}
+
+/// A name has one tolerance.
+fn once<T: PartialEq>(
+    checker: &mut Checker,
+    said: &mut Said<T>,
+    name: T,
+    span: Span,
+) -> Option<()> {
+    if let Some((_, first)) = said.iter().find(|(before, _)| *before == name) {
+        let fault = fault::near_twice(checker.text(span), span, *first);
+        return checker.fail(fault);
+    }
+    said.push((name, span));
+    Some(())
+}
+
+/// `1 us` is absolute, `0.1 %` of the size of the number.
+fn tolerance<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    dimension: Dimension,
+) -> Option<Tolerance> {
+    let written = chosen.find("within")?.1?;
+    let typed = checker.single(written, CONSTANT)?;
+    let relative = typed.percent
+        || (typed.dimension == Dimension::NUMBER && dimension != Dimension::NUMBER && !typed.bare);
+    let typed = if relative {
+        typed
+    } else {
+        checker.expect(typed, dimension, "within", written)?
+    };
+    let value = typed.constant()?;
+    if value < 0.0 {
+        return checker.fail(fault::negative(written.span, checker.text(written.span)));
+    }
+    if relative && value > WIDE {
+        checker.faults.push(fault::wide(value, written.span));
+    }
+    Some(if relative {
+        Tolerance::Relative(value)
+    } else {
+        Tolerance::Absolute(value)
+    })
+}

@@ -1,0 +1,318 @@
+//! `limits`: ranges and bounds, the intersection of the plan's and the rig's, and targets known before the run.
+
+use crate::language::check::checker::{Checker, Place, Typed};
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::messages::{types, values, whole};
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::formula::Formula;
+use crate::plan::{Interval, Limits};
+use crate::schema::{Field, FieldType, Kind};
+use crate::text::source::Span;
+use crate::units::Dimension;
+
+/// The limits of a run, and where the bound on each quantity was written.
+pub struct CheckedLimits {
+    pub limits: Limits,
+    pub displacement_at: Option<Span>,
+    pub force_at: Option<Span>,
+    pub speed_at: Option<Span>,
+}
+
+impl<'a> Checker<'a> {
+    /// `a .. b`, known before the run, with its dimension.
+    pub fn interval(&mut self, written: &'a Expr, place: Place) -> Option<(Interval, Dimension)> {
+        if !matches!(written.kind, ExprKind::Range { .. }) {
+            return match written.kind {
+                ExprKind::Faulty => None,
+                _ => self.fail(types::range_wanted(written.span, self.text(written.span))),
+            };
+        }
+        let parts = self.range_parts(written, None, place)?;
+        if let Some(step) = &parts.step {
+            return self.fail(values::step_in_bounds(step.span));
+        }
+        let (Some(low), Some(high)) = (parts.start.constant(), parts.end.constant()) else {
+            return self.fail(values::needs_the_run(written.span, self.text(written.span)));
+        };
+        if low > high {
+            return self.fail(values::bounds_reversed(
+                written.span,
+                self.text(parts.start.span),
+                self.text(parts.end.span),
+            ));
+        }
+        // A range whose ends are both without a unit is the one that may have forgotten it.
+        if parts.start.bare && parts.end.bare {
+            return Some((Interval { low, high }, Dimension::NUMBER));
+        }
+        Some((Interval { low, high }, parts.start.dimension))
+    }
+
+    /// A range, or a bound `b`: −b .. b where both signs make sense, else 0 .. b.
+    pub fn bounds(&mut self, block: usize, field: &'static str) -> Option<Interval> {
+        let Some((entry, written)) = self.given(block, field) else {
+            return Some(Interval::ALL);
+        };
+        let field = self.scope.blocks[block].kind.field(field)?;
+        let place = self.place(block, entry);
+        self.bounds_of(field, &written.value, place)
+    }
+
+    /// The same of an argument; `Some(None)` where it is left out, None where it is faulty.
+    #[expect(
+        clippy::option_option,
+        reason = "left out and faulty are different things here"
+    )]
+    pub fn bounds_argument(
+        &mut self,
+        chosen: &Chosen<'a>,
+        name: &str,
+        place: Place,
+    ) -> Option<Option<Interval>> {
+        match chosen.find(name)? {
+            (field, Some(written)) => self.bounds_of(field, written, place).map(Some),
+            (_, None) => Some(None),
+        }
+    }
+
+    fn bounds_of(
+        &mut self,
+        field: &'static Field,
+        written: &'a Expr,
+        place: Place,
+    ) -> Option<Interval> {
+        let FieldType::Bounds {
+            dimension,
+            symmetric,
+        } = field.ty
+        else {
+            return None;
+        };
+        if let ExprKind::Range { .. } = written.kind {
+            let (interval, found) = self.interval(written, place)?;
+            let bare = found == Dimension::NUMBER && dimension != Dimension::NUMBER;
+            let typed = Typed {
+                bare,
+                ..Typed::number(Formula::Constant(interval.high), found, written.span)
+            };
+            self.expect(typed, dimension, field.name, written)?;
+            return self.moves_at_all(field.name, interval, written.span);
+        }
+        let typed = self.single(written, place)?;
+        let typed = self.expect(typed, dimension, field.name, written)?;
+        let bound = typed.constant()?;
+        if bound < 0.0 {
+            return self.fail(values::negative_bound(
+                field.name,
+                written.span,
+                self.text(written.span),
+                symmetric,
+            ));
+        }
+        let interval = Interval {
+            low: if symmetric { -bound } else { 0.0 },
+            high: bound,
+        };
+        self.moves_at_all(field.name, interval, written.span)
+    }
+
+    /// An actuator that may have no speed never arrives.
+    fn moves_at_all(&mut self, field: &str, interval: Interval, span: Span) -> Option<Interval> {
+        if field == "speed" && interval.high <= 0.0 {
+            return self.fail(values::no_speed(span));
+        }
+        Some(interval)
+    }
+
+    /// One `limits` block.
+    pub fn limits_block(&mut self, block: usize) -> Option<Limits> {
+        let displacement = self.bounds(block, "displacement");
+        let force = self.bounds(block, "force");
+        let speed = self.bounds(block, "speed");
+        let increment = self.bounds(block, "increment");
+        let tracking_error = self.bounds(block, "tracking_error");
+        let energy_error = self.bounds(block, "energy_error");
+        let tracking_energy_error = self.bounds(block, "tracking_energy_error");
+        let nrms_error = self.bounds(block, "nrms_error");
+        Some(Limits {
+            displacement: displacement?,
+            force: force?,
+            speed: speed?,
+            increment: increment?,
+            tracking_error: tracking_error?,
+            energy_error: energy_error?,
+            tracking_energy_error: tracking_energy_error?,
+            nrms_error: nrms_error?,
+        })
+    }
+
+    /// Every `limits` block; the intersection of those without a name and of the one the rig names. A plan that asks for
+    /// more than its rig allows is at fault.
+    pub fn limits(&mut self, rig_limits: Option<usize>) -> Option<CheckedLimits> {
+        let blocks: Vec<usize> = self
+            .scope
+            .of_kind(Kind::Limits)
+            .map(|(index, _)| index)
+            .collect();
+        let checked: Vec<Option<(usize, Limits)>> = blocks
+            .into_iter()
+            .map(|index| self.limits_block(index).map(|limits| (index, limits)))
+            .collect();
+        let checked: Vec<(usize, Limits)> = checked.into_iter().collect::<Option<_>>()?;
+        let rig = rig_limits
+            .and_then(|rig| checked.iter().find(|(index, _)| *index == rig))
+            .copied();
+        let plan: Vec<(usize, Limits)> = checked
+            .into_iter()
+            .filter(|(index, _)| self.scope.blocks[*index].name.is_none())
+            .collect();
+        let mut all = Limits::NONE;
+        let (mut displacement_at, mut force_at, mut speed_at) = (None, None, None);
+        for (index, limits) in plan.iter().chain(&rig) {
+            if let (Some((rig, allowed)), true) = (&rig, Some(*index) != rig_limits) {
+                self.compare_limits(*index, limits, *rig, allowed);
+            }
+            all = intersection(&all, limits);
+            displacement_at = self
+                .given(*index, "displacement")
+                .map(|(_, entry)| entry.span)
+                .or(displacement_at);
+            force_at = self
+                .given(*index, "force")
+                .map(|(_, entry)| entry.span)
+                .or(force_at);
+            speed_at = self
+                .given(*index, "speed")
+                .map(|(_, entry)| entry.span)
+                .or(speed_at);
+        }
+        Some(CheckedLimits {
+            limits: all,
+            displacement_at,
+            force_at,
+            speed_at,
+        })
+    }
+
+    fn compare_limits(&mut self, plan: usize, asked: &Limits, rig: usize, allowed: &Limits) {
+        for ((field, asked), (_, allowed)) in by_field(asked).into_iter().zip(by_field(allowed)) {
+            let wider = asked.is_bounded()
+                && allowed.is_bounded()
+                && (asked.low < allowed.low || asked.high > allowed.high);
+            if let (true, Some((_, plan)), Some((_, rig))) =
+                (wider, self.given(plan, field), self.given(rig, field))
+            {
+                let (plan_text, rig_text) = (self.text(plan.value.span), self.text(rig.value.span));
+                self.faults.push(whole::limits_wider(
+                    field,
+                    plan.value.span,
+                    plan_text,
+                    rig.value.span,
+                    rig_text,
+                ));
+            }
+        }
+    }
+}
+
+/// Each limit by the name of its field.
+fn by_field(limits: &Limits) -> [(&'static str, Interval); 8] {
+    [
+        ("displacement", limits.displacement),
+        ("force", limits.force),
+        ("speed", limits.speed),
+        ("increment", limits.increment),
+        ("tracking_error", limits.tracking_error),
+        ("energy_error", limits.energy_error),
+        ("tracking_energy_error", limits.tracking_energy_error),
+        ("nrms_error", limits.nrms_error),
+    ]
+}
+
+fn intersection(one: &Limits, other: &Limits) -> Limits {
+    Limits {
+        displacement: one.displacement.intersection(other.displacement),
+        force: one.force.intersection(other.force),
+        speed: one.speed.intersection(other.speed),
+        increment: one.increment.intersection(other.increment),
+        tracking_error: one.tracking_error.intersection(other.tracking_error),
+        energy_error: one.energy_error.intersection(other.energy_error),
+        tracking_energy_error: one
+            .tracking_energy_error
+            .intersection(other.tracking_energy_error),
+        nrms_error: one.nrms_error.intersection(other.nrms_error),
+    }
+}
+
+/// A virtual rig begins at rest, with displacement and force 0: limits that leave those out stop it before it moves. Where a
+/// real one stands, nobody knows here.
+pub fn hold_start(checker: &mut Checker, limits: &CheckedLimits) {
+    if checker.real_rig.is_some() {
+        return;
+    }
+    for (name, interval, dimension, at) in [
+        (
+            "displacement",
+            limits.limits.displacement,
+            Dimension::LENGTH,
+            limits.displacement_at,
+        ),
+        (
+            "force",
+            limits.limits.force,
+            Dimension::FORCE,
+            limits.force_at,
+        ),
+    ] {
+        if let (Some(at), false) = (at, interval.contains(0.0)) {
+            checker
+                .faults
+                .push(whole::start_beyond_limits(name, interval, dimension, at));
+        }
+    }
+}
+
+/// Targets (m) and speeds (m/s) of the procedures, known before the run, against the limits.
+pub fn hold_targets(checker: &mut Checker, limits: &CheckedLimits) {
+    let procedures: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
+    for block in procedures {
+        for (field, interval, at) in [
+            (
+                "displacements",
+                limits.limits.displacement,
+                limits.displacement_at,
+            ),
+            ("to", limits.limits.displacement, limits.displacement_at),
+            ("stroke", limits.limits.displacement, limits.displacement_at),
+            ("speed", limits.limits.speed, limits.speed_at),
+            ("velocities", limits.limits.speed, limits.speed_at),
+        ] {
+            let Some((entry, written)) = checker.given(block, field) else {
+                continue;
+            };
+            let (Some(field), Some(at)) = (checker.scope.blocks[block].kind.field(field), at)
+            else {
+                continue;
+            };
+            let Some(typed) = checker.entry(block, entry, written.value.span) else {
+                continue;
+            };
+            let beyond = typed
+                .parts()
+                .iter()
+                .filter_map(Formula::constant)
+                .find(|value| !interval.contains(*value));
+            if let Some(value) = beyond {
+                let fault = whole::beyond_limits(
+                    field.name,
+                    value,
+                    typed.dimension,
+                    written.value.span,
+                    interval,
+                    at,
+                );
+                checker.faults.push(fault);
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! `plan "Title" { … }`: the title, the edition and the data of the certificate.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::expressions::calendar;
+use crate::language::check::messages::{rigs, values};
+use crate::plan::DecisionRule;
+use crate::schema::{FieldType, Kind};
+
+/// The edition this version reads.
+const EDITION: f64 = 1.0;
+
+/// What a certificate shows as a day is one.
+const DAYS: [&str; 2] = ["date", "issued"];
+
+/// Title, where one is given, and the data of the certificate in the schema's order.
+pub fn plan_block(
+    checker: &mut Checker,
+    date: Option<&str>,
+) -> (Option<String>, Vec<(&'static str, String)>) {
+    let block = checker
+        .scope
+        .of_kind(Kind::Plan)
+        .map(|(index, _)| index)
+        .next();
+    let mut particulars = Vec::new();
+    for field in crate::schema::block(Kind::Plan).fields {
+        let given = block.and_then(|block| match field.ty {
+            FieldType::Text => checker.text_field(block, field.name),
+            FieldType::Choice(_) => checker
+                .choice(block, field.name)
+                .map(|chosen| chosen.variant.name.to_owned()),
+            _ => None,
+        });
+        if let (true, Some(day), Some(block)) = (DAYS.contains(&field.name), &given, block)
+            && !calendar::is_day(day)
+            && let Some((_, written)) = checker.given(block, field.name)
+        {
+            checker
+                .faults
+                .push(rigs::not_a_day(day, written.value.span));
+        }
+        let text = if field.name == "date" {
+            date.map(str::to_owned).or(given)
+        } else {
+            given
+        };
+        particulars.extend(text.map(|text| (field.name, text)));
+    }
+    let Some(block) = block else {
+        return (None, particulars);
+    };
+    if let (Some(edition), Some((_, written))) = (
+        checker.constant(block, "edition"),
+        checker.given(block, "edition"),
+    ) && edition != EDITION
+    {
+        checker.faults.push(values::edition(
+            written.value.span,
+            checker.text(written.value.span),
+        ));
+    }
+    let title = checker.scope.blocks[block]
+        .block
+        .title
+        .as_ref()
+        .map(|title| title.node.clone());
+    (title, particulars)
+}
+
+/// The rule that the particulars name; the simple one where they name none.
+pub fn decision_rule(particulars: &[(&'static str, String)]) -> DecisionRule {
+    let named = particulars
+        .iter()
+        .find(|(field, _)| *field == "decision_rule")
+        .map(|(_, word)| word.as_str());
+    if named == Some(DecisionRule::Guarded.name()) {
+        DecisionRule::Guarded
+    } else {
+        DecisionRule::Simple
+    }
+}

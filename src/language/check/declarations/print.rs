@@ -1,0 +1,62 @@
+//! Texts that reach the certificate, against the letters that paper can show. In: titles, particulars, names of requirements. Out:
+//! one warning for all that holds a letter which the fonts lack. It knows neither fonts nor pages.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::whole as fault;
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::{Format, Report};
+use crate::schema::Kind;
+use crate::text::glyphs;
+use crate::text::source::Span;
+
+/// Warns of letters that stand as code points on paper; asked for only where no error stands.
+pub fn warn(checker: &mut Checker, report: &Report) {
+    if !report.formats.contains(&Format::Pdf) {
+        return;
+    }
+    let mut texts: Vec<(Span, &str)> = checker
+        .scope
+        .requirements
+        .iter()
+        .map(|requirement| (requirement.label.span, requirement.label.node.as_str()))
+        .collect();
+    for declared in checker
+        .scope
+        .blocks
+        .iter()
+        .filter(|declared| matches!(declared.kind.kind, Kind::Plan | Kind::Report))
+    {
+        texts.extend(
+            declared
+                .block
+                .title
+                .iter()
+                .map(|title| (title.span, title.node.as_str())),
+        );
+        declared
+            .block
+            .fields
+            .iter()
+            .for_each(|entry| collect(&entry.value, &mut texts));
+    }
+    texts.retain(|(_, text)| !text.chars().all(glyphs::has));
+    texts.sort_by_key(|(span, _)| span.start);
+    if let Some((span, text)) = texts.first() {
+        let letters: String = text.chars().filter(|c| !glyphs::has(*c)).take(4).collect();
+        checker.faults.push(fault::not_printed(
+            &letters,
+            &glyphs::shown(&letters),
+            texts.len() - 1,
+            *span,
+        ));
+    }
+}
+
+/// The texts of a value: one, or those of a list.
+fn collect<'a>(value: &'a Expr, into: &mut Vec<(Span, &'a str)>) {
+    match &value.kind {
+        ExprKind::Text(text) => into.push((value.span, text)),
+        ExprKind::List { items, .. } => items.iter().for_each(|item| collect(item, into)),
+        _ => {}
+    }
+}

@@ -1,0 +1,236 @@
+//! `report { … }`: figures, formats, who signs. Without it: every table and figure.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::{names, types};
+use crate::language::check::scope::Meaning;
+use crate::language::syntax::ast::{Argument, Expr, ExprKind};
+use crate::plan::formula::ProcedureId;
+use crate::plan::{Figure, FigureKind, Format, MOST_TOGETHER, Procedure, Report};
+use crate::schema::Kind;
+use crate::text::source::Span;
+
+const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
+
+/// `procedures` holds those without a fault, by their place in the plan.
+pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option<Report> {
+    let Some(block) = checker
+        .scope
+        .of_kind(Kind::Report)
+        .map(|(index, _)| index)
+        .next()
+    else {
+        return Some(Report {
+            title: None,
+            figures: every_figure(procedures),
+            formats: EVERY_FORMAT.to_vec(),
+            sign: Vec::new(),
+        });
+    };
+    let title = match checker.given(block, "title") {
+        Some(_) => checker.text_field(block, "title").map(Some),
+        None => Some(None),
+    };
+    let figures = figures(checker, block, procedures);
+    let formats = match checker.given(block, "formats") {
+        Some(_) => checker.choices(block, "formats").map(|chosen| {
+            chosen
+                .iter()
+                .map(|chosen| format(chosen.variant.name))
+                .collect()
+        }),
+        None => Some(EVERY_FORMAT.to_vec()),
+    };
+    let sign = match checker.given(block, "sign") {
+        Some(_) => checker.texts(block, "sign"),
+        None => Some(Vec::new()),
+    };
+    Some(Report {
+        title: title?,
+        figures: figures?,
+        formats: formats?,
+        sign: sign?,
+    })
+}
+
+fn format(name: &str) -> Format {
+    match name {
+        "html" => Format::Html,
+        "pdf" => Format::Pdf,
+        "csv" => Format::Csv,
+        _ => Format::Parquet,
+    }
+}
+
+fn every_figure(procedures: &[Option<Procedure>]) -> Vec<Figure> {
+    let of = |(index, procedure): (usize, &Option<Procedure>)| {
+        let kinds = procedure.as_ref().map_or(&[][..], |procedure| {
+            crate::procedures::facts_of(&procedure.kind).figures
+        });
+        kinds.iter().map(move |kind| Figure {
+            kind: *kind,
+            procedure: ProcedureId(index),
+            beside: Vec::new(),
+        })
+    };
+    procedures.iter().enumerate().flat_map(of).collect()
+}
+
+fn figures(
+    checker: &mut Checker,
+    block: usize,
+    procedures: &[Option<Procedure>],
+) -> Option<Vec<Figure>> {
+    let Some((_, written)) = checker.given(block, "figures") else {
+        return Some(every_figure(procedures));
+    };
+    let items = match &written.value.kind {
+        ExprKind::List { items, unit: None } => items.as_slice(),
+        _ => std::slice::from_ref(&written.value),
+    };
+    let checked: Vec<Option<Figure>> = items
+        .iter()
+        .map(|item| figure(checker, item, procedures))
+        .collect();
+    checked.into_iter().collect()
+}
+
+/// `energy(hit)`, or `displacement(paused, moving)`: several on one chart.
+fn figure(
+    checker: &mut Checker,
+    written: &Expr,
+    procedures: &[Option<Procedure>],
+) -> Option<Figure> {
+    let ExprKind::Call { name, arguments } = &written.kind else {
+        return match written.kind {
+            ExprKind::Faulty => None,
+            _ => checker.fail(types::figure_wanted(
+                written.span,
+                checker.text(written.span),
+            )),
+        };
+    };
+    let Some(kind) = FigureKind::ALL
+        .into_iter()
+        .find(|kind| kind.name() == name.node)
+    else {
+        return checker.fail(names::unknown_figure(
+            &name.node,
+            name.span,
+            FigureKind::ALL.map(FigureKind::name),
+        ));
+    };
+    if arguments.is_empty() {
+        return checker.fail(types::figure_wanted(
+            written.span,
+            checker.text(written.span),
+        ));
+    }
+    let drawn: Vec<Option<ProcedureId>> = arguments
+        .iter()
+        .map(|argument| drawn_of(checker, kind, written.span, &argument.value, procedures))
+        .collect();
+    let drawn: Vec<ProcedureId> = drawn.into_iter().collect::<Option<_>>()?;
+    if drawn.len() > 1 {
+        together(checker, kind, &drawn, arguments, procedures)?;
+    }
+    Some(Figure {
+        kind,
+        procedure: drawn[0],
+        beside: drawn[1..].to_vec(),
+    })
+}
+
+/// The procedure that a figure names, if it draws such a figure.
+fn drawn_of(
+    checker: &mut Checker,
+    kind: FigureKind,
+    figure: Span,
+    argument: &Expr,
+    procedures: &[Option<Procedure>],
+) -> Option<ProcedureId> {
+    let ExprKind::Name(of) = &argument.kind else {
+        return checker.fail(types::figure_wanted(figure, checker.text(figure)));
+    };
+    let span = argument.span;
+    let block = match checker.scope.meaning(of) {
+        Some(Meaning::Poisoned) => return None,
+        Some(Meaning::Block(block)) => block,
+        Some(Meaning::Value(_)) => return checker.fail(types::procedure_wanted(of, span)),
+        None if checker.may_be_lost(of) || checker.scope.nameless().any(|kind| kind.procedure) => {
+            return None;
+        }
+        None => {
+            let known: Vec<&str> = checker
+                .scope
+                .procedures()
+                .filter_map(|(_, block)| block.name)
+                .map(|name| name.node.as_str())
+                .collect();
+            return checker.fail(names::unknown_procedure(of, span, &known));
+        }
+    };
+    let Some(procedure) = checker.scope.blocks[block].procedure else {
+        return checker.fail(types::procedure_wanted(of, span));
+    };
+    let drawn = crate::procedures::facts_of(&procedures.get(procedure.0)?.as_ref()?.kind).figures;
+    if !drawn.contains(&kind) {
+        let words = checker.scope.blocks[block].kind.words();
+        let drawn = drawn.iter().map(|kind| kind.name());
+        return checker.fail(names::figure_of_other_procedure(
+            kind.name(),
+            &words,
+            figure,
+            drawn,
+        ));
+    }
+    Some(procedure)
+}
+
+/// Whether these procedures can stand on one chart: one curve of each, all of one kind, none twice, few enough.
+fn together(
+    checker: &mut Checker,
+    kind: FigureKind,
+    drawn: &[ProcedureId],
+    arguments: &[Argument],
+    procedures: &[Option<Procedure>],
+) -> Option<()> {
+    let of = |procedure: &ProcedureId| {
+        procedures
+            .get(procedure.0)
+            .and_then(Option::as_ref)
+            .map(|procedure| &procedure.kind)
+    };
+    let first = of(&drawn[0])?;
+    let keyword = first.keyword();
+    let at = |place: usize| arguments[place].value.span;
+    let shared = crate::procedures::facts_of(first).shared_figures;
+    if !shared.contains(&kind) {
+        let shared = crate::procedures::facts_of(first)
+            .figures
+            .iter()
+            .filter(|kind| shared.contains(kind))
+            .map(|kind| kind.name());
+        return checker.fail(names::figure_of_one(kind.name(), keyword, at(1), shared));
+    }
+    for (place, procedure) in drawn.iter().enumerate().skip(1) {
+        let kinds = of(procedure)?;
+        if kinds.keyword() != keyword {
+            return checker.fail(names::figure_of_two_kinds(
+                kind.name(),
+                (keyword, at(0)),
+                (kinds.keyword(), at(place)),
+            ));
+        }
+        if let Some(before) = drawn[..place].iter().position(|other| other == procedure) {
+            return checker.fail(names::figure_drawn_twice(at(before), at(place)));
+        }
+    }
+    if drawn.len() > MOST_TOGETHER {
+        return checker.fail(names::too_many_together(
+            drawn.len(),
+            MOST_TOGETHER,
+            at(MOST_TOGETHER),
+        ));
+    }
+    Some(())
+}

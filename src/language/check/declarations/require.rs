@@ -1,0 +1,174 @@
+//! `require "label" condition`: comparisons and `within`, one condition for each part joined with `and`.
+
+use crate::language::check::checker::{Checker, Place, Reads, Typed};
+use crate::language::check::messages::{types as fault, values};
+use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
+use crate::plan::formula::Formula;
+use crate::plan::{Comparison, Condition, Requirement, Test};
+use crate::units::Dimension;
+
+const PLACE: Place = Place {
+    entry: None,
+    reads: Reads::All,
+    critical: false,
+};
+
+impl<'a> Checker<'a> {
+    /// Every requirement; None if one has a fault.
+    pub fn requirements(&mut self) -> Option<Vec<Requirement>> {
+        let checked: Vec<Option<Requirement>> = (0..self.scope.requirements.len())
+            .map(|index| {
+                let declared = &self.scope.requirements[index];
+                let mut conditions = Vec::new();
+                self.conditions(declared.condition, PLACE, &mut conditions);
+                let conditions = conditions.into_iter().collect::<Option<Vec<Condition>>>()?;
+                Some(Requirement {
+                    label: declared.label.node.clone(),
+                    conditions,
+                })
+            })
+            .collect();
+        checked.into_iter().collect()
+    }
+
+    /// The conditions of an expression, one for each part joined with `and`; None if one has a fault.
+    pub fn conditions_at(&mut self, expr: &'a Expr, place: Place) -> Option<Vec<Condition>> {
+        let mut conditions = Vec::new();
+        self.conditions(expr, place, &mut conditions);
+        conditions.into_iter().collect()
+    }
+
+    fn conditions(&mut self, expr: &'a Expr, place: Place, into: &mut Vec<Option<Condition>>) {
+        match &expr.kind {
+            ExprKind::Parenthesised(inner) => self.conditions(inner, place, into),
+            ExprKind::Binary {
+                operator,
+                left,
+                right,
+            } if operator.node == BinaryOperator::And => {
+                self.conditions(left, place, into);
+                self.conditions(right, place, into);
+            }
+            _ => {
+                let condition = self.condition(expr, place);
+                into.push(condition);
+            }
+        }
+    }
+
+    fn condition(&mut self, expr: &'a Expr, place: Place) -> Option<Condition> {
+        let text = self
+            .text(expr.span)
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ");
+        match &expr.kind {
+            ExprKind::Faulty => None,
+            ExprKind::Within {
+                value,
+                tolerance,
+                target,
+            } => {
+                let (value, width, target) = (
+                    self.single(value, place),
+                    self.single(tolerance, place),
+                    self.single(target, place),
+                );
+                let (value, width, target) = (value?, width?, target?);
+                if value.dimension != target.dimension {
+                    return self.fail(fault::mismatched("within", &value, &target));
+                }
+                // `%` is of the target; a plain number beside a quantity would be a forgotten unit.
+                let relative = width.percent
+                    || (width.dimension == Dimension::NUMBER
+                        && value.dimension != Dimension::NUMBER
+                        && !width.bare);
+                let width = if relative {
+                    width
+                } else {
+                    self.expect(width, value.dimension, "within", tolerance)?
+                };
+                if width.formula.constant().is_some_and(|width| width < 0.0) {
+                    return self.fail(values::negative_tolerance(
+                        tolerance.span,
+                        self.text(tolerance.span),
+                    ));
+                }
+                let test = Test::Within {
+                    target: target.formula,
+                    tolerance: width.formula,
+                    relative,
+                };
+                Some(Condition {
+                    text,
+                    value: value.formula,
+                    test,
+                    dimension: value.dimension,
+                })
+            }
+            ExprKind::Binary {
+                operator,
+                left,
+                right,
+            } if comparison(operator.node).is_some() => {
+                let comparison = comparison(operator.node)?;
+                let (left, right) = (self.single(left, place), self.single(right, place));
+                let (left, right) = (left?, right?);
+                if left.dimension != right.dimension {
+                    return self.fail(fault::mismatched(operator.node.symbol(), &left, &right));
+                }
+                let dimension = left.dimension;
+                let (value, comparison, limit) = value_first(left, comparison, right);
+                Some(Condition {
+                    text,
+                    value,
+                    test: Test::Compare { comparison, limit },
+                    dimension,
+                })
+            }
+            _ => {
+                let wanted_by = if matches!(place.reads, Reads::Blow(_)) {
+                    "while"
+                } else {
+                    "require"
+                };
+                self.fail(fault::condition_wanted(
+                    wanted_by,
+                    expr.span,
+                    self.text(expr.span),
+                ))
+            }
+        }
+    }
+}
+
+/// What is measured stands first: `8 mm >= hit.max_displacement` is `hit.max_displacement <= 8 mm`.
+fn value_first(
+    left: Typed,
+    comparison: Comparison,
+    right: Typed,
+) -> (Formula, Comparison, Formula) {
+    if left.is_late() || !right.is_late() {
+        return (left.formula, comparison, right.formula);
+    }
+    let mirrored = match comparison {
+        Comparison::Less => Comparison::Greater,
+        Comparison::LessEqual => Comparison::GreaterEqual,
+        Comparison::Greater => Comparison::Less,
+        Comparison::GreaterEqual => Comparison::LessEqual,
+        same => same,
+    };
+    (right.formula, mirrored, left.formula)
+}
+
+const fn comparison(operator: BinaryOperator) -> Option<Comparison> {
+    Some(match operator {
+        BinaryOperator::Less => Comparison::Less,
+        BinaryOperator::LessEqual => Comparison::LessEqual,
+        BinaryOperator::Greater => Comparison::Greater,
+        BinaryOperator::GreaterEqual => Comparison::GreaterEqual,
+        BinaryOperator::Equal => Comparison::Equal,
+        BinaryOperator::NotEqual => Comparison::NotEqual,
+        _ => return None,
+    })
+}

@@ -1,0 +1,79 @@
+//! Functions: `abs(x)`, `max(a, b)`, `sqrt(area)`.
+
+use crate::language::check::checker::{Checker, Place, Shape, Typed};
+use crate::language::check::messages::{names, types as fault};
+use crate::language::syntax::ast::{Argument, Ident};
+use crate::plan::formula::{Formula, Function};
+use crate::schema::{FUNCTIONS, FunctionKind};
+use crate::text::source::Span;
+use crate::units::{Dimension, Exponent};
+
+impl<'a> Checker<'a> {
+    pub fn call(
+        &mut self,
+        name: &Ident,
+        arguments: &'a [Argument],
+        span: Span,
+        place: Place,
+    ) -> Option<Typed> {
+        let Some(kind) = FUNCTIONS.iter().find(|function| function.name == name.node) else {
+            return self.fail(names::unknown_function(&name.node, name.span));
+        };
+        if let Some(named) = arguments.iter().find_map(|argument| argument.name.as_ref()) {
+            return self.fail(names::function_argument_with_name(kind.name, named));
+        }
+        let checked: Vec<Option<Typed>> = arguments
+            .iter()
+            .map(|argument| self.value(&argument.value, place))
+            .collect();
+        let checked: Vec<Typed> = checked.into_iter().collect::<Option<_>>()?;
+        let wrong_count = if kind.many {
+            checked.is_empty()
+        } else {
+            checked.len() != 1
+        };
+        let Some(first) = checked.first().filter(|_| !wrong_count) else {
+            return self.fail(names::function_arguments(kind, checked.len(), span));
+        };
+        if !kind.many && first.shape == Shape::List {
+            return self.fail(fault::list_for_number(first.span));
+        }
+        if let Some(other) = checked
+            .iter()
+            .find(|other| other.dimension != first.dimension)
+        {
+            return self.fail(fault::mismatched(kind.name, first, other));
+        }
+        let dimension = self.result_dimension(kind, first, span)?;
+        let bare = checked.iter().all(|argument| argument.bare);
+        let parts = checked
+            .into_iter()
+            .map(|argument| argument.formula)
+            .collect();
+        Some(Typed {
+            bare,
+            ..Typed::number(Formula::Call(kind.function, parts), dimension, span)
+        })
+    }
+
+    fn result_dimension(
+        &mut self,
+        kind: &FunctionKind,
+        argument: &Typed,
+        span: Span,
+    ) -> Option<Dimension> {
+        match kind.function {
+            Function::Sqrt => {
+                let root = Exponent::ratio(1, 2).and_then(|half| argument.dimension.to_power(half));
+                if root.is_none() {
+                    return self.fail(fault::exponent_too_large(span));
+                }
+                root
+            }
+            Function::Sin | Function::Cos if argument.dimension != Dimension::NUMBER => {
+                self.fail(fault::angle_with_unit(kind.name, argument))
+            }
+            _ => Some(argument.dimension),
+        }
+    }
+}

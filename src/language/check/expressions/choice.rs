@@ -1,0 +1,320 @@
+//! Words and variants: `rigid`, `limit(1500 N)`, `[every(20), force_drop(10 %)]`. In: an expression and the variants a
+//! field knows. Out: a [`Chosen`], its arguments in SI.
+
+use crate::language::check::checker::{Checker, Place, Typed};
+use crate::language::check::messages::values;
+use crate::language::check::messages::{names as fault, types};
+use crate::language::syntax::ast::{Argument, Expr, ExprKind};
+use crate::plan::Interval;
+use crate::plan::formula::Formula;
+use crate::schema::{Field, FieldType, Need, Variant};
+use crate::text::source::Span;
+use crate::units::Dimension;
+
+/// A variant as it was written.
+pub struct Chosen<'a> {
+    pub variant: &'static Variant,
+    /// What stands for each argument of the variant, in the schema's order.
+    arguments: Vec<Option<&'a Expr>>,
+    /// What stands after the last of them, where it takes several.
+    rest: Vec<&'a Expr>,
+}
+
+impl<'a> Checker<'a> {
+    /// The variant a field names. None where the field is left out or faulty.
+    pub fn choice(&mut self, block: usize, field: &str) -> Option<Chosen<'a>> {
+        let (_, written) = self.given(block, field)?;
+        let FieldType::Choice(variants) = self.scope.blocks[block].kind.field(field)?.ty else {
+            return None;
+        };
+        self.chosen(field, variants, &written.value)
+    }
+
+    /// The word a field names, or `default` where it is left out.
+    pub fn word(
+        &mut self,
+        block: usize,
+        field: &str,
+        default: &'static str,
+    ) -> Option<&'static str> {
+        if self.given(block, field).is_none() {
+            return Some(default);
+        }
+        self.choice(block, field).map(|chosen| chosen.variant.name)
+    }
+
+    /// The variants a field lists. None where the field is left out or faulty.
+    pub fn choices(&mut self, block: usize, field: &str) -> Option<Vec<Chosen<'a>>> {
+        let (_, written) = self.given(block, field)?;
+        let FieldType::Choices(variants) = self.scope.blocks[block].kind.field(field)?.ty else {
+            return None;
+        };
+        match &written.value.kind {
+            ExprKind::List { items, unit: None } => {
+                let chosen: Vec<_> = items
+                    .iter()
+                    .map(|item| self.chosen(field, variants, item))
+                    .collect();
+                chosen.into_iter().collect()
+            }
+            _ => self
+                .chosen(field, variants, &written.value)
+                .map(|chosen| vec![chosen]),
+        }
+    }
+
+    pub fn chosen(
+        &mut self,
+        field: &str,
+        variants: &'static [Variant],
+        written: &'a Expr,
+    ) -> Option<Chosen<'a>> {
+        let (name, span, arguments): (&str, Span, &'a [Argument]) = match &written.kind {
+            ExprKind::Name(name) => (name, written.span, &[]),
+            ExprKind::Call { name, arguments } => (&name.node, name.span, arguments),
+            ExprKind::Parenthesised(inner) => return self.chosen(field, variants, inner),
+            ExprKind::Faulty => return None,
+            _ => {
+                return self.fail(types::choice_wanted(
+                    field,
+                    variants,
+                    written.span,
+                    self.text(written.span),
+                ));
+            }
+        };
+        let Some(variant) = variants.iter().find(|variant| variant.name == name) else {
+            return self.fail(fault::unknown_variant(field, name, span, variants));
+        };
+        let (placed, rest) = self.place_arguments(variant, arguments, written.span)?;
+        Some(Chosen {
+            variant,
+            arguments: placed,
+            rest,
+        })
+    }
+
+    fn place_arguments(
+        &mut self,
+        variant: &'static Variant,
+        arguments: &'a [Argument],
+        span: Span,
+    ) -> Option<(Vec<Option<&'a Expr>>, Vec<&'a Expr>)> {
+        let mut placed: Vec<Option<&'a Expr>> = vec![None; variant.arguments.len()];
+        let mut rest = Vec::new();
+        let takes_many = variant
+            .arguments
+            .last()
+            .is_some_and(|last| matches!(last.ty, FieldType::Inners));
+        let mut faulty = false;
+        for (index, argument) in arguments.iter().enumerate() {
+            if takes_many && argument.name.is_none() && index >= placed.len() {
+                rest.push(&argument.value);
+                continue;
+            }
+            let position = match &argument.name {
+                None => Some(index).filter(|index| *index < placed.len()),
+                Some(name) => variant
+                    .arguments
+                    .iter()
+                    .position(|field| field.name == name.node),
+            };
+            let Some(position) = position else {
+                let at = argument
+                    .name
+                    .as_ref()
+                    .map_or(argument.value.span, |name| name.span);
+                self.faults.push(fault::unknown_argument(
+                    variant,
+                    argument.name.as_ref().map(|name| name.node.as_str()),
+                    at,
+                ));
+                faulty = true;
+                continue;
+            };
+            if let Some(first) = placed[position].replace(&argument.value) {
+                let at = argument
+                    .name
+                    .as_ref()
+                    .map_or(argument.value.span, |name| name.span);
+                self.faults.push(fault::argument_twice(
+                    variant.arguments[position].name,
+                    at,
+                    first.span,
+                ));
+                faulty = true;
+            }
+        }
+        if faulty {
+            return None;
+        }
+        for (field, given) in variant.arguments.iter().zip(&placed) {
+            if given.is_none() && field.need == Need::Required {
+                self.faults
+                    .push(fault::missing_argument(variant, field, span));
+                faulty = true;
+            }
+        }
+        (!faulty).then_some((placed, rest))
+    }
+
+    /// An argument that is a number: what was written, else its default. None where it is faulty or stands nowhere.
+    pub fn argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Formula> {
+        let (field, written) = chosen.find(name)?;
+        match written {
+            Some(written) => self
+                .typed_field(field, written, place)
+                .map(|typed| typed.formula),
+            None => field.default_number().map(Formula::Constant),
+        }
+    }
+
+    /// An argument that is a number known before the run.
+    pub fn constant_argument(
+        &mut self,
+        chosen: &Chosen<'a>,
+        name: &str,
+        place: Place,
+    ) -> Option<f64> {
+        let formula = self.argument(chosen, name, place)?;
+        let value = formula.constant();
+        if value.is_none()
+            && let Some((_, Some(written))) = chosen.find(name)
+        {
+            self.faults
+                .push(values::needs_the_run(written.span, self.text(written.span)));
+        }
+        value
+    }
+}
+
+/// Arguments that are no single number; a required one always stands, or its variant was faulty.
+impl<'a> Checker<'a> {
+    /// An argument that may be left out, a number known before the run: `Some(None)` where it is, None where it is faulty.
+    #[expect(
+        clippy::option_option,
+        reason = "left out and faulty are different things here"
+    )]
+    pub fn optional_argument(
+        &mut self,
+        chosen: &Chosen<'a>,
+        name: &str,
+        place: Place,
+    ) -> Option<Option<f64>> {
+        match chosen.find(name)? {
+            (_, Some(_)) => self.constant_argument(chosen, name, place).map(Some),
+            (_, None) => Some(None),
+        }
+    }
+
+    /// An argument that is a word or a variant itself.
+    pub fn chosen_argument(&mut self, chosen: &Chosen<'a>, name: &str) -> Option<Chosen<'a>> {
+        let (field, written) = chosen.find(name)?;
+        let FieldType::Choice(variants) = field.ty else {
+            return None;
+        };
+        self.chosen(field.name, variants, written?)
+    }
+
+    /// An argument that is a list of numbers known before the run, and where it stands.
+    pub fn list_argument(
+        &mut self,
+        chosen: &Chosen<'a>,
+        name: &str,
+        place: Place,
+    ) -> Option<Vec<f64>> {
+        let (field, written) = chosen.find(name)?;
+        let written = written?;
+        let values: Option<Vec<f64>> = self
+            .typed_field(field, written, place)?
+            .parts()
+            .iter()
+            .map(Formula::constant)
+            .collect();
+        if values.is_none() {
+            self.faults
+                .push(values::needs_the_run(written.span, self.text(written.span)));
+        }
+        values
+    }
+
+    /// An argument that is a text, and where it stands; `Some(None)` where it is left out, None where it is no text.
+    #[expect(
+        clippy::option_option,
+        reason = "left out and faulty are different things here"
+    )]
+    pub fn text_argument(
+        &mut self,
+        chosen: &Chosen<'a>,
+        name: &str,
+    ) -> Option<Option<(String, Span)>> {
+        let (field, written) = chosen.find(name)?;
+        match written {
+            Some(written) => self
+                .text_value(field.name, written)
+                .map(|text| Some((text, written.span))),
+            None => Some(None),
+        }
+    }
+
+    /// An argument that is a range, both ends inside the field's own.
+    pub fn interval_argument(
+        &mut self,
+        chosen: &Chosen<'a>,
+        name: &str,
+        place: Place,
+    ) -> Option<Interval> {
+        let (field, written) = chosen.find(name)?;
+        let (written, dimension) = (written?, field.dimension()?);
+        let ExprKind::Range { start, end, .. } = &written.kind else {
+            return match written.kind {
+                ExprKind::Faulty => None,
+                _ => self.fail(types::range_wanted_by(field, written.span)),
+            };
+        };
+        let (interval, found) = self.interval(written, place)?;
+        let typed = Typed {
+            bare: found == Dimension::NUMBER && dimension != Dimension::NUMBER,
+            ..Typed::number(Formula::Constant(interval.high), found, written.span)
+        };
+        self.expect(typed, dimension, field.name, written)?;
+        let mut ends = [(interval.low, start.span), (interval.high, end.span)].into_iter();
+        match ends.find(|(end, _)| !field.range.contains(*end)) {
+            Some((end, at)) => self.fail(values::out_of_range(
+                field,
+                dimension,
+                end,
+                self.text(at),
+                at,
+            )),
+            None => Some(interval),
+        }
+    }
+}
+
+impl<'a> Chosen<'a> {
+    /// Where an argument was written.
+    pub fn span(&self, name: &str) -> Option<Span> {
+        self.find(name)?.1.map(|written| written.span)
+    }
+
+    /// What was written for an argument that takes several: after each other, or as a list.
+    pub fn several(&self, name: &str) -> Vec<&'a Expr> {
+        let first = self.find(name).and_then(|(_, written)| written);
+        let items = first.into_iter().flat_map(|written| match &written.kind {
+            ExprKind::List { items, unit: None } => items.iter().collect(),
+            _ => vec![written],
+        });
+        items.chain(self.rest.iter().copied()).collect()
+    }
+
+    /// The argument of the schema, and what was written for it.
+    pub fn find(&self, name: &str) -> Option<(&'static Field, Option<&'a Expr>)> {
+        let index = self
+            .variant
+            .arguments
+            .iter()
+            .position(|field| field.name == name)?;
+        Some((&self.variant.arguments[index], self.arguments[index]))
+    }
+}

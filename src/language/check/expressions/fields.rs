@@ -1,0 +1,403 @@
+//! The entries of a block against the fields of its kind: unknown, twice, missing; and their values, typed as the schema
+//! says. In: a declared block. Out: formulas and numbers in SI; a field left out gives its default.
+
+use crate::language::check::checker::{Checker, Node, Place, Reads, Typed};
+use crate::language::check::messages::{names as fault, types, values};
+use crate::language::check::scope::Meaning;
+use crate::language::syntax::ast::{Entry, Expr, ExprKind};
+use crate::plan::formula::Formula;
+use crate::schema::{Field, FieldType, Kind, Need, RigKind};
+use crate::text::source::Span;
+use crate::text::suggest;
+
+impl<'a> Checker<'a> {
+    /// Reports what is wrong with the set of entries. Their values are for the block's own file to ask for.
+    pub fn entries_of(&mut self, block: usize) {
+        let declared = &self.scope.blocks[block];
+        let kind = declared.kind;
+        let mut meant: Vec<&str> = Vec::new();
+        for (index, entry) in declared.block.fields.iter().enumerate() {
+            let key = entry.key.node.as_str();
+            match kind.field(key) {
+                None => {
+                    meant.extend(suggest::nearest(
+                        key,
+                        kind.fields.iter().map(|field| field.name),
+                    ));
+                    self.faults.push(fault::unknown_field(kind, &entry.key));
+                }
+                Some(field) if !field.available => self
+                    .faults
+                    .push(fault::field_of_later_version(kind, field, &entry.key)),
+                Some(_) => {
+                    if let Some(first) = declared.block.fields[..index]
+                        .iter()
+                        .find(|other| other.key.node == key)
+                    {
+                        self.faults
+                            .push(fault::field_twice(&entry.key, first.key.span));
+                    }
+                }
+            }
+        }
+        let unreadable = self.unreadable(block);
+        let rig = if self.real_rig.is_some() {
+            RigKind::Real
+        } else {
+            RigKind::Virtual
+        };
+        let required = |field: &&Field| match field.need {
+            Need::Required => true,
+            // What a rig itself lacks is said of it as a whole.
+            Need::RequiredOn(on, _) => on == rig && kind.kind != Kind::Rig,
+            _ => false,
+        };
+        for field in kind.fields.iter().filter(required) {
+            if !meant.contains(&field.name)
+                && !unreadable
+                && self.given(block, field.name).is_none()
+                && !self.replaced(block, field.name)
+            {
+                let example = self.example_of(block, field);
+                self.faults.push(match field.need {
+                    Need::RequiredOn(rig, _) => fault::missing_field_on(
+                        rig,
+                        kind,
+                        declared.name,
+                        declared.block.head,
+                        field,
+                    ),
+                    _ => fault::missing_field(
+                        kind,
+                        declared.name,
+                        declared.block.head,
+                        field.name,
+                        example,
+                    ),
+                });
+            }
+        }
+    }
+
+    /// What the field could be: of a rig that says what only a real one says, a real link.
+    fn example_of(&self, block: usize, field: &Field) -> &'static str {
+        const REAL: &str = "link = serial(port: \"/dev/ttyUSB0\", dialect: native)";
+        let is_link = self.scope.blocks[block].kind.kind == Kind::Rig && field.name == "link";
+        let real = is_link && crate::language::check::rig::says_of_real_rigs(self, block);
+        if real { REAL } else { field.example }
+    }
+
+    /// What stands in place of a field that is required otherwise: storeys or matrices of a behaviour.
+    fn replaced(&self, block: usize, field: &str) -> bool {
+        let declared = &self.scope.blocks[block];
+        let has = |name: &str| {
+            declared
+                .block
+                .fields
+                .iter()
+                .any(|entry| entry.key.node == name)
+        };
+        match declared.kind.kind {
+            Kind::Specimen => {
+                field == "behaviour"
+                    && crate::language::check::declarations::frame::FIELDS
+                        .iter()
+                        .any(|frame| has(frame))
+            }
+            // What a load cell alone lacks is said in its place.
+            Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
+            // The storeys have stiffnesses of their own.
+            Kind::Unload => {
+                field == "stiffness"
+                    && self.tested(block).is_some_and(|tested| {
+                        crate::language::check::declarations::frame::is_frame(self, tested)
+                    })
+            }
+            _ => false,
+        }
+    }
+
+    /// The entry of a field, where it stands, and its place among the entries.
+    pub fn given(&self, block: usize, field: &str) -> Option<(usize, &'a Entry)> {
+        self.scope.blocks[block]
+            .block
+            .fields
+            .iter()
+            .enumerate()
+            .find(|(_, entry)| entry.key.node == field)
+    }
+
+    /// Whether an entry of the block is a misspelt one of these fields, which is said already.
+    pub fn misspelt(&self, block: usize, fields: &[&str]) -> bool {
+        let declared = &self.scope.blocks[block];
+        let unknown = declared
+            .block
+            .fields
+            .iter()
+            .map(|entry| entry.key.node.as_str())
+            .filter(|key| declared.kind.field(key).is_none());
+        let known = || declared.kind.fields.iter().map(|field| field.name);
+        unknown
+            .filter_map(|key| suggest::nearest(key, known()))
+            .any(|meant| fields.contains(&meant))
+            || self.unreadable(block)
+    }
+
+    /// Whether some line of the block could not be read, so that fields may be missing through that.
+    fn unreadable(&self, block: usize) -> bool {
+        let span = self.scope.blocks[block].span;
+        self.unread
+            .iter()
+            .any(|line| line.file == span.file && line.start < span.end && span.start < line.end)
+    }
+
+    /// Where the entry of a block stands: which results it may read, and whether `critical` means something.
+    pub fn place(&self, block: usize, entry: usize) -> Place {
+        let declared = &self.scope.blocks[block];
+        let reads = match (declared.procedure, declared.kind.kind) {
+            (Some(procedure), _) => Reads::Before(procedure),
+            (None, Kind::Specimen) => Reads::Nothing("a specimen"),
+            (None, Kind::Striker) => Reads::Nothing("a striker"),
+            (None, Kind::Ground) => Reads::Nothing("a ground motion"),
+            (None, Kind::Rig) => Reads::Nothing("a rig"),
+            (None, Kind::Limits) => Reads::Nothing("a limit"),
+            (None, _) => Reads::Nothing("this field"),
+        };
+        let critical = matches!(
+            declared.kind.kind,
+            Kind::Impact | Kind::Escalate | Kind::Shake
+        ) && declared.block.fields[entry].key.node == "time_step";
+        Place {
+            entry: Some((block, entry)),
+            reads,
+            critical,
+        }
+    }
+
+    /// The value of an entry with numbers, as its field wants it.
+    pub fn entry_value(&mut self, block: usize, entry: usize) -> Option<Typed> {
+        let declared = &self.scope.blocks[block];
+        let written = &declared.block.fields[entry];
+        let field = declared.kind.field(&written.key.node)?;
+        let place = self.place(block, entry);
+        self.typed_field(field, &written.value, place)
+    }
+
+    /// A number or a list of them against a field or argument.
+    pub fn typed_field(
+        &mut self,
+        field: &'static Field,
+        written: &'a Expr,
+        place: Place,
+    ) -> Option<Typed> {
+        let dimension = field.dimension()?;
+        let many = matches!(field.ty, FieldType::Quantities(_));
+        let typed = if many {
+            self.value(written, place)?
+        } else {
+            self.single(written, place)?
+        };
+        let typed = self.expect(typed, dimension, field.name, written)?;
+        if field.angle && !self.recorded && self.is_plain(&typed, written) {
+            return self.fail(types::angle_without_unit(
+                self.text(written.span),
+                written.span,
+            ));
+        }
+        let parts = typed.parts();
+        for (index, part) in parts.iter().enumerate() {
+            if let Some(value) = part.constant()
+                && !field.range.contains(value)
+            {
+                let at = entry_span(written, index, parts.len());
+                let text = self.text(at);
+                return self.fail(values::out_of_range(field, dimension, value, text, at));
+            }
+        }
+        if matches!(field.ty, FieldType::Count) {
+            let Some(value) = typed.constant() else {
+                return self.fail(values::needs_the_run(written.span, self.text(written.span)));
+            };
+            if value.fract() != 0.0 {
+                return self.fail(values::not_whole(
+                    field.name,
+                    written.span,
+                    self.text(written.span),
+                ));
+            }
+        }
+        Some(typed)
+    }
+
+    /// Whether a number has neither `deg` nor `rad`, here or where its name was declared.
+    fn is_plain(&mut self, typed: &Typed, written: &'a Expr) -> bool {
+        let declared = match &written.kind {
+            ExprKind::Name(name) => match self.scope.meaning(name) {
+                Some(Meaning::Value(index)) => self.declared_value(index, written.span),
+                _ => None,
+            },
+            _ => None,
+        };
+        let typed = declared.as_ref().unwrap_or(typed);
+        typed.bare || typed.percent
+    }
+
+    /// One number: the entry, else the default. None where it is faulty or stands nowhere.
+    pub fn quantity(&mut self, block: usize, field: &str) -> Option<Formula> {
+        match self.given(block, field) {
+            Some((entry, written)) => self
+                .entry(block, entry, written.value.span)
+                .map(|typed| typed.formula),
+            None => self.scope.blocks[block]
+                .kind
+                .field(field)?
+                .default_number()
+                .map(Formula::Constant),
+        }
+    }
+
+    /// A number known before the run.
+    pub fn constant(&mut self, block: usize, field: &str) -> Option<f64> {
+        let formula = self.quantity(block, field)?;
+        let value = formula.constant();
+        if value.is_none()
+            && let Some((_, written)) = self.given(block, field)
+        {
+            self.faults.push(values::needs_the_run(
+                written.value.span,
+                self.text(written.value.span),
+            ));
+        }
+        value
+    }
+
+    /// A whole number; its range is the schema's.
+    pub fn count(&mut self, block: usize, field: &str) -> Option<u32> {
+        self.constant(block, field).and_then(whole)
+    }
+
+    /// Some(None) where the field is left out, None where it is faulty.
+    #[expect(
+        clippy::option_option,
+        reason = "left out and faulty are different things here"
+    )]
+    pub fn optional(&mut self, block: usize, field: &str) -> Option<Option<Formula>> {
+        match self.given(block, field) {
+            Some(_) => self.quantity(block, field).map(Some),
+            None => Some(None),
+        }
+    }
+
+    /// The numbers of a list or range.
+    pub fn quantities(&mut self, block: usize, field: &str) -> Option<Vec<Formula>> {
+        let (entry, written) = self.given(block, field)?;
+        self.entry(block, entry, written.value.span)
+            .map(|typed| typed.parts())
+    }
+
+    /// A text in quotes.
+    pub fn text_field(&mut self, block: usize, field: &str) -> Option<String> {
+        let (_, written) = self.given(block, field)?;
+        self.text_value(field, &written.value)
+    }
+
+    pub fn text_value(&mut self, field: &str, written: &Expr) -> Option<String> {
+        match &written.kind {
+            ExprKind::Text(text) => Some(text.clone()),
+            ExprKind::Faulty => None,
+            _ => self.fail(types::text_wanted(
+                field,
+                written.span,
+                self.text(written.span),
+            )),
+        }
+    }
+
+    /// A list of texts; one text stands for a list of one.
+    pub fn texts(&mut self, block: usize, field: &str) -> Option<Vec<String>> {
+        let (_, written) = self.given(block, field)?;
+        match &written.value.kind {
+            ExprKind::List { items, unit: None } => {
+                let texts: Vec<Option<String>> = items
+                    .iter()
+                    .map(|item| self.text_value(field, item))
+                    .collect();
+                texts.into_iter().collect()
+            }
+            _ => self
+                .text_value(field, &written.value)
+                .map(|text| vec![text]),
+        }
+    }
+
+    /// The block a field names.
+    pub fn reference(&mut self, block: usize, field: &str, kind: Kind) -> Option<usize> {
+        let (_, written) = self.given(block, field)?;
+        let span = written.value.span;
+        let ExprKind::Name(name) = &written.value.kind else {
+            return match written.value.kind {
+                ExprKind::Faulty => None,
+                _ => self.fail(types::block_wanted(kind, span, self.text(span))),
+            };
+        };
+        match self.scope.meaning(name) {
+            Some(crate::language::check::scope::Meaning::Block(index))
+                if self.scope.blocks[index].kind.kind == kind =>
+            {
+                Some(index)
+            }
+            Some(crate::language::check::scope::Meaning::Poisoned) => None,
+            Some(_) => self.fail(types::block_wanted(kind, span, name)),
+            None if self.may_be_lost(name)
+                || self
+                    .scope
+                    .of_kind(kind)
+                    .any(|(_, block)| block.lacks_its_name()) =>
+            {
+                None
+            }
+            None => {
+                let declared = self
+                    .scope
+                    .of_kind(kind)
+                    .filter_map(|(_, block)| block.name)
+                    .map(|name| name.node.as_str());
+                let known: Vec<&str> = declared.take(self.most_to_suggest()).collect();
+                self.fail(fault::unknown_block_name(kind, name, span, &known))
+            }
+        }
+    }
+
+    /// Does `work` for the entry of a field that has no number of its own, so that a ring through it is seen.
+    pub fn within_entry<T>(
+        &mut self,
+        block: usize,
+        field: &str,
+        asked_at: Span,
+        work: impl FnOnce(&mut Self, &'a Expr, Place) -> Option<T>,
+    ) -> Option<T> {
+        let (entry, written) = self.given(block, field)?;
+        let place = self.place(block, entry);
+        self.guarded(Node::Entry { block, entry }, asked_at, |checker| {
+            work(checker, &written.value, place)
+        })
+    }
+}
+
+/// Where entry `index` of a list was written, if the list was written out entry by entry.
+fn entry_span(written: &Expr, index: usize, count: usize) -> Span {
+    match &written.kind {
+        ExprKind::List { items, .. } if items.len() == count => items[index].span,
+        _ => written.span,
+    }
+}
+
+/// A whole number of at least 0 that fits.
+pub fn whole(value: f64) -> Option<u32> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "checked on the left"
+    )]
+    ((0.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0).then_some(value as u32)
+}

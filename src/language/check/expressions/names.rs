@@ -1,0 +1,420 @@
+//! What a name means where it stands: a sibling field, then a `let`, a `param`, a block; and what is read from a block,
+//! `pendulum.energy`, or from a procedure that ran, `k0.stiffness.u`.
+
+use crate::language::check::checker::{Checker, Node, Place, Reads, Shape, Typed};
+use crate::language::check::declarations::{frame, specimen, striker};
+use crate::language::check::messages::{frames, names as fault, types, values};
+use crate::language::check::scope::Meaning;
+use crate::language::syntax::ast::{Expr, ExprKind, Ident};
+use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use crate::procedures::impact::storey_check;
+use crate::schema::{self, BlockKind, Kind};
+use crate::text::source::Span;
+use crate::units::Dimension;
+
+impl<'a> Checker<'a> {
+    /// The value a bare name stands for.
+    pub fn name(&mut self, name: &str, span: Span, place: Place) -> Option<Typed> {
+        if let Reads::Blow(procedure) = place.reads
+            && let Some(block) = self.procedure(procedure)
+            && let renamed = self
+                .left_under_another_name(block, name)
+                .filter(|last| self.result_of_blow(block, last.name).is_some())
+            && let Some(result) = self.result_of_blow(block, name).or(renamed)
+            && (!result.of_storey || self.strikes_a_storey(procedure))
+        {
+            if result.name != name && !self.recorded {
+                return self.fail(fault::left_under_another_name(
+                    self.scope.blocks[block].kind,
+                    name,
+                    result.name,
+                    span,
+                ));
+            }
+            let formula = Formula::Result(ResultReference {
+                procedure,
+                name: result.name,
+                part: Part::Value,
+            });
+            let shape = if result.list {
+                Shape::List
+            } else {
+                Shape::Number
+            };
+            return Some(Typed {
+                shape,
+                ..Typed::number(formula, result.dimension, span)
+            });
+        }
+        if let Some((block, own)) = place.entry
+            && let Some(entry) = self.sibling(block, own, name)
+        {
+            let typed = self.entry(block, entry, span)?;
+            return self.reads_allowed(typed, span, place);
+        }
+        if name == "critical" && place.critical {
+            return Some(Typed::number(
+                Formula::CriticalTimeStep,
+                Dimension::TIME,
+                span,
+            ));
+        }
+        match self.scope.meaning(name) {
+            Some(Meaning::Poisoned) => None,
+            Some(Meaning::Value(index)) => {
+                let typed = self.declared_value(index, span)?;
+                self.reads_allowed(
+                    Typed {
+                        span,
+                        bare: false,
+                        ..typed
+                    },
+                    span,
+                    place,
+                )
+            }
+            Some(Meaning::Block(index)) => {
+                let block = &self.scope.blocks[index];
+                self.fail(types::block_for_number(name, block.kind, span))
+            }
+            None if self.may_be_lost(name) => None,
+            None => {
+                let owner = self
+                    .scope
+                    .procedures()
+                    .find(|(_, block)| block.kind.result(name).is_some());
+                if let Some(owner) = owner
+                    .and_then(|(_, block)| block.name)
+                    .filter(|_| matches!(place.reads, Reads::All))
+                {
+                    return self.fail(fault::result_without_procedure(name, &owner.node, span));
+                }
+                let siblings = place
+                    .entry
+                    .map_or(&[][..], |(block, _)| &self.scope.blocks[block].block.fields);
+                let known = siblings
+                    .iter()
+                    .map(|entry| entry.key.node.as_str())
+                    .filter(|key| *key != name)
+                    .chain(self.names_to_suggest());
+                // After a blow its results have names of their own.
+                let known: Vec<&str> = known.collect();
+                let (results, storey) = match place.reads {
+                    Reads::Blow(procedure) => (
+                        schema::block(Kind::Impact).results,
+                        self.strikes_a_storey(procedure),
+                    ),
+                    _ => (&[][..], false),
+                };
+                let results = results
+                    .iter()
+                    .filter(|result| !result.of_storey || storey)
+                    .map(|result| result.name);
+                let fault = fault::unknown_name(
+                    name,
+                    span,
+                    self.before(span),
+                    known.into_iter().chain(results),
+                );
+                self.fail(fault)
+            }
+        }
+    }
+
+    /// What stands before a place on its line.
+    fn before(&self, span: Span) -> &'a str {
+        let text = &self.sources.file(span.file).text;
+        let before = &text[..text.floor_char_boundary(span.range().start)];
+        before.rsplit('\n').next().unwrap_or_default()
+    }
+
+    /// The entry `name` of a block, if it is one with a number and not the entry that asks.
+    fn sibling(&self, block: usize, own: usize, name: &str) -> Option<usize> {
+        let declared = &self.scope.blocks[block];
+        declared
+            .kind
+            .field(name)
+            .filter(|field| field.ty.is_numeric())?;
+        declared
+            .block
+            .fields
+            .iter()
+            .position(|entry| entry.key.node == name)
+            .filter(|entry| *entry != own)
+    }
+
+    /// `base.name`
+    pub fn field_of(
+        &mut self,
+        base: &'a Expr,
+        name: &Ident,
+        span: Span,
+        place: Place,
+    ) -> Option<Typed> {
+        if let ExprKind::Name(owner) = &base.kind
+            && let Some(meaning) = self.scope.meaning(owner)
+        {
+            return match meaning {
+                Meaning::Poisoned => None,
+                Meaning::Block(block) => self.member(block, name, span, place),
+                Meaning::Value(_) => self.uncertainty(base, name, span, place),
+            };
+        }
+        if let ExprKind::Name(owner) = &base.kind {
+            let is_sibling = place
+                .entry
+                .is_some_and(|(block, own)| self.sibling(block, own, owner).is_some());
+            if !is_sibling {
+                let has = |kind: &BlockKind| {
+                    kind.result(&name.node).is_some()
+                        || kind.export(&name.node).is_some()
+                        || kind.field(&name.node).is_some()
+                };
+                if self.may_be_lost(owner) || self.scope.nameless().any(has) {
+                    return None;
+                }
+                let fault = fault::unknown_name(
+                    owner,
+                    base.span,
+                    self.before(base.span),
+                    self.names_to_suggest(),
+                );
+                return self.fail(fault);
+            }
+        }
+        self.uncertainty(base, name, span, place)
+    }
+
+    /// `.u` of a result, or of a name that stands for one.
+    fn uncertainty(
+        &mut self,
+        base: &'a Expr,
+        name: &Ident,
+        span: Span,
+        place: Place,
+    ) -> Option<Typed> {
+        let typed = self.value(base, place)?;
+        if name.node != "u" {
+            return self.fail(fault::no_member_of_number(&name.node, name.span));
+        }
+        let measured = typed
+            .formula
+            .as_result()
+            .filter(|reference| reference.part == Part::Value)
+            .filter(|reference| {
+                let kind = self
+                    .procedure(reference.procedure)
+                    .and_then(|block| self.scope.blocks[block].kind.result(reference.name));
+                kind.is_some_and(|kind| kind.measured)
+            });
+        let Some(reference) = measured else {
+            let text = self.text(base.span);
+            return self.fail(fault::no_uncertainty(text, name.span));
+        };
+        let formula = Formula::Result(ResultReference {
+            part: Part::Uncertainty,
+            ..reference
+        });
+        Some(Typed {
+            shape: typed.shape,
+            ..Typed::number(formula, typed.dimension, span)
+        })
+    }
+
+    /// What a block gives: a result, a derived value, or a field.
+    fn member(&mut self, block: usize, name: &Ident, span: Span, place: Place) -> Option<Typed> {
+        let declared = &self.scope.blocks[block];
+        let renamed = self.left_under_another_name(block, &name.node);
+        if let Some(now) = renamed.filter(|_| !self.recorded) {
+            return self.fail(fault::left_under_another_name(
+                declared.kind,
+                &name.node,
+                now.name,
+                name.span,
+            ));
+        }
+        let known = renamed.or_else(|| declared.kind.result(&name.node));
+        if let (Some(result), Some(procedure)) = (known, declared.procedure) {
+            let unloads = declared.kind.kind == Kind::Unload;
+            if result.of_storey && !unloads && storey_check::struck_frame(self, block).is_none() {
+                let fault = frames::result_of_a_storey(result.name, name.span, declared.block.head);
+                return self.fail(fault);
+            }
+            if result.of_storey && unloads && !self.tests_a_frame(block) {
+                let fault = frames::result_of_a_frame(result.name, name.span, declared.block.head);
+                return self.fail(fault);
+            }
+            let reference = ResultReference {
+                procedure,
+                name: result.name,
+                part: Part::Value,
+            };
+            self.read.push((reference, span));
+            let formula = Formula::Result(reference);
+            let shape = if result.list {
+                Shape::List
+            } else {
+                Shape::Number
+            };
+            let typed = Typed {
+                shape,
+                ..Typed::number(formula, result.dimension, span)
+            };
+            return self.reads_allowed(typed, span, place);
+        }
+        if let Some(export) = declared.kind.export(&name.node) {
+            let formula = match declared.kind.kind {
+                Kind::Specimen => specimen::exported(self, block, export.name, span)?,
+                Kind::Striker => striker::exported(self, block, export.name)?,
+                _ => return None,
+            };
+            return Some(Typed::number(formula, export.dimension, span));
+        }
+        if declared
+            .kind
+            .field(&name.node)
+            .is_some_and(|field| field.ty.is_numeric())
+        {
+            let Some(entry) = declared
+                .block
+                .fields
+                .iter()
+                .position(|entry| entry.key.node == name.node)
+            else {
+                return self.fail(fault::field_not_given(
+                    declared.kind,
+                    declared.name,
+                    &name.node,
+                    name.span,
+                ));
+            };
+            let typed = self.entry(block, entry, span)?;
+            if typed.formula.reads_critical_time_step() {
+                return self.fail(values::needs_the_run(
+                    span,
+                    "a time step that follows `critical`",
+                ));
+            }
+            return self.reads_allowed(Typed { span, ..typed }, span, place);
+        }
+        let (kind, owner) = (declared.kind, declared.name);
+        // `hit.max-displacement` is read as a difference, and `psd fmt` writes it as one: `hit.max - displacement`.
+        let text = &self.sources.file(name.span.file).text[name.span.range().start..];
+        let (end, joined) = with_minus_signs(text);
+        if kind.result(&joined).is_some() {
+            let whole = Span {
+                end: name.span.start + u32::try_from(end).unwrap_or(0),
+                ..name.span
+            };
+            self.explained.push(whole);
+            return self.fail(fault::minus_in_name(&text[..end], &joined, whole));
+        }
+        let fault = fault::unknown_result(kind, owner, &name.node, name.span);
+        self.fail(fault)
+    }
+
+    /// Whether a procedure, by its place, strikes one storey of a frame.
+    fn strikes_a_storey(&mut self, procedure: ProcedureId) -> bool {
+        self.procedure(procedure)
+            .is_some_and(|block| storey_check::struck_frame(self, block).is_some())
+    }
+
+    /// Whether what a block tests is a frame.
+    fn tests_a_frame(&mut self, block: usize) -> bool {
+        self.tested(block)
+            .is_some_and(|specimen| frame::is_frame(self, specimen))
+    }
+
+    /// Holds every result that a value reads against what may be read here.
+    fn reads_allowed(&mut self, typed: Typed, span: Span, place: Place) -> Option<Typed> {
+        let mut references = Vec::new();
+        typed.formula.collect_references(&mut references);
+        for reference in references {
+            let owner = self.procedure(reference.procedure)?;
+            let head = self.scope.blocks[owner].block.head;
+            let text = self.text(span);
+            match place.reads {
+                Reads::Nothing(what) => {
+                    return self.fail(values::result_before_the_run(text, span, what, head));
+                }
+                Reads::Before(procedure) | Reads::Blow(procedure)
+                    if reference.procedure == procedure =>
+                {
+                    return self.fail(values::own_result(text, span, head));
+                }
+                Reads::Before(procedure) | Reads::Blow(procedure)
+                    if reference.procedure > procedure =>
+                {
+                    return self.fail(values::result_of_later_procedure(text, span, head));
+                }
+                Reads::Before(_) | Reads::Blow(_) | Reads::All => {}
+            }
+        }
+        Some(typed)
+    }
+
+    /// The block of a procedure.
+    pub fn procedure(&self, id: ProcedureId) -> Option<usize> {
+        self.scope.procedure(id)
+    }
+
+    /// The value of an entry of a block, as its field wants it.
+    pub fn entry(&mut self, block: usize, entry: usize, asked_at: Span) -> Option<Typed> {
+        self.once(Node::Entry { block, entry }, asked_at, |checker| {
+            checker.entry_value(block, entry)
+        })
+    }
+
+    /// The value of a `let` or `param`.
+    pub fn declared_value(&mut self, index: usize, asked_at: Span) -> Option<Typed> {
+        self.used.insert(index);
+        self.once(Node::Value(index), asked_at, |checker| {
+            checker.value_of_declaration(index)
+        })
+    }
+}
+
+/// A name and all that a minus sign joins to it, with blanks or without: how long that is, bytes, and the name that it would be.
+fn with_minus_signs(text: &str) -> (usize, String) {
+    let word = |from: usize| {
+        let rest = &text[from..];
+        from + rest
+            .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+            .unwrap_or(rest.len())
+    };
+    let blanks =
+        |from: usize| from + text[from..].len() - text[from..].trim_start_matches(' ').len();
+    let (mut end, mut joined) = (word(0), text[..word(0)].to_owned());
+    while text[blanks(end)..].starts_with('-') {
+        let begin = blanks(blanks(end) + 1);
+        if word(begin) == begin {
+            break;
+        }
+        end = word(begin);
+        joined = format!("{joined}_{}", &text[begin..end]);
+    }
+    (end, joined)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_with_minus_signs_is_one_however_it_is_laid_out() {
+        for text in [
+            "max-displacement < 1 mm",
+            "max - displacement < 1 mm",
+            "max- displacement",
+        ] {
+            let (end, joined) = with_minus_signs(text);
+            assert!(
+                joined == "max_displacement" && text[..end].ends_with("displacement"),
+                "{text}: {joined}"
+            );
+        }
+        assert_eq!(with_minus_signs("max - 3 mm"), (7, "max_3".to_owned()));
+        assert_eq!(with_minus_signs("max - (a)"), (3, "max".to_owned()));
+        assert_eq!(with_minus_signs("max"), (3, "max".to_owned()));
+    }
+}

@@ -1,0 +1,171 @@
+//! `use "lib/frame.psd"`: every file of a plan, each loaded once. In: the plan's text and a [`Loader`]. Out: the syntax
+//! trees, the plan's first.
+
+use super::messages::files as fault;
+use super::{LoadFault, Loader};
+use crate::language::syntax;
+use crate::language::syntax::ast::{Ast, ItemKind};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::source::{FileId, Sources, Spanned};
+
+/// How deep files may use files.
+pub const DEEPEST: usize = 8;
+/// Files of one plan, the plan included.
+pub const MOST_FILES: usize = 64;
+
+/// All files of a plan.
+pub struct Imports {
+    pub asts: Vec<Ast>,
+    /// Whether some file could not be read, so that names may be missing through no fault of the plan's.
+    pub incomplete: bool,
+}
+
+struct Loading<'l> {
+    loader: &'l dyn Loader,
+    /// Path of each file loaded, with its tree.
+    loaded: Vec<(String, Ast)>,
+    /// The files that use each other down to the one being read.
+    chain: Vec<String>,
+    incomplete: bool,
+}
+
+pub fn load(
+    name: &str,
+    text: &str,
+    loader: &dyn Loader,
+    sources: &mut Sources,
+    faults: &mut Vec<Diagnostic>,
+) -> Imports {
+    let mut loading = Loading {
+        loader,
+        loaded: Vec::new(),
+        chain: Vec::new(),
+        incomplete: false,
+    };
+    // Paths of used files are relative to the plan's folder, and so is the plan's own.
+    let own = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    loading.read(own, name, text, sources, faults);
+    Imports {
+        asts: loading.loaded.into_iter().map(|(_, ast)| ast).collect(),
+        incomplete: loading.incomplete,
+    }
+}
+
+impl Loading<'_> {
+    fn read(
+        &mut self,
+        path: &str,
+        name: &str,
+        text: &str,
+        sources: &mut Sources,
+        faults: &mut Vec<Diagnostic>,
+    ) {
+        let file = sources.add(name, text);
+        let (ast, found) = syntax::parse(sources, file);
+        let known = faults.len();
+        faults.extend(found);
+        let used: Vec<Spanned<String>> = ast
+            .items
+            .iter()
+            .filter_map(|item| {
+                if let ItemKind::Use { path } = &item.kind {
+                    Some(path.clone())
+                } else {
+                    None
+                }
+            })
+            .collect();
+        // Of a file that could not be read at all, nobody knows what it declares.
+        self.incomplete |= ast.items.is_empty() && faults[known..].iter().any(Diagnostic::is_error);
+        self.loaded.push((path.to_owned(), ast));
+        debug_assert_eq!(
+            FileId(u32::try_from(self.loaded.len()).unwrap_or(0)),
+            FileId(file.0 + 1)
+        );
+        self.chain.push(path.to_owned());
+        for used in used {
+            if let Err(found) = self.follow(path, &used, sources, faults) {
+                self.incomplete = true;
+                faults.push(found);
+            }
+        }
+        self.chain.pop();
+    }
+
+    /// Loads what one `use` names, unless it is loaded already.
+    fn follow(
+        &mut self,
+        from: &str,
+        used: &Spanned<String>,
+        sources: &mut Sources,
+        faults: &mut Vec<Diagnostic>,
+    ) -> Result<(), Diagnostic> {
+        let written = used.node.as_str();
+        if let Some(reason) = refused(written) {
+            return Err(fault::bad_path(written, used.span, reason));
+        }
+        let path = resolved(from, written);
+        if let Some(start) = self.chain.iter().position(|open| *open == path) {
+            return Err(fault::use_cycle(&self.chain[start..], &path, used.span));
+        }
+        if self.loaded.iter().any(|(known, _)| *known == path) {
+            return Ok(());
+        }
+        if self.chain.len() > DEEPEST {
+            return Err(fault::too_deep(DEEPEST, used.span));
+        }
+        if self.loaded.len() >= MOST_FILES {
+            return Err(fault::too_many_files(MOST_FILES, used.span));
+        }
+        match self.loader.load(&path) {
+            Ok(text) => {
+                self.read(&path, &path, &text, sources, faults);
+                Ok(())
+            }
+            Err(LoadFault::NotFound) => Err(fault::not_found(&path, used.span)),
+            Err(LoadFault::Refused(reason)) => Err(fault::refused(&path, &reason, used.span)),
+        }
+    }
+}
+
+/// The path, relative to the plan's folder, of what the file `from` calls `written`.
+pub fn resolved(from: &str, written: &str) -> String {
+    let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let steps = written.split('/').filter(|step| *step != ".");
+    folder
+        .split('/')
+        .filter(|step| !step.is_empty())
+        .chain(steps)
+        .collect::<Vec<_>>()
+        .join("/")
+}
+
+/// The path of a file of the plan, relative to the plan's folder.
+pub fn own_path(sources: &Sources, file: FileId) -> String {
+    let name = sources.file(file).name.as_str();
+    if file == FileId(0) {
+        name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned()
+    } else {
+        name.to_owned()
+    }
+}
+
+/// Why a path may not be used, if so.
+pub fn refused(path: &str) -> Option<&'static str> {
+    let drive = path.as_bytes().get(1) == Some(&b':');
+    if path.is_empty() {
+        Some("it is empty")
+    } else if path.contains('\\') {
+        Some("folders are parted by `/`, also on Windows")
+    } else if path.starts_with('/') || drive {
+        Some("it is absolute")
+    } else if path.split('/').any(|step| step == "..") {
+        Some("it leaves the plan's folder by `..`")
+    } else if path.split('/').any(str::is_empty) {
+        Some("a folder in it has no name")
+    } else if path.split('/').all(|step| step == ".") {
+        Some("it is the plan's folder, not a file")
+    } else {
+        None
+    }
+}

@@ -1,0 +1,102 @@
+//! The wording of the diagnostics of the check, one file per subject. In: names, values and spans.
+//! Out: diagnostics. They decide nothing.
+
+use crate::language::syntax::limits::FAULTS;
+use crate::text::diagnostic::{Code, Diagnostic, Severity};
+use crate::units::{Dimension, display};
+
+pub mod axes;
+pub mod cyclic;
+pub mod files;
+pub mod frames;
+pub mod golden;
+pub mod methods;
+pub mod names;
+pub mod rigs;
+pub mod specimens;
+pub mod types;
+pub mod values;
+pub mod whole;
+
+/// Leaves the first of many faults, errors before warnings, and counts the others.
+pub fn cap(faults: &mut Vec<Diagnostic>) {
+    let errors = faults.iter().filter(|fault| fault.is_error()).count();
+    let mut left = [FAULTS, FAULTS.saturating_sub(errors)];
+    let mut out: Vec<Diagnostic> = Vec::new();
+    for fault in std::mem::take(faults) {
+        let left = &mut left[usize::from(!fault.is_error())];
+        if *left > 0 {
+            *left -= 1;
+            faults.push(fault);
+        } else {
+            out.push(fault);
+        }
+    }
+    let Some(first) = out.iter().find(|fault| fault.is_error()).or(out.first()) else {
+        return;
+    };
+    let one = if first.is_error() {
+        Severity::Error
+    } else {
+        Severity::Warning
+    };
+    let message = format!(
+        "{} more faults are not listed: a list has at most {FAULTS}",
+        out.len()
+    );
+    let more = Diagnostic {
+        severity: one,
+        ..Diagnostic::new(Code::TooLarge, message)
+    };
+    let more = first
+        .span()
+        .into_iter()
+        .fold(more, |more, span| more.at(span, "the first of them"));
+    faults.push(more.help("mend those that are listed first"));
+}
+
+/// A value as a person writes it: `16 mm`, not `16.00 mm`.
+pub fn shown(value: f64, dimension: Dimension) -> String {
+    display::plain(value, dimension, 4)
+}
+
+/// `a`, `b` or `c`
+pub fn one_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    joined(words, "or")
+}
+
+/// `a`, `b` and `c`
+pub fn all_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    joined(words, "and")
+}
+
+/// Names of one list, at most: what a plan declares has no bound.
+const NAMED: usize = 40;
+
+fn joined<'a>(words: impl IntoIterator<Item = &'a str>, by: &str) -> String {
+    let mut words = words.into_iter();
+    let quoted: Vec<String> = words
+        .by_ref()
+        .take(NAMED)
+        .map(|word| format!("`{word}`"))
+        .collect();
+    let more = words.count();
+    if more > 0 {
+        return format!("{} {by} {more} more", quoted.join(", "));
+    }
+    match quoted.as_slice() {
+        [] => "none".to_owned(),
+        [only] => only.clone(),
+        [most @ .., last] => format!("{} {by} {last}", most.join(", ")),
+    }
+}
+
+/// "did you mean `x`?", or what is known.
+pub fn suggestion<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    match crate::text::suggest::nearest(written, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if known.is_empty() => "remove it".to_owned(),
+        None => format!("known here: {}", one_of(known)),
+    }
+}

@@ -1,0 +1,392 @@
+//! Faults and warnings of real rigs: E606 to E614, E619, W707, W708, W711, W727. In: what was found and where. Out: diagnostics.
+
+use super::shown;
+use crate::language::syntax::ast::Ident;
+use crate::plan::{Dialect, PortPlan};
+use crate::schema::Field;
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::Span;
+use crate::units::Dimension;
+
+/// The force of a probe over the noise of a reading, at least.
+pub const GATE_OVER_NOISE: f64 = 10.0;
+
+/// `a`, `b` and `c`
+fn all_of(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+    match quoted.as_slice() {
+        [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
+        other => other.concat(),
+    }
+}
+
+pub fn incomplete(
+    name: Option<&Ident>,
+    head: Span,
+    missing: &[&Field],
+    unbounded: &[&str],
+) -> Diagnostic {
+    let name = name.map_or("", |name| name.node.as_str());
+    let fields: Vec<&str> = missing.iter().map(|field| field.name).collect();
+    let mut lacks = Vec::new();
+    let mut help = Vec::new();
+    if !fields.is_empty() {
+        lacks.push(all_of(&fields));
+        help.push("add to the rig".to_owned());
+        help.extend(missing.iter().map(|field| field.example.to_owned()));
+    }
+    if !unbounded.is_empty() {
+        lacks.push(format!("limits on {}", all_of(unbounded)));
+        help.push(
+            if unbounded.len() > 1 {
+                "give them in `limits`, as in"
+            } else {
+                "give it in `limits`, as in"
+            }
+            .to_owned(),
+        );
+        help.extend(
+            unbounded
+                .iter()
+                .map(|field| example_of_limit(field).to_owned()),
+        );
+    }
+    Diagnostic::new(
+        Code::RealRigIncomplete,
+        format!(
+            "rig `{name}` moves a real specimen and lacks {}",
+            lacks.join(", and ")
+        ),
+    )
+    .at(head, "a real rig")
+    .help(help.join("\n"))
+}
+
+pub fn nobody_named(rig: Span) -> Diagnostic {
+    Diagnostic::new(Code::NobodyNamed, "a real rig moves for somebody with a name, and nobody is named")
+        .at(rig, "moves a real specimen")
+        .help("who runs the test is named by `--operator \"A. Tester\"`, or by `operator` in the `plan` block")
+}
+
+fn example_of_limit(field: &str) -> &'static str {
+    match field {
+        "displacement" => "displacement = -2 mm .. 25 mm",
+        "force" => "force = -2 kN .. 12 kN",
+        _ => "speed = 10 mm/s",
+    }
+}
+
+pub fn link_and_device(link: Span, field: &str, other: Span) -> Diagnostic {
+    let help = if field == "load_cell" {
+        "write `actuator` for the device that moves, in place of `link`"
+    } else {
+        "one device that moves and weighs is the `link`; two are an `actuator` and a `load_cell`"
+    };
+    Diagnostic::new(
+        Code::RigLinks,
+        format!(
+            "a rig has a `link`, or an `actuator` and a `load_cell`: here are `link` and `{field}`"
+        ),
+    )
+    .at(other, "and this")
+    .at(link, "this")
+    .help(help)
+}
+
+pub fn load_cell_alone(at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::RigLinks,
+        "a `load_cell` without an `actuator` moves nothing",
+    )
+    .at(at, "nothing moves")
+    .help("add a line such as\nactuator = serial(port: \"/dev/ttyUSB0\", dialect: grbl)")
+}
+
+pub fn cannot_move(field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
+    let name = dialect.name();
+    let help = match dialect {
+        Dialect::Modbus(_) => "give the `target` register, and `position` with its `length_unit`",
+        _ if field == "link" => "make this the `load_cell`, and name an `actuator` that moves",
+        _ => {
+            "name a device that moves, with the dialect `native`, `grbl`, `instron`, `mark10`, `modbus` or `nees`"
+        }
+    };
+    Diagnostic::new(
+        Code::WrongDevice,
+        format!("`{field}` must move the specimen, and a device that speaks `{name}` cannot"),
+    )
+    .at(at, "cannot move")
+    .help(help)
+}
+
+/// `own`: a load cell was named; else the device that moves was to weigh too.
+pub fn cannot_weigh(own: bool, field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
+    let name = dialect.name();
+    let help = match dialect {
+        Dialect::Modbus(_) => {
+            "give the `force` register with its `force_unit`, or another device that reads the force"
+        }
+        _ if own => {
+            "name a device that reads the force, as in\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)"
+        }
+        _ if field == "link" => {
+            "make this the `actuator`, and add\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)"
+        }
+        _ => "add a line such as\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)",
+    };
+    let message = if own {
+        format!("`load_cell` must read the force, and a device that speaks `{name}` cannot")
+    } else {
+        format!("nothing reads the force: a device that speaks `{name}` only moves")
+    };
+    Diagnostic::new(Code::WrongDevice, message)
+        .at(at, "reads no force")
+        .help(help)
+}
+
+pub fn counts_without_force(dialect: &Dialect, at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::CountsWithoutForce,
+        format!(
+            "`{}` gives raw counts, and the rig does not say what a count is worth",
+            dialect.name()
+        ),
+    )
+    .at(at, "counts, not newtons")
+    .help("add to the rig, from its calibration,\nforce_per_count = 0.0123 N\nzero_count = 8123")
+}
+
+pub fn nothing_counts(key: &Ident, dialect: &Dialect) -> Diagnostic {
+    let (field, name) = (&key.node, dialect.name());
+    Diagnostic::new(
+        Code::FieldWithoutUse,
+        format!("`{field}` has no use: `{name}` gives the force in newtons"),
+    )
+    .at(key.span, "not read")
+    .help(format!("remove `{field}`"))
+}
+
+pub fn day_of_no_calibration(field: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(Code::FieldWithoutUse, format!("`{field}` has no use: no calibration of the displacement is named"))
+        .at(at, "of which calibration?")
+        .help("add `displacement_calibration = \"UKAS 4712\"`, or remove the day: `calibration_due` holds for both")
+}
+
+pub fn displacement_without_day(rig: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::CalibrationWithoutDay,
+        format!("rig `{rig}` does not say `displacement_calibration_due`: its certificate will not be certifiable"),
+    )
+    .at(at, "calibrated until when?")
+    .help("add to the rig\ndisplacement_calibration_due = \"2027-03-01\"")
+}
+
+pub fn field_of_real_rigs(key: &Ident) -> Diagnostic {
+    let field = &key.node;
+    let help = match field.as_str() {
+        "noise" | "resolution" => {
+            format!("write it inside the link, as in `link = virtual({field}: …)`, or remove it")
+        }
+        _ => format!("remove `{field}`"),
+    };
+    Diagnostic::new(
+        Code::FieldWithoutUse,
+        format!("`{field}` says something of real rigs, and this rig is virtual"),
+    )
+    .at(key.span, "not read")
+    .help(help)
+}
+
+pub fn bad_port(span: Span, why: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadPort,
+        format!("this cannot be the name of a port: {why}"),
+    )
+    .at(span, "no name of a port")
+    .help("write it as the system names it, such as `\"/dev/ttyUSB0\"`")
+}
+
+pub fn bad_address(address: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadPort,
+        format!(
+            "`{}` is not an address: a host, a colon and a port from 1 to 65535",
+            address.escape_debug()
+        ),
+    )
+    .at(span, "not `host:port`")
+    .help("write it as in `\"127.0.0.1:44000\"`")
+}
+
+pub fn bad_line_text(field: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadPort,
+        format!("`{field}` is sent or read on a line of plain text, and this cannot stand on one"),
+    )
+    .at(span, "empty, or with other than plain characters")
+    .help("write the letters and digits that the device itself uses")
+}
+
+pub fn port_twice(port: &PortPlan, second: Span, first: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::PortTwice,
+        format!(
+            "two devices are on one port, `{}`",
+            port.to_string().escape_debug()
+        ),
+    )
+    .at(second, "again here")
+    .at(first, "first here")
+    .help("name the port of each; one device that moves and weighs is the `link`")
+}
+
+pub fn not_a_day(day: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::NotADay,
+        format!("`{}` is not a day of the calendar", day.escape_debug()),
+    )
+    .at(span, "no such day")
+    .help("write year, month and day, as in `\"2027-03-01\"`")
+}
+
+/// `given`: the watchdog stands at `at`; else the device does whose request waits longest.
+pub fn watchdog_too_short(watchdog: f64, silence: f64, given: bool, at: Span) -> Diagnostic {
+    let time = |value: f64| shown(value, Dimension::TIME);
+    // Down to a whole millisecond, so that seven of it fit in.
+    let shorter = (watchdog / 7.0 * 1e3).floor() / 1e3;
+    let (watchdog, silence) = (time(watchdog), time(silence));
+    let label = if given {
+        format!("{watchdog}, a request waits {silence}")
+    } else {
+        format!("a request to it waits {silence}")
+    };
+    let other = if shorter > 0.0 {
+        format!(", or a `reply_timeout` of at most {}", time(shorter))
+    } else {
+        String::new()
+    };
+    Diagnostic::new(
+        Code::WatchdogTooShort,
+        format!("the watchdog of {watchdog} ends before a request is given up, after {silence}: seven times its `reply_timeout`"),
+    )
+    .at(at, label)
+    .help(format!("write `watchdog = {silence}` or more{other}"))
+}
+
+pub fn never_settles(field: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!(
+            "`{field}` of a real rig must be greater than 0: no real reading ever stands still"
+        ),
+    )
+    .at(span, "too small")
+    .help("write what the rig can keep, a few times its noise")
+}
+
+pub fn not_certifiable(rig: &str, head: Span, reference: bool, due: bool) -> Diagnostic {
+    let (field, line) = if reference {
+        ("calibration", "calibration = \"UKAS 4711\"")
+    } else {
+        ("calibration_due", "calibration_due = \"2027-03-01\"")
+    };
+    let lacks = if reference && due {
+        "`calibration` or `calibration_due`".to_owned()
+    } else {
+        format!("`{field}`")
+    };
+    let lines = if reference && due {
+        format!("{line}\ncalibration_due = \"2027-03-01\"")
+    } else {
+        line.to_owned()
+    };
+    Diagnostic::new(
+        Code::CalibrationWithoutDay,
+        format!("rig `{rig}` does not say {lacks}: its certificate will not be certifiable"),
+    )
+    .at(head, "calibrated until when?")
+    .help(format!("add to the rig\n{lines}"))
+}
+
+/// `of`: ` of axis 2`, where it is one axis's own.
+pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::DeviceNotPinned,
+        format!(
+            "`{field}`{of} takes whatever device answers on `{}`",
+            port.to_string().escape_debug()
+        ),
+    )
+    .at(span, "no `serial_number`")
+    .help("write the serial number that must answer, as in\nserial_number: \"PSD-0001\"")
+}
+
+pub fn nobody_to_free_it(at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::NobodyToFreeIt,
+        "nobody can take the specimen of a virtual rig off its load cell".to_owned(),
+    )
+    .at(at, "a zero that needs a person")
+    .help("write `after: start`: the rig goes back to where it began, and reads its zero there")
+}
+
+/// `of`: what brings a reading about by itself, how much, and what it may come to (SI).
+pub fn drift_within_noise(
+    what: &str,
+    allowed: f64,
+    (name, size, reach): (&str, f64, f64),
+    dimension: Dimension,
+    at: Span,
+) -> Diagnostic {
+    let (allowed, size, reach) = (
+        shown(allowed, dimension),
+        shown(size, dimension),
+        shown(reach, dimension),
+    );
+    Diagnostic::new(
+        Code::DriftWithinNoise,
+        format!(
+            "a drift of the {what} of {allowed} cannot be told from what a reading does by itself"
+        ),
+    )
+    .at(at, format!("the {name} of one reading is {size}"))
+    .help(format!(
+        "allow at least {reach}, or measure with less {name}"
+    ))
+}
+
+/// `probe` m, of which the softest specimen that passes (N/m) makes too little force beside the noise of a reading, N.
+pub fn gate_within_noise(probe: f64, softest: f64, noise: f64, at: Span) -> Diagnostic {
+    // Two digits, upwards.
+    let least = GATE_OVER_NOISE * noise / softest;
+    let digit = 10f64.powf(least.log10().floor() - 1.0);
+    let least = (least / digit * (1.0 - 1e-9)).ceil() * digit;
+    Diagnostic::new(
+        Code::GateWithinNoise,
+        format!(
+            "a probe of {} does not stand out of the noise: a sound rig may fail its gate by chance",
+            shown(probe, Dimension::LENGTH)
+        ),
+    )
+    .at(
+        at,
+        format!(
+            "{} at {}, and the noise of one reading is {}",
+            shown(probe * softest, Dimension::FORCE),
+            shown(softest, Dimension::STIFFNESS),
+            shown(noise, Dimension::FORCE)
+        ),
+    )
+    .help(format!("move at least {}: ten times the noise", shown(least, Dimension::LENGTH)))
+}
+
+pub fn resolution_unknown(rig: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::ResolutionUnknown,
+        format!(
+            "rig `{rig}` does not say the resolution of its displacement reading: a quiet load cell may be taken for a dead one"
+        ),
+    )
+    .at(at, "0 mm, as far as is known")
+    .help("add to the rig, from the transducer's data sheet\nresolution = 1 um")
+}

@@ -1,0 +1,284 @@
+//! Faults of specimens: E401 of a relaxation, E630 to E634, E649, E650, and W715, W724, W726.
+
+use super::shown;
+use crate::language::syntax::ast::Ident;
+use crate::plan::{Interval, Mechanism};
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::Span;
+use crate::units::Dimension;
+
+pub fn corners_of_two_lengths(
+    displacements: Span,
+    forces: Span,
+    counts: (usize, usize),
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::CornersDoNotFit,
+        "every corner has a displacement and a force",
+    )
+    .at(displacements, format!("{} displacements", counts.0))
+    .at(forces, format!("{} forces", counts.1))
+    .help("give both lists as many entries")
+}
+
+/// `place` counts from 0.
+pub fn corner(place: usize, span: Span, label: &str, help: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::CornersDoNotFit,
+        format!("corner {} does not follow from the one before", place + 1),
+    )
+    .at(span, label)
+    .help(help)
+}
+
+/// A row of a table, its line from 1 and its text; without one: what the file as a whole lacks.
+pub fn table_file(
+    file: &str,
+    row: Option<&(usize, String)>,
+    reason: &str,
+    named_at: Span,
+    help: &str,
+) -> Diagnostic {
+    let place = row.map_or_else(String::new, |(line, text)| {
+        format!(", line {line}, `{text}`")
+    });
+    Diagnostic::new(Code::BadTableFile, format!("`{file}`{place}: {reason}"))
+        .at(named_at, "the table")
+        .help(help)
+}
+
+pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BreaksTwice,
+        "`breaks` says how many breaks there are: `most` has nothing to bound",
+    )
+    .at(most, "bounds a choice")
+    .at(breaks, "that is made here")
+    .help("remove `most`, or remove `breaks` and let the criterion choose")
+}
+
+/// A backbone that falls before it yields.
+pub fn capped_before_yield(displacement: f64, yielded: f64, span: Span) -> Diagnostic {
+    let [displacement, yielded] =
+        [displacement, yielded].map(|place| shown(place, Dimension::LENGTH));
+    Diagnostic::new(
+        Code::CornersDoNotFit,
+        format!("a strength capped at {displacement} falls before it is reached"),
+    )
+    .at(span, format!("it yields at {yielded}"))
+    .help(format!("a `capping_displacement` beyond {yielded}"))
+}
+
+/// `lost`: the share of a force that is gone after long.
+pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnostic {
+    let longest = shown(longest, Dimension::TIME);
+    let percent = |number: f64| crate::units::display::significant(100.0 * number, 3);
+    Diagnostic::new(
+        Code::OutOfRange,
+        "a force that relaxes cannot lose more than itself",
+    )
+    .at(
+        span,
+        format!("loses {} % of it until {longest}", percent(lost)),
+    )
+    .help(format!(
+        "a `share` below {} %, or a shorter `longest`",
+        percent(0.99 * share / lost)
+    ))
+}
+
+/// The law ends before it has begun.
+pub fn relaxes_too_short(longest: f64, reference_time: f64, span: Span) -> Diagnostic {
+    let times = [longest, reference_time].map(|time| shown(time, Dimension::TIME));
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!(
+            "relaxation that ends after {} is none with the logarithm of time",
+            times[0]
+        ),
+    )
+    .at(span, format!("its `reference_time` is {}", times[1]))
+    .help(format!(
+        "a `longest` of {} or more",
+        shown(10.0 * reference_time, Dimension::TIME)
+    ))
+}
+
+/// The readings of a pause span so much of time: last over first.
+pub fn few_decades(readings: u32, span: Span) -> Diagnostic {
+    let spanned = u64::from(readings) * u64::from(readings);
+    let message = format!("{readings} readings in a pause tell no law of relaxation from another");
+    Diagnostic::new(Code::FewDecades, message)
+        .at(
+            span,
+            format!("the last reading comes at {spanned} times the time of the first"),
+        )
+        .help("take ten `readings` or more: they then span two decades of time")
+}
+
+pub fn relaxation_without_hold(relaxation: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::RelaxationWithoutHold,
+        "relaxation is read while the actuator holds, and this ramp has no `pause`",
+    )
+    .at(relaxation, "nothing to read")
+    .help("add `pause = 5 s`, for instance")
+}
+
+/// Two arguments of which one means nothing without the other.
+pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BehaviourIncomplete,
+        format!("`{given}` means nothing without `{missing}`"),
+    )
+    .at(span, format!("`{missing}` is missing"))
+    .help(format!("add `{missing}`, or remove `{given}`"))
+}
+
+/// One of two ways to say a thing must stand, and not both; `takes` says of what which two, `example` shows one.
+pub fn one_way_only(takes: &str, example: &str, span: Span, given: usize) -> Diagnostic {
+    let (label, help) = if given == 0 {
+        ("neither is given", format!("add `{example}`, for instance"))
+    } else {
+        ("both are given", "remove one of them".to_owned())
+    };
+    Diagnostic::new(
+        Code::BehaviourIncomplete,
+        format!("{takes}, one of the two"),
+    )
+    .at(span, label)
+    .help(help)
+}
+
+/// Neither a mass nor a weight that moves with the load.
+pub fn portal_without_mass(name: Option<&Ident>, head: Span) -> Diagnostic {
+    let name = name.map_or("", |name| name.node.as_str());
+    Diagnostic::new(
+        Code::MissingField,
+        format!("specimen `{name}` lacks the field `mass`, and nothing of its portal that moves has one"),
+    )
+    .at(head, "`mass` is missing")
+    .help("say what the frame weighs, such as `mass_per_length: 12 kg/m` in `portal(…)`, or add a line such as `mass = 25 kg`")
+}
+
+/// `half` is q·A·L/2, `elastic` what its own ends give, kg; None where the beam is a part of its behaviour only.
+pub fn beam_without_mass(name: &str, head: Span, half: f64, elastic: Option<f64>) -> Diagnostic {
+    let kg = |mass| shown(mass, Dimension::MASS);
+    let half = format!(
+        "`mass = density * area * length / 2`, {}, which is made for a beam on two supports",
+        kg(half)
+    );
+    let help = match elastic {
+        Some(elastic) => format!(
+            "write `mass = {name}.elastic_mass`, {}, which its ends give, or {half}",
+            kg(elastic)
+        ),
+        None => format!("write what moves with it, as in `mass = 0.9 kg`, or {half}"),
+    };
+    Diagnostic::new(
+        Code::MissingField,
+        format!(
+            "specimen `{name}` lacks the field `mass`, which depends on the ends of its `beam`"
+        ),
+    )
+    .at(head, "`mass` is missing")
+    .help(help)
+}
+
+pub fn too_few_parts(variant: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BehaviourIncomplete,
+        format!("`{variant}` joins two behaviours or more"),
+    )
+    .at(span, "only one")
+    .help(format!("add another, or write the one without `{variant}`"))
+}
+
+pub fn too_many_parts(most: usize, what: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnfitInside,
+        format!("a behaviour has at most {most} {what}"),
+    )
+    .at(span, "too many")
+    .help("put springs that stand together into one")
+}
+
+/// `variant` is `rate` or `maxwell`.
+pub fn felt_inside(variant: &str, span: Span) -> Diagnostic {
+    let message = format!(
+        "`{variant}` acts on the load cell, and there is one: it cannot stand inside another behaviour"
+    );
+    let help = match variant {
+        "rate" => "write it around the whole: `rate(of: series(…), reference_velocity: …)`",
+        "logarithmic" => {
+            "write it around the whole: `logarithmic(of: series(…), share: …, reference_time: …)`"
+        }
+        _ => "write it around the whole: `maxwell(of: series(…), stiffness: …, time_constant: …)`",
+    };
+    Diagnostic::new(Code::UnfitInside, message)
+        .at(span, "inside")
+        .help(help)
+}
+
+pub fn falls_in_series(span: Span, series: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnfitInside,
+        "in series a force that falls leaves the displacement of the parts open: no rig could follow it",
+    )
+    .at(span, "its force may fall while its displacement grows")
+    .at(series, "one of these")
+    .help("put what falls around the series: `fracture(of: series(…), force: …)`")
+}
+
+pub fn no_such_property(
+    name: Option<&Ident>,
+    property: &str,
+    reason: &str,
+    span: Span,
+) -> Diagnostic {
+    let name = name.map_or("", |name| name.node.as_str());
+    Diagnostic::new(
+        Code::NoSuchProperty,
+        format!("specimen `{name}` has no `{property}`: {reason}"),
+    )
+    .at(span, "not known of it")
+    .help("read it of a behaviour that has one, such as `portal` or `bilinear` without hardening")
+}
+
+/// Limits let the specimen go where its table does not reach.
+pub fn table_too_short(
+    file: &str,
+    table: Interval,
+    limit: Interval,
+    named_at: Span,
+    limit_at: Span,
+) -> Diagnostic {
+    let range = |interval: Interval| {
+        format!(
+            "{} .. {}",
+            shown(interval.low, Dimension::LENGTH),
+            shown(interval.high, Dimension::LENGTH)
+        )
+    };
+    Diagnostic::new(
+        Code::TableTooShort,
+        format!("the limits reach beyond the points of `{file}`: there its last force holds"),
+    )
+    .at(named_at, format!("points over {}", range(table)))
+    .at(limit_at, format!("allows {}", range(limit)))
+    .help("narrow the limits to what was measured, or measure further")
+}
+
+/// A contact force (N) may grow beyond the most that a mechanism follows (N).
+pub fn beyond_mechanism(mechanism: Mechanism, (force, most): (f64, f64), span: Span) -> Diagnostic {
+    let [force, most] = [force, most].map(|force| shown(force, Dimension::FORCE));
+    let name = mechanism.name();
+    Diagnostic::new(
+        Code::BeyondMechanism,
+        format!("a contact force above {most} makes other hinges than those of the {name} mechanism"),
+    )
+    .at(span, format!("may come to {force}"))
+    .help(
+        "bound the force by what the mechanism follows, or expect hinges nearer to the blow, which one degree of freedom has not",
+    )
+}

@@ -1,0 +1,381 @@
+//! Faults of dimension and type: E3xx.
+
+use super::one_of;
+use crate::language::check::checker::Typed;
+use crate::schema::{BlockKind, Field, Kind, Variant};
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::Span;
+use crate::units::Dimension;
+use crate::units::unit::{PREFIXES, UNITS};
+
+/// "a length", "an energy", "a value in kg/m"
+fn article(dimension: Dimension) -> String {
+    let name = dimension.describe();
+    if dimension.name().is_none() {
+        return format!("a value in {name}");
+    }
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {name}")
+}
+
+/// `3 kg`: the number as written in a unit that fits.
+fn example(number: Option<&str>, dimension: Dimension) -> String {
+    let number = number.unwrap_or("1");
+    if dimension == Dimension::NUMBER {
+        number.to_owned()
+    } else {
+        format!("{number} {}", dimension.usual_unit())
+    }
+}
+
+/// `kN/m` of `kN`, where `N/m` is wanted: what is suggested must not be a thousandth of what was meant.
+fn of_the_same_size(written: &str, wanted: &str) -> Option<String> {
+    let first = |unit: &str| unit.find(['*', '/', '^']).unwrap_or(unit.len());
+    let parts = |name: &str| {
+        let whole = UNITS
+            .iter()
+            .find(|unit| unit.symbol == name)
+            .map(|unit| ("", unit.symbol));
+        let symbols = UNITS
+            .iter()
+            .filter(|unit| unit.prefixes)
+            .map(|unit| unit.symbol);
+        let prefixed =
+            symbols.flat_map(|symbol| PREFIXES.iter().map(move |(prefix, _)| (*prefix, symbol)));
+        whole.or_else(|| {
+            prefixed
+                .into_iter()
+                .find(|(prefix, symbol)| format!("{prefix}{symbol}") == name)
+        })
+    };
+    let (prefix, symbol) = parts(&written[..first(written)])?;
+    let (head, rest) = wanted.split_at(first(wanted));
+    parts(head)
+        .filter(|(_, base)| *base == symbol)
+        .map(|_| format!("{prefix}{symbol}{rest}"))
+}
+
+pub fn missing_unit(
+    text: &str,
+    span: Span,
+    number: Option<&str>,
+    wanted: Dimension,
+    wanted_by: &str,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::MissingUnit,
+        format!(
+            "`{wanted_by}` wants {}, found a number without a unit",
+            article(wanted)
+        ),
+    )
+    .at(span, format!("`{text}` has no unit"))
+    .help(format!(
+        "write the unit, such as `{}`",
+        example(number, wanted)
+    ))
+}
+
+/// A plain number would be read as radians, where most people think of degrees.
+pub fn angle_without_unit(text: &str, span: Span) -> Diagnostic {
+    let plain = text.parse::<f64>().is_ok();
+    let help = if plain {
+        format!("write `{text} deg`, or `{text} rad`")
+    } else {
+        "write `deg` or `rad`, as in `40 deg`".to_owned()
+    };
+    Diagnostic::new(
+        Code::MissingUnit,
+        format!("`{text}` is an angle without a unit"),
+    )
+    .at(span, "degrees or radians?")
+    .help(help)
+}
+
+/// `entries`: a list or range, whose unit stands once, at its end.
+pub fn missing_unit_of_entries(
+    entries: &str,
+    span: Span,
+    wanted: Dimension,
+    wanted_by: &str,
+) -> Diagnostic {
+    let unit = wanted.usual_unit();
+    let fits = entries.len() <= 48 && !entries.contains('\n');
+    let help = if fits {
+        format!("write the unit after the last number or the `]`: `{entries} {unit}`")
+    } else {
+        format!("write the unit after the last number or the `]`, as in `[1, 2, 5] {unit}`")
+    };
+    Diagnostic::new(
+        Code::MissingUnit,
+        format!(
+            "`{wanted_by}` wants {}, found numbers without a unit",
+            article(wanted)
+        ),
+    )
+    .at(span, "these have no unit")
+    .help(help)
+}
+
+pub fn wrong_dimension(
+    text: &str,
+    span: Span,
+    (number, unit): (Option<&str>, Option<&str>),
+    (found, wanted): (Dimension, Dimension),
+    wanted_by: &str,
+) -> Diagnostic {
+    let help = match (number, wanted) {
+        (Some(number), Dimension::ACCELERATION) if text == format!("{number} g") => {
+            format!(
+                "`g` is the gram; write `{number} gn`, as many times the standard gravity of 9.80665 m/s^2"
+            )
+        }
+        (Some(number), _) => {
+            let fits = unit
+                .and_then(|unit| of_the_same_size(unit, &wanted.usual_unit()))
+                .map(|unit| format!("{number} {unit}"));
+            format!(
+                "write {}, such as `{}`",
+                article(wanted),
+                fits.unwrap_or_else(|| example(Some(number), wanted))
+            )
+        }
+        (None, Dimension::NUMBER) => format!(
+            "divide `{text}` by {}, so that a number is left",
+            article(found)
+        ),
+        (None, _) => {
+            format!(
+                "change `{text}` so that it gives {}, which has the unit `{}`",
+                article(wanted),
+                wanted.usual_unit()
+            )
+        }
+    };
+    Diagnostic::new(
+        Code::WrongDimension,
+        format!(
+            "`{wanted_by}` wants {}, found {}",
+            article(wanted),
+            article(found)
+        ),
+    )
+    .at(span, format!("this is {}", article(found)))
+    .help(help)
+}
+
+pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {
+    let (one, other) = (article(left.dimension), article(right.dimension));
+    let forgotten = left.bare != right.bare;
+    let wanted = if left.bare && forgotten {
+        right.dimension
+    } else {
+        left.dimension
+    };
+    let is = |side: &Typed, name: &str| {
+        if side.bare && forgotten {
+            "this number has no unit".to_owned()
+        } else {
+            format!("this is {name}")
+        }
+    };
+    let how = format!(
+        "{} is written as in `{}`",
+        article(wanted),
+        example(None, wanted)
+    );
+    let help = if forgotten {
+        format!("give the number its unit: {how}")
+    } else {
+        format!("both sides must be of one kind; {how}")
+    };
+    Diagnostic::new(
+        Code::MismatchedDimensions,
+        format!("`{operator}` joins {one} and {other}"),
+    )
+    .at(left.span, is(left, &one))
+    .at(right.span, is(right, &other))
+    .help(help)
+}
+
+pub fn list_for_number(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "found a list where one number is wanted")
+        .at(span, "a list")
+        .help("take one entry, as in `list[0]`, or a function of them, as in `max(list)`")
+}
+
+pub fn text_for_number(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "found a text where a number is wanted")
+        .at(span, "a text")
+        .help("write the number without quotes")
+}
+
+pub fn block_for_number(name: &str, kind: &BlockKind, span: Span) -> Diagnostic {
+    let member = kind.results.iter().chain(kind.exports).next().map_or_else(
+        || "a number".to_owned(),
+        |result| format!("`{name}.{}`", result.name),
+    );
+    let words = kind.words();
+    let article = if words.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    Diagnostic::new(
+        Code::WrongType,
+        format!("`{name}` is {article} {words}, not a number"),
+    )
+    .at(span, format!("{article} {words}"))
+    .help(format!("read a value of it, such as {member}"))
+}
+
+pub fn condition_for_number(span: Span, operator: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{operator}` gives no number"))
+        .at(span, "a condition")
+        .help("conditions stand only in `require`; two of them are joined with `and`")
+}
+
+pub fn condition_wanted(wanted_by: &str, span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{wanted_by}` wants a condition"))
+        .at(span, "a value, not a condition")
+        .help(format!("compare it, as in `{text} < …`"))
+}
+
+pub fn text_wanted(field: &str, span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{field}` wants a text in quotes"))
+        .at(span, "not a text")
+        .help(format!("write `\"{text}\"`"))
+}
+
+pub fn block_wanted(kind: Kind, span: Span, text: &str) -> Diagnostic {
+    let words = crate::schema::block(kind).words();
+    Diagnostic::new(
+        Code::WrongType,
+        format!("found `{text}` where the name of a {words} is wanted"),
+    )
+    .at(span, format!("not a {words}"))
+    .help(format!("write the name of a `{words}` block"))
+}
+
+pub fn procedure_wanted(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{name}` is not a procedure"))
+        .at(span, "has no figures")
+        .help("write the name of a procedure, as in `energy(hit)`")
+}
+
+pub fn figure_wanted(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, format!("`{text}` is not a figure of a procedure"))
+        .at(span, "not a figure")
+        .help("a figure names its procedure, as in `energy(hit)`, or several, as in `displacement(first, second)`")
+}
+
+pub fn choice_wanted(field: &str, variants: &[Variant], span: Span, text: &str) -> Diagnostic {
+    let known = one_of(variants.iter().map(|variant| variant.name));
+    Diagnostic::new(
+        Code::WrongType,
+        format!("`{field}` wants one of its words, found `{text}`"),
+    )
+    .at(span, "not one of its words")
+    .help(
+        match variants
+            .iter()
+            .find(|variant| variant.name == text.trim_matches('"'))
+        {
+            Some(meant) => format!("write it without quotes: `{}`", meant.name),
+            None => format!("it takes {known}"),
+        },
+    )
+}
+
+pub fn range_wanted(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "found one value where a range is wanted")
+        .at(span, "not a range")
+        .help(format!("write both ends, as in `0 .. {text}`"))
+}
+
+pub fn range_wanted_by(field: &Field, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::WrongType,
+        format!("`{}` wants a range, found one value", field.name),
+    )
+    .at(span, "not a range")
+    .help(format!("write both ends, as in `{}`", field.example))
+}
+
+pub fn index_of_number(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::WrongType, "only a list has entries")
+        .at(span, "one number")
+        .help("remove the index")
+}
+
+pub fn index_not_whole(span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::WrongType,
+        "the place in a list is a whole number from 0",
+    )
+    .at(span, "not a place in a list")
+    .help("write it as in `list[0]`")
+}
+
+pub fn angle_with_unit(function: &str, argument: &Typed) -> Diagnostic {
+    let found = article(argument.dimension);
+    Diagnostic::new(
+        Code::WrongDimension,
+        format!("`{function}` wants an angle in radians, found {found}"),
+    )
+    .at(argument.span, format!("this is {found}"))
+    .help("divide by a value of the same kind, so that a number is left")
+}
+
+pub fn exponent_with_unit(exponent: &Typed) -> Diagnostic {
+    let found = article(exponent.dimension);
+    Diagnostic::new(
+        Code::BadExponent,
+        format!("an exponent is a number, found {found}"),
+    )
+    .at(exponent.span, format!("this is {found}"))
+    .help("write a number without a unit, as in `x^2`")
+}
+
+pub fn exponent_not_constant(span: Span, base: Dimension) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadExponent,
+        format!(
+            "the exponent of {} must be known before the run",
+            article(base)
+        ),
+    )
+    .at(span, "known only after the run")
+    .help("write a number, as in `x^2`")
+}
+
+pub fn exponent_not_rational(span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadExponent,
+        "the exponent of a quantity must be a simple fraction",
+    )
+    .at(span, "no fraction with a denominator up to 12")
+    .help("write it as in `x^1.5` or `x^(1 / 3)`")
+}
+
+pub fn exponent_too_large(span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadExponent,
+        "the exponents of this unit leave their range",
+    )
+    .at(span, "too large")
+    .help("use smaller powers")
+}
+
+pub fn unit_exponent(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadExponent,
+        format!("`{text}` is not the exponent of a unit"),
+    )
+    .at(span, "not a simple fraction")
+    .help("write it as in `mm^2` or `N/m^1.5`")
+}

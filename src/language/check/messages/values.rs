@@ -1,0 +1,489 @@
+//! Faults of values: E4xx.
+
+use super::shown;
+use crate::physics::statistics::student_t::coverage;
+use crate::plan::Interval;
+use crate::schema::{Field, Range};
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::Span;
+use crate::uncertainty::FEW;
+use crate::units::display::significant;
+use crate::units::{Dimension, display};
+
+fn allowed(range: Range, dimension: Dimension) -> String {
+    let number = |value: f64| ((value * 1e4).round() / 1e4).to_string();
+    let show = |value: f64| {
+        if dimension == Dimension::NUMBER || value == 0.0 {
+            number(value)
+        } else {
+            shown(value, dimension)
+        }
+    };
+    match (range.low.is_finite(), range.above, range.high.is_finite()) {
+        (true, true, false) => format!("greater than {}", show(range.low)),
+        (true, false, false) => format!("at least {}", show(range.low)),
+        (true, true, true) => format!(
+            "greater than {} and at most {}",
+            show(range.low),
+            show(range.high)
+        ),
+        (true, false, true) => format!("between {} and {}", show(range.low), show(range.high)),
+        _ => format!("at most {}", show(range.high)),
+    }
+}
+
+pub fn out_of_range(
+    field: &Field,
+    dimension: Dimension,
+    value: f64,
+    text: &str,
+    span: Span,
+) -> Diagnostic {
+    let allowed = allowed(field.range, dimension);
+    let is = if dimension == Dimension::NUMBER {
+        value.to_string()
+    } else {
+        shown(value, dimension)
+    };
+    let mirrored = text
+        .strip_prefix('-')
+        .map(str::trim_start)
+        .filter(|_| -value > field.range.low && -value <= field.range.high);
+    let help = mirrored.map_or_else(
+        || format!("give a value that is {allowed}"),
+        |size| format!("write the size, `{size}`"),
+    );
+    // A literal is not said twice: "`-10 kg` is -10 kg".
+    let side = if value > field.range.high {
+        "too large"
+    } else {
+        "too small"
+    };
+    let label = if is == text {
+        side.to_owned()
+    } else {
+        format!("`{text}` is {is}")
+    };
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!("`{}` must be {allowed}", field.name),
+    )
+    .at(span, label)
+    .help(help)
+}
+
+/// `dimension` is that of the value, whose name the field begins with.
+pub fn too_uncertain(
+    field: &str,
+    uncertainty: f64,
+    value: f64,
+    dimension: Dimension,
+    span: Span,
+) -> Diagnostic {
+    let (uncertainty, value) = (shown(uncertainty, dimension), shown(value, dimension));
+    let of = field.trim_end_matches("_uncertainty");
+    Diagnostic::new(Code::TooUncertain, format!("`{field}` is more than a fifth of the `{of}`, {value}"))
+        .at(span, format!("{uncertainty} is one standard uncertainty"))
+        .help(
+            "write the standard uncertainty: half of a bound that holds in 95 of 100 cases, or the half-width of a range over √3",
+        )
+}
+
+/// A mass whose uncertainty nobody asks for.
+pub fn uncertainty_unused(specimen: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UncertaintyUnused, format!("the uncertainty of the mass of `{specimen}` reaches no result"))
+        .at(span, "no impact takes the mass of this specimen")
+        .help("leave `mass` out of the impact, so that it is the specimen's with its uncertainty; or remove `mass_uncertainty`")
+}
+
+pub fn few_degrees_of_freedom(
+    ramp: &str,
+    points: usize,
+    degrees: usize,
+    displacements: Span,
+    required: Span,
+) -> Diagnostic {
+    #[expect(clippy::cast_precision_loss, reason = "a few")]
+    let factor = significant(coverage(degrees as f64), 3);
+    let freedom = if degrees == 1 {
+        "1 degree of freedom".to_owned()
+    } else {
+        format!("{degrees} degrees of freedom")
+    };
+    let text = format!(
+        "{points} steps leave the fit of `{ramp}` {freedom}: U is {factor} times its standard error"
+    );
+    Diagnostic::new(Code::FewDegreesOfFreedom, text)
+        .at(
+            displacements,
+            format!("{points} steps tell a scatter badly"),
+        )
+        .at(required, "what is fitted to them is read here")
+        .help(format!(
+            "take {} or more",
+            points + usize::from(FEW) - degrees
+        ))
+}
+
+pub fn zero(field: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, format!("`{field}` must not be 0"))
+        .at(span, "gives no force or length for any reading")
+        .help("write what one count or unit is worth, with its sign")
+}
+
+pub fn even(field: &str, span: Span, value: u32) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!("`{field}` must be odd, so that one of them is the median"),
+    )
+    .at(span, "even")
+    .help(format!(
+        "write {} or {}",
+        value.saturating_sub(1),
+        value + 1
+    ))
+}
+
+pub fn not_whole(field: &str, span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!("`{field}` must be a whole number"),
+    )
+    .at(span, format!("`{text}` is not whole"))
+    .help("write it without decimals")
+}
+
+pub fn negative_bound(field: &str, span: Span, text: &str, symmetric: bool) -> Diagnostic {
+    let help = if symmetric {
+        "write both ends, as in `-2 mm .. 25 mm`, or the size alone"
+    } else {
+        "write the size, without a sign"
+    };
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!("the bound on `{field}` must be at least 0"),
+    )
+    .at(span, format!("`{text}` is negative"))
+    .help(help)
+}
+
+/// Of `A within TOLERANCE of B`: nothing is nearer than not at all.
+pub fn negative_tolerance(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        "the tolerance of `within` must be at least 0",
+    )
+    .at(span, format!("`{text}` is negative: no value is so near"))
+    .help("write the size, without a sign")
+}
+
+pub fn bounds_reversed(span: Span, low: &str, high: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!("the range runs backwards: `{low}` is more than `{high}`"),
+    )
+    .at(span, "the lower end stands first")
+    .help(format!("write `{high} .. {low}`"))
+}
+
+pub fn parameter_out_of_bounds(
+    name: &str,
+    text: &str,
+    span: Span,
+    bounds: Interval,
+    dimension: Dimension,
+) -> Diagnostic {
+    let (low, high) = (shown(bounds.low, dimension), shown(bounds.high, dimension));
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!("`{name}` is outside its own range {low} .. {high}"),
+    )
+    .at(span, format!("`{text}` is outside"))
+    .help("widen the range or change the value")
+}
+
+pub fn setting_out_of_range(
+    name: &str,
+    text: &str,
+    span: Span,
+    bounds: Interval,
+    dimension: Dimension,
+    bounds_at: Span,
+) -> Diagnostic {
+    let (low, high) = (shown(bounds.low, dimension), shown(bounds.high, dimension));
+    Diagnostic::new(
+        Code::SettingOutOfRange,
+        format!("`--set {name}` is outside {low} .. {high}"),
+    )
+    .at(span, format!("`{text}` is outside"))
+    .at(bounds_at, "the range it must stay in")
+    .help(format!("set a value between {low} and {high}"))
+}
+
+pub fn no_such_entry(span: Span, place: usize, length: usize) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!("the list has no entry {place}: it has {length}"),
+    )
+    .at(span, "past the end")
+    .help(format!("the last entry is {}", length.saturating_sub(1)))
+}
+
+pub fn empty_list(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::OutOfRange, "a list has at least one entry")
+        .at(span, "nothing in it")
+        .help("write the entries, as in `[1, 2, 5] mm`")
+}
+
+pub fn range_without_step(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::BadRange, "this range has no step")
+        .at(span, "a list is wanted")
+        .help(format!("add one, as in `{text} step …`"))
+}
+
+pub fn step_in_bounds(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadRange, "a range of allowed values has no step")
+        .at(span, "not here")
+        .help("remove `step`")
+}
+
+pub fn range_not_constant(span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UsedBeforeItRan,
+        "both ends and the step of a range must be known before the run",
+    )
+    .at(span, "known only after a procedure ran")
+    .help("write numbers, or a `let` or `param` of numbers")
+}
+
+pub fn step_leads_away(span: Span, text: &str, zero: bool) -> Diagnostic {
+    let help = match text.strip_prefix('-') {
+        _ if zero => "a step is not zero".to_owned(),
+        Some(size) => format!("this range rises: write `step {}`", size.trim_start()),
+        None => format!("this range falls: write `step -{text}`"),
+    };
+    Diagnostic::new(
+        Code::BadRange,
+        "the step does not lead from the start to the end",
+    )
+    .at(span, format!("`{text}` never arrives"))
+    .help(help)
+}
+
+pub fn step_does_not_divide(
+    range: Span,
+    step: Span,
+    length: f64,
+    count: f64,
+    dimension: Dimension,
+) -> Diagnostic {
+    // Only sizes that a person can write down in full: a third of 1 mm is none.
+    let size = |steps: &f64| {
+        let size = length / steps;
+        let short = display::plain(size, dimension, 6);
+        (short == display::plain(size, dimension, 14)).then_some(short)
+    };
+    let whole = |offset: u32| count.floor() + f64::from(offset);
+    let larger = (0..1000)
+        .map(|less| count.floor() - f64::from(less))
+        .take_while(|steps| *steps >= 1.0)
+        .find_map(|it| size(&it));
+    let smaller = (1..1000).map(whole).find_map(|it| size(&it));
+    let nearest = match (smaller, larger) {
+        (Some(smaller), Some(larger)) => format!("`step {smaller}` and `step {larger}` do"),
+        (Some(one), None) | (None, Some(one)) => format!("`step {one}` does"),
+        (None, None) => "move an end of the range by the rest, or take another step".to_owned(),
+    };
+    Diagnostic::new(Code::BadRange, "the step does not divide the range")
+        .at(step, "leaves a rest at the end")
+        .at(range, "both ends belong to the range")
+        .help(nearest)
+}
+
+pub fn too_many_entries(span: Span, found: f64, most: usize) -> Diagnostic {
+    let found = if found < 1e12 {
+        found.to_string()
+    } else {
+        format!("about {found:.0e}")
+    };
+    Diagnostic::new(
+        Code::TooMany,
+        format!("a list has at most {most} entries, this one {found}"),
+    )
+    .at(span, "too many")
+    .help("take a larger step")
+}
+
+pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Diagnostic {
+    // A count that a person can read, and of a larger one its size.
+    let found = if found < 1e12 {
+        found.to_string()
+    } else {
+        format!("about {found:.0e}")
+    };
+    Diagnostic::new(
+        Code::TooMany,
+        format!("a procedure has at most {most} {what}, this one {found}"),
+    )
+    .at(span, "too many")
+    .help(help)
+}
+
+/// A limit on the speed that leaves none.
+pub fn no_speed(span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        "the bound on `speed` must be greater than 0",
+    )
+    .at(span, "nothing moves")
+    .help("write the largest speed of the actuator, as in `10 mm/s`")
+}
+
+/// Values that need values, one inside another.
+pub fn too_deep(span: Span, most: usize) -> Diagnostic {
+    Diagnostic::new(
+        Code::TooMany,
+        format!("values need one another more than {most} deep"),
+    )
+    .at(span, "one too many")
+    .help("declare a value before those that use it, or write fewer steps between them")
+}
+
+/// A value that is copied wherever it is named.
+pub fn too_many_terms(span: Span, most: usize) -> Diagnostic {
+    Diagnostic::new(
+        Code::TooMany,
+        format!("a value of results has at most {most} results and operators, those of the values it names counted in"),
+    )
+    .at(span, "too many")
+    .help("name each result once, and calculate with fewer of them")
+}
+
+pub fn not_finite(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::NotFinite, "this is not a finite number")
+        .at(
+            span,
+            "a division by zero, a root of a negative number, or too large",
+        )
+        .help("change the expression so that it has a value")
+}
+
+pub fn energy_not_finite(span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::NotFinite,
+        "the energy of the striker, ½ m v², is not a finite number",
+    )
+    .at(span, "too fast for its mass")
+    .help("lower its velocity or its mass")
+}
+
+pub fn edition(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::Edition,
+        format!("this version reads edition 1 of the language, not {text}"),
+    )
+    .at(span, "another edition")
+    .help("write `edition = 1`, or use the version of psd that the plan was written for")
+}
+
+pub fn needs_the_run(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(Code::UsedBeforeItRan, "this must be known before the run")
+        .at(span, format!("`{text}` is known only during the run"))
+        .help("write a number, or a `let` or `param` of numbers")
+}
+
+pub fn result_before_the_run(text: &str, span: Span, what: &str, procedure: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UsedBeforeItRan,
+        format!("`{text}` is a result, and {what} is fixed before the run"),
+    )
+    .at(span, "known only after the run")
+    .at(procedure, "the procedure it comes from")
+    .help("read results in the fields of later procedures and in `require`")
+}
+
+pub fn own_result(text: &str, span: Span, procedure: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UsedBeforeItRan,
+        format!("`{text}` is a result of the very procedure that needs it"),
+    )
+    .at(span, "known only after this procedure")
+    .at(procedure, "this procedure")
+    .help("read a result of an earlier procedure")
+}
+
+pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UsedBeforeItRan,
+        format!("`{text}` is used before its procedure ran"),
+    )
+    .at(span, "used here")
+    .at(procedure, "runs only later")
+    .help("procedures run in the order written: move that one up")
+}
+
+/// `read` is what some text reads of a ramp, `lacks` why it never has it, `way_out` what would.
+pub fn never_given(
+    read: &str,
+    span: Span,
+    ramp: (&str, Span),
+    lacks: &str,
+    way_out: &str,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::NeverGiven,
+        format!("the ramp `{}` never gives `{read}`: {lacks}", ramp.0),
+    )
+    .at(span, "read here")
+    .at(ramp.1, "of this ramp")
+    .help(way_out.to_owned())
+}
+
+/// `result` is read where the guarded rule decides, and has never an uncertainty.
+pub fn nothing_to_guard(result: &str, required: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::NothingToGuard,
+        format!("`{result}` never has an uncertainty: the guarded rule keeps no band for it"),
+    )
+    .at(required, "decided as by the simple rule")
+    .help("leave room in the limit itself, or require what is measured")
+}
+
+/// `read` is where the last step of a run was; `row`: of a row of blows.
+pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) -> Diagnostic {
+    let or_row = if row {
+        ", or write `between = unload`"
+    } else {
+        ""
+    };
+    Diagnostic::new(
+        Code::FinalIsNotResidual,
+        format!("`{read}` is read under load: it is not what stays when the load is off"),
+    )
+    .at(required, "required of the last step")
+    .at(head, "nothing unloads the specimen after it")
+    .help(format!(
+        "unload the specimen with `unload rest {{ }}`, and require its `residual_…`{or_row}"
+    ))
+}
+
+/// `step` and `duration` in s.
+pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f64) -> Diagnostic {
+    let told = |time| display::stated(time, Dimension::TIME);
+    let message = format!(
+        "the time step {} is longer than the run, {}",
+        told(step),
+        told(duration)
+    );
+    Diagnostic::new(Code::OutOfRange, message)
+        .at(at, "not one whole step")
+        .at(duration_at, "all the time there is")
+        .help("write `time_step = critical / 20`")
+}
+
+/// What is written and can do nothing here: why, and the way out.
+pub fn no_effect(message: String, span: Span, label: &str, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::NoEffect, message)
+        .at(span, label.to_owned())
+        .help(help.to_owned())
+}

@@ -1,0 +1,197 @@
+//! `axes = [axis(…), …]` of a real rig: what each actuator with its load cell says of itself. In: the block of a rig. Out:
+//! an [`AxisPlan`] each. Whether the specimen has as many storeys is held here too; what drives them is `device`'s.
+
+use super::device::{Device, device};
+use super::real;
+use super::{CheckedRig, place_of};
+use crate::language::check::checker::{Checker, Place};
+use crate::language::check::expressions::calendar;
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::messages::{axes as fault, rigs, values};
+use crate::plan::{AxisCalibration, AxisPlan, Specimen};
+use crate::text::source::Span;
+
+/// One axis, and where its own devices were written.
+pub struct CheckedAxis {
+    pub plan: AxisPlan,
+    pub actuator: Option<Device>,
+    pub load_cell: Option<Device>,
+}
+
+/// The axes that a rig lists; none where it says nothing of them.
+pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
+    let Some((_, written)) = checker.given(block, "axes") else {
+        return Some(Vec::new());
+    };
+    let (at, place) = (written.value.span, place_of(checker, block, "axes")?);
+    let chosen = checker.choices(block, "axes")?;
+    if chosen.is_empty() {
+        return checker.fail(values::empty_list(at));
+    }
+    let axes: Vec<Option<CheckedAxis>> = chosen
+        .iter()
+        .map(|chosen| axis(checker, block, chosen, place))
+        .collect();
+    axes.into_iter().collect()
+}
+
+fn axis<'a>(
+    checker: &mut Checker<'a>,
+    block: usize,
+    chosen: &Chosen<'a>,
+    place: Place,
+) -> Option<CheckedAxis> {
+    let sign = match chosen.span("sign") {
+        Some(_) => checker.chosen_argument(chosen, "sign").map(|word| {
+            Some(if word.variant.name == "negative" {
+                -1.0
+            } else {
+                1.0
+            })
+        }),
+        None => Some(None),
+    };
+    let gate = match chosen.span("gate") {
+        Some(_) => checker
+            .chosen_argument(chosen, "gate")
+            .and_then(|gate| real::probe(checker, &gate, place))
+            .map(Some),
+        None => Some(None),
+    };
+    let (displacement, force) = (
+        checker.bounds_argument(chosen, "displacement", place),
+        checker.bounds_argument(chosen, "force", place),
+    );
+    let (resolution, noise) = (
+        checker.optional_argument(chosen, "resolution", place),
+        checker.optional_argument(chosen, "noise", place),
+    );
+    let force_range = checker.bounds_argument(chosen, "force_range", place);
+    let calibration = calibration(checker, block, chosen, place);
+    let (actuator, load_cell) = (
+        own_device(checker, chosen, "actuator", place),
+        own_device(checker, chosen, "load_cell", place),
+    );
+    let (actuator, load_cell) = (actuator?, load_cell?);
+    let link = |device: &Option<Device>| device.as_ref().map(|device| device.link.clone());
+    let plan = AxisPlan {
+        sign: sign?,
+        gate: gate?,
+        displacement: displacement?,
+        force: force?,
+        resolution: resolution?,
+        noise: noise?,
+        force_range: force_range?,
+        calibration: calibration?,
+        actuator: link(&actuator),
+        load_cell: link(&load_cell),
+    };
+    Some(CheckedAxis {
+        plan,
+        actuator,
+        load_cell,
+    })
+}
+
+/// A device of its own: `Some(None)` where it has none.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
+fn own_device<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    role: &str,
+    place: Place,
+) -> Option<Option<Device>> {
+    let Some(at) = chosen.span(role) else {
+        return Some(None);
+    };
+    let link = checker.chosen_argument(chosen, role)?;
+    device(checker, &link, at, place).map(Some)
+}
+
+/// Where the numbers of one axis are traced to.
+fn calibration<'a>(
+    checker: &mut Checker<'a>,
+    block: usize,
+    chosen: &Chosen<'a>,
+    place: Place,
+) -> Option<AxisCalibration> {
+    let mut day = |name: &str| match checker.text_argument(chosen, name)? {
+        Some((day, at)) if !calendar::is_day(&day) => checker.fail(rigs::not_a_day(&day, at)),
+        day => Some(day),
+    };
+    let (due, displacement_due) = (day("calibration_due"), day("displacement_calibration_due"));
+    let mut text = |name: &str| {
+        checker
+            .text_argument(chosen, name)
+            .map(|given| given.map(|(text, _)| text))
+    };
+    let (reference, displacement) = (text("calibration"), text("displacement_calibration"));
+    let (force_class, displacement_class) = (text("force_class"), text("displacement_class"));
+    let mut number = |name: &str| checker.optional_argument(chosen, name, place);
+    let (force, length) = (
+        number("force_uncertainty"),
+        number("displacement_uncertainty"),
+    );
+    let zero = number("zero_uncertainty");
+    let (newtons_per_count, zero_count) = (number("force_per_count"), number("zero_count"));
+    let mut range = |name: &str| checker.bounds_argument(chosen, name, place);
+    let (force_calibrated, displacement_calibrated) = (
+        range("force_calibration_range"),
+        range("displacement_calibration_range"),
+    );
+    let (displacement, displacement_due) = (displacement?, displacement_due?);
+    if let (None, None, Some((_, at))) = (
+        &displacement,
+        checker.given(block, "displacement_calibration"),
+        &displacement_due,
+    ) {
+        return checker.fail(rigs::day_of_no_calibration(
+            "displacement_calibration_due",
+            *at,
+        ));
+    }
+    let text = |given: Option<(String, Span)>| given.map(|(text, _)| text);
+    Some(AxisCalibration {
+        reference: reference?,
+        due: text(due?),
+        force_class: force_class?,
+        force_calibrated: force_calibrated?,
+        displacement,
+        displacement_due: text(displacement_due),
+        displacement_class: displacement_class?,
+        displacement_calibrated: displacement_calibrated?,
+        newtons_per_count: newtons_per_count?,
+        zero_count: zero_count?,
+        force_uncertainty: force?,
+        displacement_uncertainty: length?,
+        zero_uncertainty: zero?,
+    })
+}
+
+/// A rig of as many axes as its specimen has storeys: no storey without an actuator, and no actuator without a storey.
+pub fn hold_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen: &Specimen) {
+    let Some(CheckedRig {
+        plan,
+        block: Some(block),
+        ..
+    }) = rig
+    else {
+        return;
+    };
+    let (Some(axes), Some((_, written))) = (plan.axes(), checker.given(*block, "axes")) else {
+        return;
+    };
+    let storeys = specimen.degrees_of_freedom();
+    if axes != storeys {
+        checker.faults.push(fault::another_number(
+            &plan.name,
+            axes,
+            &specimen.name,
+            storeys,
+            written.value.span,
+        ));
+    }
+}

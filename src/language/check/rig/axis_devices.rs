@@ -1,0 +1,131 @@
+//! Which device is for which axis: the rig's own ones for every axis that has none, and those of the axes. In: devices and axes
+//! as they were written. Out: nothing, or why they do not fit together. It opens no port.
+
+use super::axes::CheckedAxis;
+use super::device::Device;
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::{axes as fault, rigs};
+use crate::plan::Dialect;
+
+/// Every axis is moved by one device and weighed by one, no device is without an axis, and none has more than it can have.
+pub fn hold(
+    checker: &mut Checker,
+    block: usize,
+    actuator: &Device,
+    load_cell: Option<&Device>,
+    axes: &[CheckedAxis],
+) -> Option<()> {
+    let count = axes.len().max(1);
+    let without = |own: fn(&CheckedAxis) -> Option<&Device>| {
+        count - axes.iter().filter(|axis| own(axis).is_some()).count()
+    };
+    let movers = |axis: &CheckedAxis| axis.actuator.is_some();
+    let (moved, weighed) = (
+        without(|axis| axis.actuator.as_ref()),
+        without(|axis| axis.load_cell.as_ref()),
+    );
+    let unfit = |own: fn(&CheckedAxis) -> Option<&Device>, fit: fn(&Dialect) -> bool| {
+        axes.iter()
+            .filter_map(own)
+            .find(|device| !fit(&device.link.dialect))
+    };
+    if let Some(device) = unfit(|axis| axis.actuator.as_ref(), Dialect::moves) {
+        return checker.fail(rigs::cannot_move(
+            "actuator",
+            &device.link.dialect,
+            device.dialect_at,
+        ));
+    }
+    if let Some(device) = unfit(|axis| axis.load_cell.as_ref(), Dialect::weighs) {
+        return checker.fail(rigs::cannot_weigh(
+            true,
+            "load_cell",
+            &device.link.dialect,
+            device.dialect_at,
+        ));
+    }
+    let idle = [(moved, Some(actuator)), (weighed, load_cell)]
+        .into_iter()
+        .find(|(left, device)| *left == 0 && device.is_some());
+    if let Some((_, Some(device))) = idle {
+        return checker.fail(fault::no_axis_left(device.at));
+    }
+    // What one of them refuses none may begin: each is asked before any is told.
+    let all =
+        std::iter::once(actuator).chain(axes.iter().filter_map(|axis| axis.actuator.as_ref()));
+    let rash = all.clone().find(|device| !device.link.dialect.proposes());
+    if let (true, Some(device)) = (axes.iter().any(movers), rash) {
+        return checker.fail(fault::not_asked(&device.link.dialect, device.dialect_at));
+    }
+    if let Some((_, written)) = checker
+        .given(block, "axes")
+        .filter(|_| moved > actuator.link.dialect.most_axes())
+    {
+        return checker.fail(fault::too_many(
+            moved,
+            actuator.link.dialect.most_axes(),
+            &actuator.link.dialect,
+            written.value.span,
+        ));
+    }
+    let own = |device: fn(&CheckedAxis) -> Option<&Device>| {
+        axes.iter()
+            .filter_map(move |axis| device(axis))
+            .map(|device| (1, device))
+    };
+    let driving = std::iter::once((moved, actuator)).chain(own(|axis| axis.actuator.as_ref()));
+    for (behind, device) in driving {
+        points(checker, behind, device)?;
+    }
+    let weighing = load_cell
+        .map(|device| (weighed, device))
+        .into_iter()
+        .chain(own(|axis| axis.load_cell.as_ref()));
+    for (behind, device) in weighing {
+        channels(checker, behind, device)?;
+    }
+    let cells = axes.iter().filter_map(|axis| axis.load_cell.as_ref());
+    ports(
+        checker,
+        &all.chain(load_cell).chain(cells).collect::<Vec<&Device>>(),
+    )
+}
+
+/// A control point for every axis, and no axis without one.
+fn points(checker: &mut Checker, axes: usize, device: &Device) -> Option<()> {
+    match &device.link.dialect {
+        Dialect::Nees { control_points } if control_points.len() != axes => {
+            checker.fail(fault::control_points(control_points.len(), axes, device.at))
+        }
+        _ => Some(()),
+    }
+}
+
+/// A channel for every axis behind it, and none too many. How many `native` has it says itself, when it is asked who it is.
+fn channels(checker: &mut Checker, behind: usize, device: &Device) -> Option<()> {
+    let dialect = &device.link.dialect;
+    let has = match dialect {
+        Dialect::Native => behind.min(dialect.most_channels()),
+        _ => dialect.most_channels(),
+    };
+    match dialect {
+        Dialect::Nees { .. } => points(checker, behind, device),
+        _ if has == behind => Some(()),
+        _ => checker.fail(fault::channels(has, behind, dialect, device.dialect_at)),
+    }
+}
+
+/// Each device on a port of its own.
+fn ports(checker: &mut Checker, devices: &[&Device]) -> Option<()> {
+    for (place, device) in devices.iter().enumerate() {
+        let same = |other: &&&Device| other.link.port.to_string() == device.link.port.to_string();
+        if let Some(first) = devices[..place].iter().find(same) {
+            return checker.fail(rigs::port_twice(
+                &device.link.port,
+                device.port_at,
+                first.port_at,
+            ));
+        }
+    }
+    Some(())
+}

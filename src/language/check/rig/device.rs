@@ -1,0 +1,191 @@
+//! One device of a real rig: `serial(…)` or `tcp(…)`, its port and its time-out. In: a field that names one. Out: a
+//! [`Device`]. It opens nothing: whether there is such a port shows when the run opens it.
+
+use super::dialect;
+use crate::language::check::checker::{Checker, Place};
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::expressions::fields::whole;
+use crate::language::check::messages::rigs as fault;
+use crate::plan::{DeviceLink, PortPlan};
+use crate::text::source::Span;
+
+/// A device, and where its parts were written.
+pub struct Device {
+    pub link: DeviceLink,
+    pub port_at: Span,
+    pub dialect_at: Span,
+    /// The whole `serial(…)` or `tcp(…)`.
+    pub at: Span,
+}
+
+/// The device that a variant `serial` or `tcp` describes.
+pub fn device<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    at: Span,
+    place: Place,
+) -> Option<Device> {
+    let serial = chosen.variant.name == "serial";
+    let port = if serial {
+        serial_port(checker, chosen, place)
+    } else {
+        tcp_address(checker, chosen)
+    };
+    let dialect = checker
+        .chosen_argument(chosen, "dialect")
+        .and_then(|chosen| dialect::dialect(checker, &chosen, place));
+    let reply_timeout = checker.constant_argument(chosen, "reply_timeout", place);
+    let serial_number = line_text(checker, chosen, "serial_number");
+    let (port_at, dialect_at) = (
+        chosen.span(if serial { "port" } else { "address" })?,
+        chosen.span("dialect")?,
+    );
+    let link = DeviceLink {
+        port: port?,
+        dialect: dialect?,
+        reply_timeout: reply_timeout?,
+        serial_number: serial_number?,
+    };
+    Some(Device {
+        link,
+        port_at,
+        dialect_at,
+        at,
+    })
+}
+
+fn serial_port<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Place,
+) -> Option<PortPlan> {
+    let path = checker.text_argument(chosen, "port").flatten();
+    let baud = checker
+        .constant_argument(chosen, "baud", place)
+        .and_then(whole);
+    let (path, span) = path?;
+    match fault_of_port(&path) {
+        Some(why) => checker.fail(fault::bad_port(span, why)),
+        None => Some(PortPlan::Serial { path, baud: baud? }),
+    }
+}
+
+/// What is wrong with the name of a port, if something is.
+fn fault_of_port(path: &str) -> Option<&'static str> {
+    if path.is_empty() {
+        Some("it is empty")
+    } else if path.starts_with('-') {
+        Some("it begins like an option")
+    } else if path.chars().any(|c| c.is_whitespace() || c.is_control()) {
+        Some("it has blanks or control characters")
+    } else {
+        None
+    }
+}
+
+fn tcp_address<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<PortPlan> {
+    let (address, span) = checker.text_argument(chosen, "address").flatten()?;
+    if is_host_and_port(&address) {
+        return Some(PortPlan::Tcp { address });
+    }
+    checker.fail(fault::bad_address(&address, span))
+}
+
+/// `host:port`, or `[::1]:port`; the port is 1 to 65535.
+fn is_host_and_port(address: &str) -> bool {
+    let Some((host, port)) = address.rsplit_once(':') else {
+        return false;
+    };
+    let number = port.bytes().all(|byte| byte.is_ascii_digit())
+        && port.parse::<u16>().is_ok_and(|port| port > 0);
+    let name = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
+    let numeric = |c: char| c.is_ascii_hexdigit() || matches!(c, ':' | '.' | '%');
+    let host = match host
+        .strip_prefix('[')
+        .and_then(|inner| inner.strip_suffix(']'))
+    {
+        Some(inner) => inner.contains(':') && inner.chars().all(numeric),
+        None => !host.is_empty() && !host.starts_with('-') && host.chars().all(name),
+    };
+    host && number
+}
+
+/// A text that stands on a line of a protocol: `Some(None)` where it is left out.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
+pub fn line_text<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    name: &str,
+) -> Option<Option<String>> {
+    let Some((text, span)) = checker.text_argument(chosen, name)? else {
+        return Some(None);
+    };
+    if text.trim().is_empty() || text.chars().any(|c| c.is_control() || !c.is_ascii()) {
+        return checker.fail(fault::bad_line_text(name, span));
+    }
+    Some(Some(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{fault_of_port, is_host_and_port};
+
+    #[test]
+    fn a_port_is_one_word_that_is_no_option() {
+        for good in [
+            "/dev/ttyUSB0",
+            "/tmp/psd-bench",
+            "COM3",
+            "/dev/serial/by-id/usb-1a86_USB2.0-Serial-if00-port0",
+        ] {
+            assert_eq!(fault_of_port(good), None, "{good}");
+        }
+        for bad in [
+            "",
+            " ",
+            "/dev/tty USB0",
+            "-x",
+            "--port",
+            "a\tb",
+            "a\0b",
+            "a\u{1b}[2J",
+        ] {
+            assert!(fault_of_port(bad).is_some(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn an_address_is_a_host_and_a_port() {
+        for good in [
+            "127.0.0.1:44000",
+            "localhost:1",
+            "rig-2.lab.example:65535",
+            "[::1]:44000",
+        ] {
+            assert!(is_host_and_port(good), "{good}");
+        }
+        for bad in [
+            "",
+            ":",
+            "localhost",
+            "localhost:",
+            ":44000",
+            "localhost:0",
+            "localhost:65536",
+            "localhost:+1",
+            "host name:1",
+            "::1:44000",
+            "[]:1",
+            "[localhost]:1",
+            "-x:1",
+            "http://rig:1",
+            "rig:1:2",
+            "rig:1 ",
+        ] {
+            assert!(!is_host_and_port(bad), "{bad}");
+        }
+    }
+}

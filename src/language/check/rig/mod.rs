@@ -1,0 +1,377 @@
+//! Check of `rig NAME { … }`: connection, reading rules, axes, and which rig a run uses. In: the
+//! blocks of the plan. Out: the checked rig. It opens no port.
+
+pub(crate) mod axes;
+pub(crate) mod axis_devices;
+pub(crate) mod device;
+pub(crate) mod dialect;
+pub(crate) mod drift;
+pub(crate) mod real;
+
+use super::checker::{Checker, Place};
+use super::expressions::calendar;
+use super::expressions::choice::Chosen;
+use super::messages::rigs;
+use super::messages::whole as fault;
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
+use crate::schema::{Kind, RigKind};
+use crate::text::source::{FileId, Span};
+
+/// At once, for as long as it takes up to ten seconds.
+const AT_ONCE: Settle = Settle {
+    band: 0.0,
+    force_rate: 0.0,
+    dwell: 0.0,
+    timeout: 10.0,
+};
+
+/// The rig of the run, its block, and the `limits` block it names.
+pub struct CheckedRig {
+    pub plan: RigPlan,
+    pub limits: Option<usize>,
+    /// None for the ideal rig, which nobody declares.
+    pub block: Option<usize>,
+}
+
+/// The rig of the run, where it is one that moves a specimen: only where `--rig` names it.
+pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> {
+    let named = |name: Option<&crate::language::syntax::ast::Ident>| {
+        name.is_some_and(|name| Some(name.node.as_str()) == asked)
+    };
+    let block = checker
+        .scope
+        .of_kind(Kind::Rig)
+        .find(|(_, block)| named(block.name))
+        .map(|(index, _)| index);
+    // Where its link is missing or cannot be read, what else it says tells what it is.
+    let real = |block: usize| {
+        kind(checker, block).map_or_else(
+            || says_of_real_rigs(checker, block),
+            |kind| kind == RigKind::Real,
+        )
+    };
+    block.filter(|block| real(*block))
+}
+
+/// Whether a rig's block has a field that only real rigs read.
+pub fn says_of_real_rigs(checker: &Checker, block: usize) -> bool {
+    let declared = &checker.scope.blocks[block];
+    let real_only = |key: &str| {
+        declared
+            .kind
+            .field(key)
+            .is_some_and(|field| field.real_rig_only)
+    };
+    declared
+        .block
+        .fields
+        .iter()
+        .any(|entry| real_only(&entry.key.node))
+}
+
+/// The fields that say how the rig of the run is reached, where it is one that moves a specimen.
+pub fn links_of_run(checker: &Checker, asked: Option<&str>) -> Vec<Span> {
+    let Some(block) = real_rig_of_run(checker, asked) else {
+        return Vec::new();
+    };
+    let entries = &checker.scope.blocks[block].block.fields;
+    let reach = |key: &str| {
+        key == "link"
+            || key == "axes"
+            || key.starts_with("actuator")
+            || key.starts_with("load_cell")
+    };
+    entries
+        .iter()
+        .filter(|entry| reach(&entry.key.node))
+        .map(|entry| entry.key.span.to(entry.value.span))
+        .collect()
+}
+
+/// Checks every rig; gives the one named by `--rig`, else the first virtual one of the plan itself, else an ideal one.
+pub fn rig_of_run(checker: &mut Checker, asked: Option<&str>) -> Option<CheckedRig> {
+    let rigs: Vec<(usize, bool)> = checker
+        .scope
+        .of_kind(Kind::Rig)
+        .map(|(index, block)| {
+            (
+                index,
+                block.span.file == FileId(0) && kind(checker, index) != Some(RigKind::Real),
+            )
+        })
+        .collect();
+    let names: Vec<&str> = checker
+        .scope
+        .of_kind(Kind::Rig)
+        .filter_map(|(_, block)| block.name)
+        .map(|name| name.node.as_str())
+        .collect();
+    let mut checked: Vec<(bool, Option<CheckedRig>)> = rigs
+        .into_iter()
+        .map(|(index, unasked)| (unasked, rig(checker, index)))
+        .collect();
+    if let Some(asked) = asked {
+        let position = names.iter().position(|name| *name == asked);
+        return match position {
+            Some(position) => checked.swap_remove(position).1,
+            None if asked == IDEAL => Some(ideal()),
+            None if checker.names_lost => None,
+            None => checker.fail(fault::unknown_rig(asked, &names)),
+        };
+    }
+    match checked.iter().position(|(unasked, _)| *unasked) {
+        Some(first) => checked.swap_remove(first).1,
+        None => Some(ideal()),
+    }
+}
+
+/// Name of the virtual rig that adds nothing to the specimen.
+const IDEAL: &str = "ideal";
+
+fn ideal() -> CheckedRig {
+    let plan = RigPlan {
+        name: IDEAL.to_owned(),
+        link: Link::Virtual(VirtualLink::default()),
+        settle: AT_ONCE,
+        sign: 1.0,
+        calibration: Calibration::default(),
+        drift: None,
+    };
+    CheckedRig {
+        plan,
+        limits: None,
+        block: None,
+    }
+}
+
+/// What a rig moves, by the words it is reached with; None where those cannot be read.
+pub fn kind(checker: &Checker, block: usize) -> Option<RigKind> {
+    if checker.given(block, "actuator").is_some() || checker.given(block, "load_cell").is_some() {
+        return Some(RigKind::Real);
+    }
+    match word(&checker.given(block, "link")?.1.value)? {
+        "virtual" => Some(RigKind::Virtual),
+        "serial" | "tcp" => Some(RigKind::Real),
+        _ => None,
+    }
+}
+
+/// The word of a choice: `serial` of `serial(…)`.
+fn word(written: &Expr) -> Option<&str> {
+    match &written.kind {
+        ExprKind::Name(name) => Some(name),
+        ExprKind::Call { name, .. } => Some(&name.node),
+        ExprKind::Parenthesised(inner) => word(inner),
+        _ => None,
+    }
+}
+
+fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
+    let kind = kind(checker, block);
+    let calibration = calibration(checker, block);
+    let link = match kind {
+        Some(RigKind::Real) => real::real_link(checker, block).map(Link::Real),
+        Some(RigKind::Virtual) => {
+            without_use(checker, block);
+            let chosen = checker.choice(block, "link");
+            chosen
+                .and_then(|chosen| {
+                    virtual_link(checker, &chosen, place_of(checker, block, "link")?)
+                })
+                .map(Link::Virtual)
+        }
+        // Says what is wrong with it.
+        None => checker.choice(block, "link").and(None),
+    };
+    let settle = match checker.given(block, "settle") {
+        Some((entry, _)) => {
+            let place = checker.place(block, entry);
+            checker
+                .choice(block, "settle")
+                .and_then(|chosen| settle(checker, &chosen, place, kind))
+        }
+        None => Some(AT_ONCE),
+    };
+    let sign = checker
+        .word(block, "sign", "positive")
+        .map(|word| if word == "negative" { -1.0 } else { 1.0 });
+    let limits = match checker.given(block, "limits") {
+        Some(_) => checker.reference(block, "limits", Kind::Limits).map(Some),
+        None => Some(None),
+    };
+    let drift = drift::drift(checker, block, kind);
+    let name = checker.scope.blocks[block].name?.node.clone();
+    let (mut calibration, drift) = (calibration?, drift?);
+    // Every drift within the bound is as likely (JCGM 100:2008, 4.3.7).
+    calibration.zero_drift = drift.map_or(0.0, |check| check.force / 3.0_f64.sqrt());
+    let plan = RigPlan {
+        name,
+        link: link?,
+        settle: settle?,
+        sign: sign?,
+        calibration,
+        drift,
+    };
+    Some(CheckedRig {
+        plan,
+        limits: limits?,
+        block: Some(block),
+    })
+}
+
+/// Fields of a real rig do nothing on a virtual one, and are not passed over in silence.
+fn without_use(checker: &mut Checker, block: usize) {
+    let declared = &checker.scope.blocks[block];
+    for entry in &declared.block.fields {
+        if declared
+            .kind
+            .field(&entry.key.node)
+            .is_some_and(|field| field.real_rig_only)
+        {
+            checker.faults.push(rigs::field_of_real_rigs(&entry.key));
+        }
+    }
+}
+
+/// Where the entry of a field stands.
+pub fn place_of(checker: &Checker, block: usize, field: &str) -> Option<Place> {
+    checker
+        .given(block, field)
+        .map(|(entry, _)| checker.place(block, entry))
+}
+
+fn virtual_link<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Place,
+) -> Option<VirtualLink> {
+    let mut number = |name: &str| checker.constant_argument(chosen, name, place);
+    let (noise, resolution, force_resolution) = (
+        number("noise"),
+        number("resolution"),
+        number("force_resolution"),
+    );
+    let (lag, tracking, drift, seed) = (
+        number("lag"),
+        number("tracking"),
+        number("drift"),
+        number("seed"),
+    );
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the schema bounds it to 0 .. 2^53, whole"
+    )]
+    let seed = seed? as u64;
+    Some(VirtualLink {
+        noise: noise?,
+        resolution: resolution?,
+        force_resolution: force_resolution?,
+        lag: lag?,
+        tracking: tracking?,
+        drift: drift?,
+        seed,
+        foretold: None,
+    })
+}
+
+fn settle<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Place,
+    kind: Option<RigKind>,
+) -> Option<Settle> {
+    let mut number = |name: &str| checker.constant_argument(chosen, name, place);
+    let (band, force_rate, dwell, timeout) = (
+        number("displacement"),
+        number("force_rate"),
+        number("for"),
+        number("timeout"),
+    );
+    let settle = Settle {
+        band: band?,
+        force_rate: force_rate?,
+        dwell: dwell?,
+        timeout: timeout?,
+    };
+    for (name, bound) in [
+        ("displacement", settle.band),
+        ("force_rate", settle.force_rate),
+    ] {
+        if let (Some(RigKind::Real), Some(span)) = (kind, chosen.span(name))
+            && bound == 0.0
+        {
+            return checker.fail(rigs::never_settles(name, span));
+        }
+    }
+    Some(settle)
+}
+
+/// Where the numbers are traced to; what a count is worth is for the real rig's own file to judge.
+fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
+    let mut text = |field: &str| match checker.given(block, field) {
+        Some(_) => checker.text_field(block, field).map(Some),
+        None => Some(None),
+    };
+    let (reference, due, force_class) = (
+        text("calibration"),
+        text("calibration_due"),
+        text("force_class"),
+    );
+    let (own, own_due) = (
+        text("displacement_calibration"),
+        text("displacement_calibration_due"),
+    );
+    let displacement_class = text("displacement_class");
+    for (field, due) in [
+        ("calibration_due", &due),
+        ("displacement_calibration_due", &own_due),
+    ] {
+        if let (Some(Some(day)), Some((_, entry))) = (due, checker.given(block, field))
+            && !calendar::is_day(day)
+        {
+            return checker.fail(rigs::not_a_day(day, entry.value.span));
+        }
+    }
+    let newtons_per_count = match checker.given(block, "force_per_count") {
+        Some(_) => checker.constant(block, "force_per_count").map(Some),
+        None => Some(None),
+    };
+    let zero_count = checker.constant(block, "zero_count");
+    let (own, own_due) = (own?, own_due?);
+    if own.is_none()
+        && let Some((_, entry)) = checker.given(block, "displacement_calibration_due")
+    {
+        return checker.fail(rigs::day_of_no_calibration(&entry.key.node, entry.key.span));
+    }
+    let (force, displacement) = (
+        checker.constant(block, "force_uncertainty"),
+        checker.constant(block, "displacement_uncertainty"),
+    );
+    let zero = checker.constant(block, "zero_uncertainty");
+    let mut range = |field| {
+        checker
+            .bounds(block, field)
+            .map(|range| range.is_bounded().then_some(range))
+    };
+    let (force_calibrated, displacement_calibrated) = (
+        range("force_calibration_range"),
+        range("displacement_calibration_range"),
+    );
+    Some(Calibration {
+        reference: reference?,
+        due: due?,
+        force_class: force_class?,
+        force_calibrated: force_calibrated?,
+        displacement: own.map(|reference| (reference, own_due)),
+        displacement_class: displacement_class?,
+        displacement_calibrated: displacement_calibrated?,
+        newtons_per_count: newtons_per_count?,
+        zero_count: zero_count?,
+        force_uncertainty: force?,
+        displacement_uncertainty: displacement?,
+        zero_uncertainty: zero?,
+        zero_drift: 0.0,
+    })
+}

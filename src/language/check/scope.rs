@@ -1,0 +1,326 @@
+//! What the files declare: blocks, values and requirements, by name, each name once. In: the syntax trees. Out: a
+//! [`Scope`]. It evaluates nothing.
+
+use std::collections::BTreeMap;
+
+use super::messages::names as fault;
+use crate::language::syntax::ast::{Ast, Block, Expr, Ident, ItemKind};
+use crate::language::syntax::control;
+use crate::plan::formula::ProcedureId;
+use crate::schema::{self, BlockKind, Kind, Naming};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::source::{FileId, Span, Spanned};
+
+/// A block of a kind that this version knows.
+pub struct DeclaredBlock<'a> {
+    pub kind: &'static BlockKind,
+    pub name: Option<&'a Ident>,
+    pub block: &'a Block,
+    /// The whole item.
+    pub span: Span,
+    /// Its place among the procedures.
+    pub procedure: Option<ProcedureId>,
+}
+
+impl DeclaredBlock<'_> {
+    /// Whether it should have a name and has none, which is told: what is called by a name may be this one.
+    pub fn lacks_its_name(&self) -> bool {
+        self.name.is_none() && self.kind.naming == Naming::Named
+    }
+}
+
+/// A `let` or a `param`.
+pub struct DeclaredValue<'a> {
+    pub keyword: &'static str,
+    pub name: &'a Ident,
+    pub value: &'a Expr,
+    pub bounds: Option<&'a Expr>,
+    /// The value `--set` gives in its place.
+    pub setting: Option<&'a Expr>,
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meaning {
+    Value(usize),
+    Block(usize),
+    /// Declared by something that is faulty in itself: say no more of it.
+    Poisoned,
+}
+
+pub struct DeclaredRequirement<'a> {
+    pub label: &'a Spanned<String>,
+    pub condition: &'a Expr,
+}
+
+#[derive(Default)]
+pub struct Scope<'a> {
+    pub blocks: Vec<DeclaredBlock<'a>>,
+    pub values: Vec<DeclaredValue<'a>>,
+    pub requirements: Vec<DeclaredRequirement<'a>>,
+    /// Kinds of which there are more blocks than there may be, which is told.
+    pub twice: Vec<Kind>,
+    names: BTreeMap<&'a str, (Meaning, Span)>,
+    /// The blocks of each kind, in order.
+    kinds: Vec<(Kind, Vec<usize>)>,
+    /// The place of each block among those of its kind.
+    places: Vec<usize>,
+    /// The blocks of the procedures, in order.
+    procedures: Vec<usize>,
+    nameless: Vec<&'static BlockKind>,
+    /// Faults of the text.
+    unread: Vec<Span>,
+    /// Where the first requirement of each name is.
+    labels: BTreeMap<&'a str, Span>,
+}
+
+impl<'a> Scope<'a> {
+    /// Declares all that the files say; `settings` are the values given by `--set`, by name.
+    pub fn collect(
+        asts: &'a [Ast],
+        settings: &'a BTreeMap<String, Expr>,
+        faults: &mut Vec<Diagnostic>,
+    ) -> Self {
+        let mut scope = Self {
+            unread: faults.iter().filter_map(Diagnostic::span).collect(),
+            ..Self::default()
+        };
+        for ast in asts {
+            let library = ast.file != FileId(0);
+            for item in &ast.items {
+                match &item.kind {
+                    ItemKind::Use { .. } => {}
+                    ItemKind::Let { name, value } => {
+                        scope.declare_value("let", name, value, None, None, faults);
+                    }
+                    ItemKind::Param {
+                        name,
+                        value,
+                        bounds,
+                    } => {
+                        scope.declare_value(
+                            "param",
+                            name,
+                            value,
+                            bounds.as_ref(),
+                            settings.get(&name.node),
+                            faults,
+                        );
+                    }
+                    ItemKind::Require { label, .. } if library => {
+                        faults.push(fault::not_in_library("require", label.span));
+                    }
+                    ItemKind::Require { label, condition } => {
+                        scope.require(label, condition, faults);
+                    }
+                    ItemKind::Block(block) => {
+                        scope.declare_block(block, item.span, library, faults);
+                    }
+                }
+            }
+        }
+        scope
+    }
+
+    pub fn meaning(&self, name: &str) -> Option<Meaning> {
+        self.names.get(name).map(|(meaning, _)| *meaning)
+    }
+
+    /// Every declared name, for suggestions.
+    pub fn names(&self) -> impl Iterator<Item = &'a str> {
+        self.names.keys().copied()
+    }
+
+    pub fn of_kind(
+        &self,
+        kind: Kind,
+    ) -> impl ExactSizeIterator<Item = (usize, &DeclaredBlock<'a>)> {
+        let found = self
+            .kinds
+            .iter()
+            .find(|(of, _)| *of == kind)
+            .map_or(&[][..], |(_, blocks)| blocks);
+        found.iter().map(|index| (*index, &self.blocks[*index]))
+    }
+
+    /// Place of a block among those of its own kind.
+    pub fn place_in_kind(&self, block: usize) -> usize {
+        self.places[block]
+    }
+
+    /// Kinds of blocks that should have a name and have none, which is told: what is called by an unknown name may be one of them.
+    pub fn nameless(&self) -> impl Iterator<Item = &'static BlockKind> {
+        self.nameless.iter().copied()
+    }
+
+    pub fn procedures(&self) -> impl Iterator<Item = (usize, &DeclaredBlock<'a>)> {
+        self.procedures
+            .iter()
+            .map(|index| (*index, &self.blocks[*index]))
+    }
+
+    /// The block of a procedure.
+    pub fn procedure(&self, id: ProcedureId) -> Option<usize> {
+        self.procedures.get(id.0).copied()
+    }
+
+    fn require(
+        &mut self,
+        label: &'a Spanned<String>,
+        condition: &'a Expr,
+        faults: &mut Vec<Diagnostic>,
+    ) {
+        let first = *self.labels.entry(&label.node).or_insert(label.span);
+        if first != label.span {
+            faults.push(fault::requirement_twice(&label.node, label.span, first));
+        }
+        self.requirements
+            .push(DeclaredRequirement { label, condition });
+    }
+
+    fn declare(&mut self, name: &'a Ident, meaning: Meaning, faults: &mut Vec<Diagnostic>) {
+        match self.names.get(name.node.as_str()) {
+            Some((before, first)) => {
+                faults.push(fault::declared_twice(&name.node, name.span, *first));
+                // Which of two things of different sorts is meant, nobody knows.
+                if std::mem::discriminant(before) != std::mem::discriminant(&meaning) {
+                    self.names.insert(&name.node, (Meaning::Poisoned, *first));
+                }
+            }
+            None => {
+                self.names.insert(&name.node, (meaning, name.span));
+            }
+        }
+    }
+
+    fn declare_value(
+        &mut self,
+        keyword: &'static str,
+        name: &'a Ident,
+        value: &'a Expr,
+        bounds: Option<&'a Expr>,
+        setting: Option<&'a Expr>,
+        faults: &mut Vec<Diagnostic>,
+    ) {
+        self.declare(name, Meaning::Value(self.values.len()), faults);
+        self.values.push(DeclaredValue {
+            keyword,
+            name,
+            value,
+            bounds,
+            setting,
+        });
+    }
+
+    fn declare_block(
+        &mut self,
+        block: &'a Block,
+        span: Span,
+        library: bool,
+        faults: &mut Vec<Diagnostic>,
+    ) {
+        let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
+        let Some(kind) = schema::block_of_words(&words) else {
+            faults.push(fault::unknown_block(block));
+            // `if heavy {` declares nothing.
+            if words
+                .first()
+                .is_some_and(|word| control::of_another_language(word).is_some())
+            {
+                return;
+            }
+            // Kind and name may stand in each other's place.
+            let turned = block.words.len() == 2
+                && schema::block_of_words(&[block.words[1].node.as_str(), "_"]).is_some();
+            self.poison(
+                if turned {
+                    &block.words[..1]
+                } else {
+                    &block.words[1..]
+                },
+                faults,
+            );
+            return;
+        };
+        let rest = &block.words[kind.keyword.len()..];
+        if kind.kind == Kind::Later {
+            faults.push(fault::block_of_later_version(kind, block));
+            self.poison(rest, faults);
+            return;
+        }
+        if library
+            && !matches!(
+                kind.kind,
+                Kind::Specimen | Kind::Striker | Kind::Ground | Kind::Rig | Kind::Limits
+            )
+        {
+            faults.push(fault::not_in_library(&kind.words(), block.head));
+            self.poison(rest, faults);
+            return;
+        }
+        // A head that could not be read to its end has more words than are known.
+        let cut_short = self.unread.iter().any(|at| {
+            at.file == block.head.file
+                && (block.head.start..=block.head.end + 1).contains(&at.start)
+        });
+        if let Some(wrong) = fault::block_name(kind, block, rest).filter(|_| !cut_short) {
+            faults.push(wrong);
+        } else if let (Naming::Unnamed | Naming::Titled | Naming::MaybeNamed, []) =
+            (kind.naming, rest)
+            && let Some(first) = self.unnamed(kind, span)
+        {
+            faults.push(fault::block_twice(kind, block.head, first));
+            if !self.twice.contains(&kind.kind) {
+                self.twice.push(kind.kind);
+            }
+            return;
+        }
+        if let Some(name) = rest.first() {
+            self.declare(name, Meaning::Block(self.blocks.len()), faults);
+        }
+        if rest.is_empty()
+            && kind.naming == Naming::Named
+            && !self.nameless.iter().any(|other| other.kind == kind.kind)
+        {
+            self.nameless.push(kind);
+        }
+        let procedure = kind.procedure.then_some(ProcedureId(self.procedures.len()));
+        self.procedures.extend(procedure.map(|_| self.blocks.len()));
+        self.place(kind.kind);
+        self.blocks.push(DeclaredBlock {
+            kind,
+            name: rest.first(),
+            block,
+            span,
+            procedure,
+        });
+    }
+
+    /// Counts the block that comes next among those of its kind.
+    fn place(&mut self, kind: Kind) {
+        let block = self.blocks.len();
+        if let Some((_, blocks)) = self.kinds.iter_mut().find(|(of, _)| *of == kind) {
+            self.places.push(blocks.len());
+            blocks.push(block);
+        } else {
+            self.places.push(0);
+            self.kinds.push((kind, vec![block]));
+        }
+    }
+
+    /// The block without a name of this kind that stands in the same file already.
+    fn unnamed(&self, kind: &BlockKind, span: Span) -> Option<Span> {
+        let same = |(_, other): &(usize, &DeclaredBlock)| {
+            other.name.is_none() && other.span.file == span.file
+        };
+        self.of_kind(kind.kind)
+            .find(same)
+            .map(|(_, other)| other.block.head)
+    }
+
+    fn poison(&mut self, words: &'a [Ident], faults: &mut Vec<Diagnostic>) {
+        if let Some(name) = words.last() {
+            self.declare(name, Meaning::Poisoned, faults);
+        }
+    }
+}

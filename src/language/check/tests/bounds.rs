@@ -1,0 +1,122 @@
+//! How deep values may stand one inside another, and how large one may become: what a small file can ask for is bounded.
+
+use super::{Files, checked};
+use crate::language::check::{DEEPEST_VALUES, MOST_TERMS};
+
+const BLOW: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\
+                    striker hammer {\n  mass = 10 kg\n  velocity = 1 m/s\n}\n\
+                    impact hit {\n  striker = hammer\n  duration = 1 s\n}\n";
+
+/// `let a3 = a2 + 1`, `let a2 = a1 + 1`, …: each needs the one after it, `count` in all.
+fn from_below(count: usize) -> String {
+    let values = (1..count)
+        .rev()
+        .map(|value| format!("let a{value} = a{} + 1 mm\n", value - 1));
+    BLOW.to_owned()
+        + &values.collect::<String>()
+        + &format!(
+            "let a0 = 1 mm\nrequire \"low\" hit.max_displacement < a{}\n",
+            count - 1
+        )
+}
+
+/// `let a1 = a0 + a0`, …, a0 a result: 2ⁿ⁺¹ − 1 terms after n doublings.
+fn doubled(doublings: usize) -> String {
+    let values = (1..=doublings).map(|value| format!("let a{value} = a{0} + a{0}\n", value - 1));
+    BLOW.to_owned()
+        + "let a0 = hit.max_displacement\n"
+        + &values.collect::<String>()
+        + &format!("require \"low\" a{doublings} < 1 km\n")
+}
+
+#[test]
+fn a_chain_of_values_is_as_deep_as_the_bound_and_no_deeper() {
+    assert_eq!(checked(&from_below(DEEPEST_VALUES), &Files(&[]), &[]).1, "");
+    let (_, said) = checked(&from_below(DEEPEST_VALUES + 1), &Files(&[]), &[]);
+    assert_eq!(said, "E405 a0");
+    let (_, said) = checked(&from_below(30 * DEEPEST_VALUES), &Files(&[]), &[]);
+    assert_eq!(said.lines().count(), 1, "it is said once: {said}");
+}
+
+#[test]
+fn a_value_that_doubles_stays_small() {
+    let most = MOST_TERMS.ilog2() as usize - 1;
+    assert_eq!(checked(&doubled(most), &Files(&[]), &[]).1, "");
+    for doublings in [most + 1, 60] {
+        let (_, said) = checked(&doubled(doublings), &Files(&[]), &[]);
+        assert_eq!(said, format!("E405 a{most} + a{most}"));
+    }
+}
+
+/// A plan of many blocks, each with its place in them.
+fn many(count: usize, each: impl Fn(usize) -> String) -> String {
+    let striker = "striker hammer {\n  mass     = 10 kg\n  velocity = 1 m/s\n}\n";
+    (0..count).fold(striker.to_owned(), |text, index| text + &each(index))
+}
+
+/// What is said grows with the faults and not with their square: every one has so many places and names, and a list so many of them.
+#[test]
+fn faults_are_counted_and_their_places_are_bounded() {
+    let pair = |index: usize| {
+        let specimen = format!(
+            "specimen s{index} {{\n  mass      = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}}\n"
+        );
+        format!("{specimen}impact h{index} {{\n  striker  = hammer\n  duration = 1 s\n}}\n")
+    };
+    let unknown = |index: usize| {
+        format!(
+            "let a_name_{index} = a_nam_{index}x * 2\nimpact h{index} {{\n  striker  = hamer{index}\n}}\n"
+        )
+    };
+    let unread = |index: usize| format!("let q{index} = 3 $ x\nlet w{index} = other{index} * 2\n");
+    for (text, told) in [
+        (many(1200, pair), 1200),
+        (many(600, unknown), 1801),
+        (many(900, unread), 1800),
+    ] {
+        let (checked, _) = checked(&text, &Files(&[]), &[]);
+        assert!(checked.plan.is_none());
+        let list = &checked.diagnostics;
+        let labels: usize = list.iter().map(|fault| fault.labels.len()).sum();
+        let widest = list.iter().map(|fault| fault.labels.len()).max().unwrap();
+        let longest = list
+            .iter()
+            .filter_map(|fault| fault.help.as_ref().map(String::len))
+            .max()
+            .unwrap();
+        assert!(
+            list.len() <= 1001 && widest <= 21 && labels <= 21_100 && longest < 1200,
+            "{} {widest} {labels} {longest}",
+            list.len()
+        );
+        let left: usize = told - 1000;
+        let last = list
+            .iter()
+            .rev()
+            .find(|fault| fault.message.contains("not listed"))
+            .map(|fault| fault.message.as_str());
+        assert_eq!(
+            last,
+            Some(format!("{left} more faults are not listed: a list has at most 1000").as_str())
+        );
+    }
+}
+
+/// Of many faults the first have a suggestion, for each looks at every name.
+#[test]
+fn the_first_of_many_unknown_names_have_a_suggestion() {
+    let (checked, _) = checked(
+        &many(200, |index| {
+            format!("let a_name_{index} = a_nam_{index} * 2\n")
+        }),
+        &Files(&[]),
+        &[],
+    );
+    let helped = checked.diagnostics.iter().filter(|fault| {
+        fault
+            .help
+            .as_ref()
+            .is_some_and(|help| help.contains("did you mean"))
+    });
+    assert!((50..60).contains(&helped.count()));
+}

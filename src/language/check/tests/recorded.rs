@@ -1,0 +1,58 @@
+//! What a recorded plan may say that a new one may not: it was run as the version read it that made the record.
+
+use super::{Files, check};
+use crate::language::check::Options;
+
+const OLDER: &str = r#"specimen bar {
+  length    = 1.2 m
+  area      = 400 mm^2
+  density   = 7850 kg/m^3
+  behaviour = beam(length: 1.2 m, youngs_modulus: 210 GPa, second_moment: 3333 mm^4, ends: cantilever)
+}
+
+striker hammer {
+  mass  = 1 kg
+  arm   = 1 m
+  angle = 0.3
+}
+
+impact hit {
+  striker  = hammer
+  duration = 0.3 s
+}
+
+require "stays" hit.residual_displacement < 1 m
+"#;
+
+#[test]
+fn a_recorded_plan_is_read_as_it_was_run() {
+    let read = |recorded| {
+        check(
+            "plan.psd",
+            OLDER,
+            &Files(&[]),
+            &Options {
+                recorded,
+                ..Options::default()
+            },
+        )
+    };
+    let codes: Vec<&str> = read(false)
+        .diagnostics
+        .iter()
+        .map(|fault| fault.code.id())
+        .collect();
+    assert_eq!(codes, ["E209", "E302", "E206"]);
+    let plan = read(true).plan.unwrap();
+    assert!((plan.specimens[0].mass - 0.5 * 1.2 * 400e-6 * 7850.0).abs() < 1e-12);
+    let height = 2.0 * 0.15_f64.sin().powi(2);
+    assert!((plan.strikers[0].velocity - (2.0 * 9.806_65 * height).sqrt()).abs() < 1e-12);
+    assert_eq!(
+        plan.requirements[0].conditions[0]
+            .value
+            .as_result()
+            .unwrap()
+            .name,
+        "final_displacement"
+    );
+}

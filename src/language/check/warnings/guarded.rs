@@ -1,0 +1,49 @@
+//! What the guarded rule cannot guard: a requirement that reads a result which never has an uncertainty (W729). In: procedures,
+//! requirements, the rule. Out: warnings. It knows no run.
+
+use std::collections::BTreeSet;
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::values as fault;
+use crate::plan::formula::Part;
+use crate::plan::{DecisionRule, Procedure, Requirement};
+
+/// Not measured, and known to be what it is: what the plan gives, and how well the sum of energies closes.
+const EXACT: [&str; 3] = ["time_step", "energy_error", "energy_errors"];
+
+pub fn warn(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    requirements: &[Requirement],
+    rule: DecisionRule,
+) {
+    if rule == DecisionRule::Simple {
+        return;
+    }
+    let mut told = BTreeSet::new();
+    for (index, requirement) in requirements.iter().enumerate() {
+        let mut references = Vec::new();
+        requirement
+            .conditions
+            .iter()
+            .for_each(|condition| condition.collect_references(&mut references));
+        for reference in references
+            .iter()
+            .filter(|reference| reference.part == Part::Value && !EXACT.contains(&reference.name))
+        {
+            let Some((block, Some(procedure))) = procedures.get(reference.procedure.0) else {
+                continue;
+            };
+            let result = checker.scope.blocks[*block].kind.result(reference.name);
+            if result.is_some_and(|result| !result.measured && !result.count)
+                && told.insert((*block, reference.name))
+            {
+                let required = checker.scope.requirements[index].condition.span;
+                let read = format!("{}.{}", procedure.name, reference.name);
+                checker
+                    .faults
+                    .push(fault::nothing_to_guard(&read, required));
+            }
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Warnings: plans that can run but give poor results. In: the checked plan. Out: diagnostics with
+//! the numbers. They change nothing in the plan.
+
+pub(crate) mod guarded;
+pub(crate) mod left;
+pub(crate) mod record_size;
+pub mod tracking;
+
+use super::checker::Checker;
+use super::messages::{cyclic, values, whole as fault};
+use crate::plan::{Condition, Contact, Ground, Procedure, Requirement};
+use crate::procedures::facts::{Leaves, Motion};
+use crate::schema::Kind;
+use crate::text::source::{FileId, Span};
+use crate::uncertainty::Source;
+
+/// Warnings of the whole plan; asked for only where no error stands.
+pub fn whole_plan(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    requirements: &[Requirement],
+    grounds: &[Option<Ground>],
+    plan: Span,
+) {
+    peak_forces(checker, procedures, requirements);
+    blows_on_blows(checker, procedures, grounds);
+    unused_uncertainties(checker, procedures, requirements);
+    match procedures.last() {
+        None => checker.faults.push(fault::nothing_runs(plan)),
+        Some((block, _)) if requirements.is_empty() => {
+            let head = checker.scope.blocks[*block].block.head;
+            checker.faults.push(fault::nothing_required(head));
+        }
+        Some(_) => {}
+    }
+    for (index, value) in checker.scope.values.iter().enumerate() {
+        if value.name.span.file == FileId(0) && !checker.used.contains(&index) {
+            checker.faults.push(fault::unused(
+                value.keyword,
+                &value.name.node,
+                value.name.span,
+            ));
+        }
+    }
+}
+
+/// A run that integrates straight after another starts from where that one ended, under load, which no specimen stays at. A frame that
+/// is damped comes to rest by itself, where its run goes on for long enough.
+fn blows_on_blows(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    grounds: &[Option<Ground>],
+) {
+    let mut before: Option<(usize, &str, &str)> = None;
+    for (block, procedure) in procedures {
+        let left = procedure.as_ref().map_or(Leaves::AtRest, |procedure| {
+            crate::procedures::leaves(&procedure.kind, grounds)
+        });
+        let Motion {
+            what,
+            ends,
+            help,
+            rests,
+        } = match left {
+            Leaves::Moving(motion) => motion,
+            Leaves::AsFound => continue,
+            Leaves::AtRest => {
+                before = None;
+                continue;
+            }
+        };
+        if let Some((first, ended, way_out)) = before {
+            let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
+            let name = first.name.map_or("", |name| name.node.as_str());
+            let fault = cyclic::blow_on_blow(
+                (what, this.block.head),
+                (name, first.block.head, ended),
+                way_out,
+            );
+            checker.faults.push(fault);
+        }
+        before = Some((*block, ends, help)).filter(|_| !rests);
+    }
+}
+
+/// A mass is uncertain for whom takes it: a blow on the specimen that has no mass of its own, and the damping ratio of a sweep.
+fn unused_uncertainties(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    requirements: &[Requirement],
+) {
+    let mut read = Vec::new();
+    for condition in requirements
+        .iter()
+        .flat_map(|requirement| &requirement.conditions)
+    {
+        condition.collect_stated(&mut read);
+    }
+    let mut used = Vec::new();
+    for (_, procedure) in procedures {
+        if let Some(procedure) = procedure {
+            used.extend(crate::procedures::uses_mass(&procedure.kind, &mut read));
+        }
+    }
+    used.extend(read.into_iter().filter_map(|source| match source {
+        Source::SpecimenMass(specimen) => Some(specimen),
+        _ => None,
+    }));
+    let specimens: Vec<usize> = checker
+        .scope
+        .of_kind(Kind::Specimen)
+        .map(|(block, _)| block)
+        .collect();
+    for block in specimens
+        .into_iter()
+        .enumerate()
+        .filter(|(place, _)| !used.contains(place))
+        .map(|(_, block)| block)
+    {
+        let stated = checker
+            .given(block, "mass_uncertainty")
+            .map(|(_, entry)| entry.value.span);
+        let some = stated.is_some()
+            && checker
+                .constant(block, "mass_uncertainty")
+                .is_some_and(|stated| stated > 0.0);
+        if let (true, Some(span)) = (some, stated) {
+            let name = checker.scope.blocks[block]
+                .name
+                .map_or("", |name| name.node.as_str());
+            checker.faults.push(values::uncertainty_unused(name, span));
+        }
+    }
+}
+
+fn peak_forces(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    requirements: &[Requirement],
+) {
+    let law = |procedure: &Procedure| match crate::procedures::facts_of(&procedure.kind).contact? {
+        Contact::Rigid => Some("rigid"),
+        Contact::Restitution { .. } => Some("restitution"),
+        Contact::Limit { .. } | Contact::Hertz { .. } => None,
+    };
+    let read = |checker: &mut Checker, conditions: &[Condition], span: Span| {
+        let mut references = Vec::new();
+        for condition in conditions {
+            condition.collect_references(&mut references);
+        }
+        for reference in references.iter().filter(|reference| {
+            matches!(reference.name, "max_contact_force" | "max_contact_forces")
+        }) {
+            if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
+                && let Some(law) = law(procedure)
+            {
+                let head = checker.scope.blocks[*block].block.head;
+                checker
+                    .faults
+                    .push(fault::peak_force_follows_the_step(span, head, law));
+            }
+        }
+    };
+    for (index, requirement) in requirements.iter().enumerate() {
+        let span = checker.scope.requirements[index].condition.span;
+        read(checker, &requirement.conditions, span);
+    }
+    for (block, procedure) in procedures {
+        let kind = procedure.as_ref().map(|procedure| &procedure.kind);
+        if let Some(conditions) = kind.and_then(|kind| crate::procedures::facts_of(kind).conditions)
+        {
+            let head = checker.scope.blocks[*block].block.head;
+            let span = checker
+                .given(*block, "while")
+                .map_or(head, |(_, entry)| entry.value.span);
+            read(checker, conditions, span);
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! The syntax tree: what a plan file says, each piece with its place. No meaning yet: block kinds, fields, units and
+//! names are words here, looked up by `check`. Comments are kept beside the items, for the formatter.
+
+use crate::text::source::{FileId, Span, Spanned};
+
+/// One file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ast {
+    pub file: FileId,
+    pub items: Vec<Item>,
+    /// Every comment of the file in order of position, wherever it stands; text from `#` to the end of the line.
+    pub comments: Vec<Spanned<String>>,
+    /// Places that were read otherwise than they are written, which is a fault that was told: what else is said of them follows
+    /// from it.
+    pub misspelt: Vec<Span>,
+}
+
+/// A name as it was written.
+pub type Ident = Spanned<String>;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Item {
+    pub span: Span,
+    pub kind: ItemKind,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum ItemKind {
+    /// `use "lib/frame.psd"`; the text without its quotes.
+    Use {
+        path: Spanned<String>,
+    },
+    /// `param v = 1 m/s between 0.5 m/s .. 3 m/s`; `bounds` is the range after `between`.
+    Param {
+        name: Ident,
+        value: Expr,
+        bounds: Option<Expr>,
+    },
+    /// `let section = 564 mm^2`
+    Let {
+        name: Ident,
+        value: Expr,
+    },
+    /// `require "stays in travel" hit.max_displacement <= 8.5 mm`
+    Require {
+        label: Spanned<String>,
+        condition: Expr,
+    },
+    Block(Block),
+}
+
+/// `stiffness ramp k0 { … }`: the words before the brace, a title where one was written (`plan "…"`), and the fields.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// At least one: `["stiffness", "ramp", "k0"]`. Which are the kind and which the name is for `check` to say.
+    pub words: Vec<Ident>,
+    pub title: Option<Spanned<String>>,
+    pub fields: Vec<Entry>,
+    /// From the first word to the last word or title.
+    pub head: Span,
+}
+
+/// `key = value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    pub span: Span,
+    pub key: Ident,
+    pub value: Expr,
+}
+
+/// A unit token as written, `kN/m`, not yet looked up.
+pub type UnitToken = Spanned<String>;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    pub span: Span,
+    pub kind: ExprKind,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExprKind {
+    /// `300 kN/m`. `text` is the number as written, without sign or unit; `value` is finite.
+    Number {
+        value: f64,
+        text: String,
+        unit: Option<UnitToken>,
+    },
+    /// The text without its quotes, escapes resolved.
+    Text(String),
+    Name(String),
+    /// `[1, 2, 3] mm`
+    List {
+        items: Vec<Expr>,
+        unit: Option<UnitToken>,
+    },
+    /// `0.1 mm .. 1 mm step 0.1 mm`; bare numbers take the unit that stands last.
+    Range {
+        start: Box<Expr>,
+        end: Box<Expr>,
+        step: Option<Box<Expr>>,
+    },
+    /// `elastic(stiffness: 300 kN/m)`, `sqrt(2)`; positional arguments come before named ones.
+    Call {
+        name: Ident,
+        arguments: Vec<Argument>,
+    },
+    /// `k0.stiffness`
+    Field {
+        base: Box<Expr>,
+        name: Ident,
+    },
+    /// `quake.max_drift[0]`
+    Index {
+        base: Box<Expr>,
+        index: Box<Expr>,
+    },
+    Negate(Box<Expr>),
+    Binary {
+        operator: Spanned<BinaryOperator>,
+        left: Box<Expr>,
+        right: Box<Expr>,
+    },
+    /// `A within TOLERANCE of TARGET`
+    Within {
+        value: Box<Expr>,
+        tolerance: Box<Expr>,
+        target: Box<Expr>,
+    },
+    /// `( … )`, kept so that the formatter gives back what was written.
+    Parenthesised(Box<Expr>),
+    /// Stands where an expression could not be read; the fault has been reported, so say no more of it.
+    Faulty,
+}
+
+/// An argument of a variant or function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Argument {
+    pub name: Option<Ident>,
+    pub value: Expr,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOperator {
+    And,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Equal,
+    NotEqual,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+}
+
+impl BinaryOperator {
+    #[must_use]
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::And => "and",
+            Self::Less => "<",
+            Self::LessEqual => "<=",
+            Self::Greater => ">",
+            Self::GreaterEqual => ">=",
+            Self::Equal => "==",
+            Self::NotEqual => "!=",
+            Self::Add => "+",
+            Self::Subtract => "-",
+            Self::Multiply => "*",
+            Self::Divide => "/",
+            Self::Power => "^",
+        }
+    }
+}

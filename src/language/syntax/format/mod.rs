@@ -1,0 +1,122 @@
+//! The formatter. In: a file without syntax errors. Out: the same plan in the canonical layout. It
+//! works on tokens, so that no text of the author is lost; `rows` finds the lines, `value` writes a
+//! value.
+
+mod rows;
+mod value;
+
+use super::{ast::Ast, layout, tokens::Tokens};
+use rows::{Kind, Row};
+
+/// Blanks a block's fields are indented by.
+const INDENT: usize = 2;
+/// Columns a one-line block may fill.
+const BLOCK_WIDTH: usize = 100;
+/// Columns a value may fill before its list or call is broken.
+const WIDTH: usize = 110;
+
+/// The canonical text of `text`, which `ast` was read from without a fault. Formatting twice changes nothing more, and
+/// the plan means what it meant.
+#[must_use]
+pub fn format(ast: &Ast, text: &str) -> String {
+    let tokens = Tokens::read(text, ast.file);
+    let (pieces, _) = layout::cut(&tokens);
+    let rows = rows::rows(&tokens, &pieces);
+    let mut lines = Vec::new();
+    let mut at = 0;
+    while at < rows.len() {
+        let end = run_end(&rows, at);
+        write_run(&tokens, &rows[at..end], &mut lines);
+        at = end;
+    }
+    let mut text = lines.join("\n");
+    if !text.is_empty() {
+        text.push('\n');
+    }
+    text
+}
+
+/// Where the run that starts at `start` ends: rows of one kind, with comments between them but no blank line.
+fn run_end(rows: &[Row], start: usize) -> usize {
+    let mut kind = None;
+    let mut end = start;
+    for (index, row) in rows.iter().enumerate().skip(start) {
+        match row.kind {
+            Kind::Blank => break,
+            Kind::Comment => {}
+            other if kind.is_none_or(|kind| kind == other && other.aligns()) => {
+                kind = Some(other);
+                end = index + 1;
+            }
+            _ => break,
+        }
+    }
+    end.max(start + 1)
+}
+
+fn write_run(tokens: &Tokens, run: &[Row], lines: &mut Vec<String>) {
+    let widths: Vec<usize> = (0..3)
+        .map(|column| {
+            run.iter()
+                .filter(|row| row.kind != Kind::Comment)
+                .filter_map(|row| row.lead.get(column))
+                .map(|text| text.chars().count())
+                .max()
+                .unwrap_or(0)
+        })
+        .collect();
+    let several = run.iter().filter(|row| row.kind != Kind::Comment).count() > 1;
+    let written: Vec<Vec<String>> = run
+        .iter()
+        .map(|row| row_lines(tokens, row, &widths, several))
+        .collect();
+    // A value over several lines stays out of the column: its comment follows its last bracket.
+    let commented = run
+        .iter()
+        .zip(&written)
+        .filter(|(row, lines)| row.comment.is_some() && lines.len() == 1);
+    let widths = commented.map(|(_, lines)| lines[0].chars().count());
+    // A long row pushes nobody's comment out of sight: its own follows it.
+    let column = widths.filter(|width| *width <= WIDTH).max().unwrap_or(0);
+    for (row, mut row_lines) in run.iter().zip(written) {
+        let single = row_lines.len() == 1;
+        if let (Some(comment), Some(last)) = (&row.comment, row_lines.last_mut()) {
+            let column = if single { column } else { 0 };
+            *last = format!("{last:<column$}  {comment}");
+        }
+        lines.append(&mut row_lines);
+    }
+}
+
+/// The lines of one row, its comment not yet set.
+fn row_lines(tokens: &Tokens, row: &Row, widths: &[usize], several: bool) -> Vec<String> {
+    let indent = " ".repeat(row.indent);
+    let lead = |column: usize| row.lead.get(column).map_or("", String::as_str);
+    let head = match row.kind {
+        Kind::Blank => String::new(),
+        Kind::Comment | Kind::Plain | Kind::Use => format!("{indent}{}", lead(0)),
+        Kind::Field => format!("{indent}{:<width$} = ", lead(0), width = widths[0]),
+        Kind::Binding => format!(
+            "{:<first$} {:<second$} = ",
+            lead(0),
+            lead(1),
+            first = widths[0],
+            second = widths[1]
+        ),
+        Kind::Require => {
+            format!(
+                "require {:<width$}{}",
+                lead(0),
+                if several { "  " } else { " " },
+                width = widths[0]
+            )
+        }
+    };
+    match row.value {
+        None => vec![head],
+        Some((start, end)) => value::lines(tokens, start, end, &head, row.indent),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,438 @@
+//! Recovery: cuts a faulty file into items and fields by its lines and brackets, so that each can be read alone and
+//! none swallows the next. In: tokens. Out: [`Piece`]s and the faults of brackets. Knows lines, not grammar.
+
+use super::{
+    control, faults,
+    tokens::{JOINING_WORDS, Kind, Tokens},
+};
+use crate::text::diagnostic::Diagnostic;
+
+/// One statement: tokens `start..end`, the last of which is no line end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Statement {
+    pub start: usize,
+    pub end: usize,
+    /// Its brackets are at fault, and that has been said.
+    pub broken: bool,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// `let`, `param`, `use`, `require`, or something that is no item at all.
+    Item(Statement),
+    /// `open` is the token of `{`, `close` that of `}`.
+    Block {
+        head: Statement,
+        open: usize,
+        fields: Vec<Statement>,
+        close: Option<usize>,
+    },
+}
+
+#[must_use]
+pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
+    let mut cutter = Cutter {
+        tokens,
+        at: 0,
+        faults: Vec::new(),
+    };
+    let mut pieces = Vec::new();
+    while cutter.skip_lines() {
+        if cutter.is("}") {
+            cutter.unexpected("an item");
+            cutter.at += 1;
+            continue;
+        }
+        if cutter.skips_control() {
+            continue;
+        }
+        let statement = cutter.statement();
+        cutter.brace_below(statement);
+        if cutter.is("{") || cutter.lacks_its_brace(statement) {
+            let block = cutter.block(statement);
+            let closed = matches!(block, Piece::Block { close: Some(_), .. });
+            pieces.push(block);
+            if closed && !cutter.ends_line() && !cutter.is("}") {
+                cutter.unexpected("the end of the line");
+            }
+        } else {
+            pieces.push(Piece::Item(statement));
+        }
+    }
+    (pieces, cutter.faults)
+}
+
+/// Words a top-level item starts with, other than a block.
+pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
+
+/// Words and signs of the fields of a block that lacks its `{`, at most.
+const FIELDS_WITHOUT_BRACE: usize = 500;
+
+/// Signs between two values.
+const OPERATORS: [&str; 12] = [
+    "+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!=",
+];
+
+struct Cutter<'a> {
+    tokens: &'a Tokens<'a>,
+    at: usize,
+    faults: Vec<Diagnostic>,
+}
+
+impl Cutter<'_> {
+    fn is(&self, text: &str) -> bool {
+        self.tokens.is(self.at, text)
+    }
+
+    fn ends_line(&self) -> bool {
+        matches!(
+            self.tokens.kind(self.at),
+            None | Some(Kind::Newline | Kind::Comment)
+        )
+    }
+
+    /// Past line ends and comments; whether anything is left.
+    fn skip_lines(&mut self) -> bool {
+        while matches!(
+            self.tokens.kind(self.at),
+            Some(Kind::Newline | Kind::Comment)
+        ) {
+            self.at += 1;
+        }
+        self.at < self.tokens.list.len()
+    }
+
+    fn unexpected(&mut self, expected: &str) {
+        let token = self.tokens.list[self.at];
+        let found = format!("`{}`", self.tokens.text_of(token));
+        self.faults.push(faults::unexpected(
+            self.tokens.span(token.start, token.end),
+            &found,
+            expected,
+        ));
+    }
+
+    fn unclosed(&mut self, open: usize) {
+        let token = self.tokens.list[open];
+        let text = self.tokens.text_of(token);
+        let close = closing(text);
+        self.faults.push(faults::unclosed(
+            self.tokens.span(token.start, token.end),
+            text,
+            close,
+        ));
+    }
+
+    /// One statement from here: to the end of its line, further where a bracket is open or an operator stands last,
+    /// but never past a line that starts something new, nor past a brace.
+    fn statement(&mut self) -> Statement {
+        let start = self.at;
+        let mut end = start;
+        let mut open: Vec<usize> = Vec::new();
+        let mut broken = false;
+        while let Some(kind) = self.tokens.kind(self.at) {
+            match kind {
+                Kind::Newline if open.is_empty() && !self.continues(end) => {
+                    if !self.goes_on_below() {
+                        break;
+                    }
+                    broken = true;
+                }
+                Kind::Newline if self.starts_something() => break,
+                Kind::Newline | Kind::Comment => {}
+                _ if self.is("{") || self.is("}") => break,
+                _ => {
+                    if self.is("(") || self.is("[") {
+                        open.push(self.at);
+                    } else if self.is(")") || self.is("]") {
+                        let fits = |bracket: &usize| {
+                            self.is(closing(self.tokens.text_of(self.tokens.list[*bracket])))
+                        };
+                        if let Some(position) = open.iter().rposition(fits) {
+                            if position + 1 < open.len() {
+                                self.unclosed(open[open.len() - 1]);
+                                broken = true;
+                            }
+                            open.truncate(position);
+                        }
+                    }
+                    end = self.at + 1;
+                }
+            }
+            self.at += 1;
+        }
+        if let Some(innermost) = open.last() {
+            self.unclosed(*innermost);
+            broken = true;
+        }
+        Statement { start, end, broken }
+    }
+
+    /// Whether the next line begins with an operator, which is told: it goes on with the expression of this one.
+    fn goes_on_below(&mut self) -> bool {
+        let next = self.at + 1;
+        let joins = |word: &&str| self.tokens.is(next, word) && !self.tokens.is(next + 1, "=");
+        if !OPERATORS.iter().chain(&JOINING_WORDS).any(joins) {
+            return false;
+        }
+        let token = self.tokens.list[next];
+        let operator = self.tokens.text_of(token);
+        self.faults.push(faults::operator_begins_line(
+            self.tokens.span(token.start, token.end),
+            operator,
+        ));
+        true
+    }
+
+    /// A brace that stands on a line of its own below the head that it belongs to: told, and read as that block's.
+    fn brace_below(&mut self, head: Statement) {
+        let mut next = self.at;
+        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
+            next += 1;
+        }
+        let words = (head.start..head.end)
+            .all(|at| matches!(self.tokens.kind(at), Some(Kind::Word | Kind::Text)));
+        let item = ITEM_WORDS
+            .iter()
+            .any(|word| self.tokens.is(head.start, word));
+        if next > self.at && head.end > head.start && words && !item && self.tokens.is(next, "{") {
+            let brace = self.tokens.list[next];
+            self.faults.push(faults::brace_on_next_line(
+                self.tokens.span(brace.start, brace.end),
+            ));
+            self.at = next;
+        }
+    }
+
+    /// Whether these are the words of a block that is closed and never opened, which is told: fields follow, and a `}`.
+    fn lacks_its_brace(&mut self, head: Statement) -> bool {
+        let words = (head.start..head.end)
+            .all(|at| matches!(self.tokens.kind(at), Some(Kind::Word | Kind::Text)));
+        let item = ITEM_WORDS
+            .iter()
+            .any(|word| self.tokens.is(head.start, word));
+        let mut next = self.at;
+        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
+            next += 1;
+        }
+        let field = self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "=");
+        // Looked for so far only: reading a file takes as long as the file is.
+        let closed = || {
+            let brace = (next..next + FIELDS_WITHOUT_BRACE)
+                .find(|at| self.tokens.is(*at, "{") || self.tokens.is(*at, "}"));
+            brace.is_some_and(|at| self.tokens.is(at, "}"))
+        };
+        let lacks = head.end > head.start && words && !item && field && closed();
+        if lacks {
+            let (first, last) = (self.tokens.list[head.start], self.tokens.list[head.end - 1]);
+            self.faults.push(faults::brace_missing(
+                self.tokens.span(first.start, last.end),
+            ));
+        }
+        lacks
+    }
+
+    /// Whether the token before `end` wants a value after it.
+    fn continues(&self, end: usize) -> bool {
+        let Some(last) = end.checked_sub(1) else {
+            return false;
+        };
+        OPERATORS
+            .iter()
+            .chain(&JOINING_WORDS)
+            .any(|operator| self.tokens.is(last, operator))
+    }
+
+    /// Whether the line after this line end starts a field, an item, a block or ends a block.
+    fn starts_something(&self) -> bool {
+        let mut next = self.at;
+        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
+            next += 1;
+        }
+        self.tokens.is(next, "}")
+            || (self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "="))
+            || self.starts_item(next)
+    }
+
+    /// Whether an item other than a field starts at `index`.
+    fn starts_item(&self, index: usize) -> bool {
+        if self.tokens.kind(index) != Some(Kind::Word) || self.tokens.is(index + 1, "=") {
+            return false;
+        }
+        let keyword = ITEM_WORDS.iter().any(|word| self.tokens.is(index, word));
+        let mut after = index + 1;
+        while self.tokens.kind(after) == Some(Kind::Word) {
+            after += 1;
+        }
+        let named = after > index + 1 || self.tokens.kind(after) == Some(Kind::Text);
+        if self.tokens.kind(after) == Some(Kind::Text) {
+            after += 1;
+        }
+        (keyword && named) || self.tokens.is(after, "{")
+    }
+
+    /// Past a condition or a loop of another language, with all that is in its braces: told once.
+    fn skips_control(&mut self) -> bool {
+        let first = self.tokens.list[self.at];
+        let Some((message, help)) = control::of_another_language(self.tokens.text_of(first)) else {
+            return false;
+        };
+        let line = (self.at..).take_while(|at| {
+            !matches!(
+                self.tokens.kind(*at),
+                None | Some(Kind::Newline | Kind::Comment)
+            )
+        });
+        let brace = line.into_iter().find(|at| self.tokens.is(*at, "{"));
+        let Some(brace) = brace.filter(|_| !self.tokens.is(self.at + 1, "=")) else {
+            return false;
+        };
+        self.at = brace;
+        self.skip_braces();
+        while self
+            .tokens
+            .list
+            .get(self.at)
+            .is_some_and(|token| control::is_condition(self.tokens.text_of(*token)))
+        {
+            self.at = (self.at..self.tokens.list.len())
+                .find(|at| self.tokens.is(*at, "{"))
+                .unwrap_or(self.tokens.list.len());
+            self.skip_braces();
+        }
+        let last = self.tokens.list[self.at.max(1) - 1];
+        let (begins, whole) = (
+            self.tokens.span(first.start, first.end),
+            self.tokens.span(first.start, last.end),
+        );
+        self.faults
+            .push(faults::no_control(message, help, begins, whole));
+        true
+    }
+
+    fn column(&self, index: usize) -> usize {
+        let start = self.tokens.list[index].start;
+        start
+            - self.tokens.text[..start]
+                .rfind('\n')
+                .map_or(0, |newline| newline + 1)
+    }
+
+    /// The block whose `{` is here.
+    fn block(&mut self, head: Statement) -> Piece {
+        // One that lacks its brace opens behind its last word.
+        let open = if self.is("{") { self.at } else { head.end - 1 };
+        let mut fields = Vec::new();
+        self.at += usize::from(self.is("{"));
+        loop {
+            if !self.skip_lines() {
+                self.unclosed(open);
+                return Piece::Block {
+                    head,
+                    open,
+                    fields,
+                    close: None,
+                };
+            }
+            if self.is("}") {
+                self.at += 1;
+                return Piece::Block {
+                    head,
+                    open,
+                    fields,
+                    close: Some(self.at - 1),
+                };
+            }
+            if self.skips_control() {
+                continue;
+            }
+            if self.starts_item(self.at) {
+                // A line no further in than the block's own head is the next item: this block was never closed.
+                if self.column(self.at) <= self.column(head.start.min(open)) {
+                    self.unclosed(open);
+                    return Piece::Block {
+                        head,
+                        open,
+                        fields,
+                        close: None,
+                    };
+                }
+                self.skip_misplaced();
+                continue;
+            }
+            let before = self.at;
+            let field = self.statement();
+            if field.end > field.start {
+                fields.push(field);
+            }
+            if self.is("{") && self.arguments_in_braces(field) {
+                if let Some(field) = fields.last_mut() {
+                    field.broken = true;
+                }
+                continue;
+            }
+            if self.is("{") || self.at == before {
+                self.unexpected("the end of the line");
+                self.skip_braces();
+            }
+        }
+    }
+
+    /// Past `{0.5}` of `contact = restitution{0.5}`, on one line: told.
+    fn arguments_in_braces(&mut self, field: Statement) -> bool {
+        let close = (self.at..)
+            .take_while(|at| !matches!(self.tokens.kind(*at), None | Some(Kind::Newline)));
+        let close = close.into_iter().find(|at| self.tokens.is(*at, "}"));
+        let named = field.end == self.at
+            && self.tokens.kind(self.at - 1) == Some(Kind::Word)
+            && self.tokens.is(field.start + 1, "=");
+        let Some(close) = close.filter(|_| named) else {
+            return false;
+        };
+        let (name, open, last) = (
+            self.tokens.list[self.at - 1],
+            self.tokens.list[self.at],
+            self.tokens.list[close],
+        );
+        let inside = self.tokens.text[open.end..last.start].trim();
+        let call = format!("{}({inside})", self.tokens.text_of(name));
+        self.faults.push(faults::arguments_in_braces(
+            self.tokens.span(open.start, last.end),
+            &call,
+        ));
+        self.at = close + 1;
+        true
+    }
+
+    fn skip_misplaced(&mut self) {
+        let token = self.tokens.list[self.at];
+        self.faults.push(faults::misplaced_block(
+            self.tokens.span(token.start, token.end),
+        ));
+        self.statement();
+        if self.is("{") {
+            self.skip_braces();
+        }
+    }
+
+    /// Past the `{` here and the `}` that belongs to it, whatever is between, or past this one token.
+    fn skip_braces(&mut self) {
+        let mut depth = 0_usize;
+        while self.at < self.tokens.list.len() {
+            depth += usize::from(self.is("{"));
+            depth = depth.saturating_sub(usize::from(self.is("}")));
+            self.at += 1;
+            if depth == 0 {
+                return;
+            }
+        }
+    }
+}
+
+fn closing(open: &str) -> &'static str {
+    match open {
+        "(" => ")",
+        "[" => "]",
+        _ => "}",
+    }
+}

@@ -1,0 +1,451 @@
+//! One file, read whole: [`parse`] gives the tree of all that could be read and every fault of the text. A sound file
+//! goes through the grammar at once; a faulty one is cut into pieces (`layout`) and each piece is read alone.
+
+use std::collections::BTreeSet;
+
+use pest::{
+    Parser as _,
+    error::{ErrorVariant, InputLocation},
+    iterators::Pair,
+};
+use pest_derive::Parser;
+
+use super::{
+    ast::{Ast, Block, Entry, Ident, Item, ItemKind},
+    faults,
+    layout::{self, Piece, Statement},
+    limits,
+    lower::{Lowering, unescape},
+    misspelt, rule_names,
+    tokens::{Kind, Tokens},
+};
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::{FileId, Sources, Span, Spanned};
+
+#[derive(Parser)]
+#[grammar = "../grammar/psd.pest"]
+pub struct Grammar;
+
+/// Reads one file. Never panics; what could be read of a faulty file is in the tree, with
+/// [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) where a value could not.
+#[must_use]
+pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
+    let text = sources.file(file).text.as_str();
+    let mut ast = Ast {
+        file,
+        items: Vec::new(),
+        comments: Vec::new(),
+        misspelt: Vec::new(),
+    };
+    if text.len() > limits::FILE_BYTES {
+        let start = Span::new(file, 0, 0);
+        return (
+            ast,
+            vec![faults::too_large(
+                start,
+                "this file",
+                limits::FILE_BYTES,
+                "bytes",
+            )],
+        );
+    }
+    if let Some(at) = text.find('\r').filter(|_| !text.contains('\n')) {
+        return (
+            ast,
+            vec![faults::carriage_returns(Span::new(file, at, at + 1))],
+        );
+    }
+    let mended = misspelt::mend(text, file);
+    let text = mended.text.as_ref();
+    let mut tokens = Tokens::read(text, file);
+    ast.comments = tokens.comments();
+    if tokens.faults.is_empty()
+        && let Some(items) = whole(text, file)
+    {
+        ast.items = items;
+        ast.misspelt = mended.places;
+        return (ast, mended.faults);
+    }
+    if tokens.cut_short {
+        return (ast, [mended.faults, tokens.faults].concat());
+    }
+    let (items, mut faults) = piecewise(&mut tokens);
+    ast.items = items;
+    let ends: Vec<usize> = text
+        .bytes()
+        .enumerate()
+        .filter(|(_, byte)| *byte == b'\n')
+        .map(|(at, _)| at)
+        .collect();
+    let line = |at: Span| ends.partition_point(|end| *end < at.start as usize);
+    let lines: BTreeSet<usize> = mended.places.iter().copied().map(line).collect();
+    faults.retain(|fault| {
+        !follows(fault) || fault.span().is_none_or(|at| !lines.contains(&line(at)))
+    });
+    faults.extend(mended.faults);
+    ast.misspelt = mended.places;
+    if faults.is_empty() {
+        // The grammar refused what its pieces allow: say where it stopped.
+        faults.extend(
+            Grammar::parse(Rule::file, text)
+                .err()
+                .map(|error| refused(&tokens, text, 0, Rule::file, &error)),
+        );
+    }
+    faults.sort_by_key(|fault| fault.span().map(|span| (span.start, span.end)));
+    (ast, faults)
+}
+
+/// Whether a fault says no more than that a line cannot be read, which a slip on the same line may be the reason of.
+fn follows(fault: &Diagnostic) -> bool {
+    matches!(
+        fault.code,
+        Code::Syntax | Code::BadNumber | Code::UnitWithoutBlank
+    )
+}
+
+/// A sound file; `None` where there is any fault.
+fn whole(text: &str, file: FileId) -> Option<Vec<Item>> {
+    let lowering = Lowering::new(file, 0);
+    let pairs = Grammar::parse(Rule::file, text).ok()?.next()?.into_inner();
+    let items = pairs.filter(|pair| !matches!(pair.as_rule(), Rule::end_of_line | Rule::EOI));
+    let items: Option<Vec<Item>> = items.map(|pair| lowering.item(pair)).collect();
+    lowering.faults.into_inner().is_empty().then_some(items)?
+}
+
+/// Every piece of a file read alone. A sound file gives the same items as [`whole`].
+fn piecewise(tokens: &mut Tokens) -> (Vec<Item>, Vec<Diagnostic>) {
+    let found = std::mem::take(&mut tokens.faults);
+    let mut reader = Pieces {
+        tokens,
+        lexical: found.len(),
+        faults: found,
+    };
+    let mut items = Vec::new();
+    reader.read(&mut items);
+    (items, reader.faults)
+}
+
+/// Why the grammar's `rule` refuses `text`, which starts at byte `base`.
+fn refused(
+    tokens: &Tokens,
+    text: &str,
+    base: usize,
+    rule: Rule,
+    error: &pest::error::Error<Rule>,
+) -> Diagnostic {
+    let offset = match error.location {
+        InputLocation::Pos(offset) | InputLocation::Span((offset, _)) => offset,
+    };
+    let expected = match &error.variant {
+        // A head ends where its brace opens.
+        ErrorVariant::ParsingError { positives, .. }
+            if rule == Rule::head_alone && positives.contains(&Rule::EOI) =>
+        {
+            "`{`".to_owned()
+        }
+        ErrorVariant::ParsingError { positives, .. } => rule_names::expected(positives),
+        ErrorVariant::CustomError { .. } => "something else".to_owned(),
+    };
+    let at = base + offset;
+    let later = &tokens.list[tokens.list.partition_point(|token| token.end <= at)..];
+    let next = later.iter().find(|token| token.kind != Kind::Comment);
+    let inside =
+        next.filter(|token| token.start < base + text.len() || token.kind == Kind::Newline);
+    if let Some(token) = inside.filter(|token| token.kind != Kind::Newline) {
+        let mut found: String = tokens.text_of(*token).chars().take(30).collect();
+        if found.len() < token.end - token.start {
+            found.push('…');
+        }
+        return faults::unexpected(
+            tokens.span(token.start, token.end),
+            &format!("`{found}`"),
+            &expected,
+        );
+    }
+    let end = base + text.len().min(offset);
+    let end = base + tokens.text[base..end].trim_end().len();
+    let place = if inside.is_some() {
+        "the end of the line"
+    } else {
+        "the end of the file"
+    };
+    faults::unexpected(tokens.span(end, end), place, &expected)
+}
+
+/// Reads the pieces of a faulty file.
+struct Pieces<'a> {
+    tokens: &'a Tokens<'a>,
+    /// How many of `faults` were found by `tokens`.
+    lexical: usize,
+    faults: Vec<Diagnostic>,
+}
+
+impl Pieces<'_> {
+    fn read(&mut self, items: &mut Vec<Item>) {
+        let (pieces, brackets) = layout::cut(self.tokens);
+        self.faults.extend(brackets);
+        for piece in pieces {
+            if self.faults.len() > limits::FAULTS + self.lexical {
+                break;
+            }
+            match piece {
+                Piece::Item(statement) => items.extend(self.item(statement)),
+                Piece::Block {
+                    head,
+                    open,
+                    fields,
+                    close,
+                } => items.extend(self.block(head, open, &fields, close)),
+            }
+        }
+    }
+
+    fn bounds(&self, statement: Statement) -> (usize, usize) {
+        let start = self.tokens.list[statement.start].start;
+        (
+            start,
+            statement
+                .end
+                .checked_sub(1)
+                .map_or(start, |last| self.tokens.list[last].end.max(start)),
+        )
+    }
+
+    /// Reads one statement by `rule`. `None`: it is at fault, and that has been said.
+    fn alone<T>(
+        &mut self,
+        statement: Statement,
+        rule: Rule,
+        lower: impl Fn(&Lowering, Pair<'_, Rule>) -> Option<T>,
+    ) -> Option<T> {
+        let (start, end) = self.bounds(statement);
+        let within = |fault: &Diagnostic| {
+            fault
+                .span()
+                .is_some_and(|at| at.start as usize <= end && at.end as usize > start)
+        };
+        if statement.broken || self.faults[..self.lexical].iter().any(within) {
+            return None;
+        }
+        let text = &self.tokens.text[start..end];
+        let mut pairs = match Grammar::parse(rule, text) {
+            Ok(pairs) => pairs,
+            Err(error) => {
+                self.faults
+                    .push(refused(self.tokens, text, start, rule, &error));
+                return None;
+            }
+        };
+        let lowering = Lowering::new(self.tokens.file, start);
+        let pair = pairs.next()?.into_inner().next()?;
+        let lowered = lower(&lowering, pair);
+        let faults = lowering.faults.into_inner();
+        let sound = faults.is_empty();
+        self.faults.extend(faults);
+        lowered.filter(|_| sound)
+    }
+
+    fn word(&self, index: usize) -> Option<Ident> {
+        let token = *self
+            .tokens
+            .list
+            .get(index)
+            .filter(|token| token.kind == Kind::Word)?;
+        Some(Spanned::new(
+            self.tokens.text_of(token).to_owned(),
+            self.tokens.span(token.start, token.end),
+        ))
+    }
+
+    /// An item that is no block; of a faulty one, its name with a faulty value.
+    fn item(&mut self, statement: Statement) -> Option<Item> {
+        if !layout::ITEM_WORDS
+            .iter()
+            .any(|word| self.tokens.is(statement.start, word))
+        {
+            self.no_item(statement);
+            return None;
+        }
+        let (start, end) = self.bounds(statement);
+        let nameless = self.tokens.is(statement.start, "require")
+            && statement.end > statement.start + 1
+            && self.tokens.kind(statement.start + 1) != Some(Kind::Text);
+        if nameless {
+            let second = self.tokens.list[statement.start + 1];
+            let span = self.tokens.span(second.start, second.end);
+            self.faults.push(faults::requirement_without_name(
+                span,
+                &self.tokens.text[second.start..end],
+            ));
+            return None;
+        }
+        if let Some(item) = self.alone(statement, Rule::item_alone, Lowering::item) {
+            return Some(item);
+        }
+        let span = self.tokens.span(start, end);
+        let value = Lowering::faulty(span);
+        let second = (statement.start + 1 < statement.end).then_some(statement.start + 1)?;
+        let keyword = self.word(statement.start)?;
+        let kind = match keyword.node.as_str() {
+            "let" => ItemKind::Let {
+                name: self.word(second)?,
+                value,
+            },
+            "param" => ItemKind::Param {
+                name: self.word(second)?,
+                value,
+                bounds: None,
+            },
+            "require" => {
+                let token = *self
+                    .tokens
+                    .list
+                    .get(second)
+                    .filter(|token| token.kind == Kind::Text)?;
+                let label = Spanned::new(
+                    unescape(self.tokens.text_of(token)),
+                    self.tokens.span(token.start, token.end),
+                );
+                ItemKind::Require {
+                    label,
+                    condition: value,
+                }
+            }
+            _ => return None,
+        };
+        Some(Item { span, kind })
+    }
+
+    /// What stands among the items and is none: a field, or a block without its `{`.
+    fn no_item(&mut self, statement: Statement) {
+        let key = self
+            .word(statement.start)
+            .filter(|_| self.tokens.is(statement.start + 1, "="));
+        if let Some(key) = key {
+            self.faults.push(faults::field_outside(key.span, &key.node));
+        } else if let Some((word, help)) = self.other_language(statement) {
+            self.faults.push(faults::word_of_another_language(
+                word.span, &word.node, &help,
+            ));
+        } else if self
+            .alone(statement, Rule::head_alone, Lowering::head)
+            .is_some()
+        {
+            let (start, end) = self.bounds(statement);
+            self.faults.push(faults::stray_words(
+                self.tokens.span(start, end),
+                &self.tokens.text[start..end],
+            ));
+        }
+    }
+
+    /// A line that begins as it would in another language, and how it is said in this one.
+    fn other_language(&self, statement: Statement) -> Option<(Ident, String)> {
+        let word = self.word(statement.start)?;
+        let help = match word.node.as_str() {
+            "import" | "include" | "from" | "source" => {
+                "another file is named by `use`, as in `use \"lib/frame.psd\"`".to_owned()
+            }
+            "if" | "assert" | "expect" | "ensure" | "check" | "verify" => {
+                "what must hold is said by `require`, as in `require \"stays in travel\" hit.max_displacement < 9 mm`".to_owned()
+            }
+            "run" | "start" | "do" | "call" => {
+                "every procedure of a plan runs, in the order written: take this line away".to_owned()
+            }
+            _ => {
+                let name = self.word(statement.start + 1).filter(|_| self.tokens.is(statement.start + 2, "="))?;
+                format!("a value is named by `let`, as in `let {} = …`", name.node)
+            }
+        };
+        Some((word, help))
+    }
+
+    fn block(
+        &mut self,
+        head: Statement,
+        open: usize,
+        fields: &[Statement],
+        close: Option<usize>,
+    ) -> Option<Item> {
+        let sound =
+            (head.end > head.start).then(|| self.alone(head, Rule::head_alone, Lowering::head));
+        if sound.is_none() {
+            let brace = self.tokens.list[open];
+            let span = self.tokens.span(brace.start, brace.end);
+            self.faults
+                .push(faults::unexpected(span, "`{`", "the name of a block"));
+        }
+        let block = sound.flatten().or_else(|| self.faulty_head(head));
+        let entries: Vec<Entry> = fields
+            .iter()
+            .filter_map(|field| self.entry(*field))
+            .collect();
+        let mut block = block?;
+        block.fields = entries;
+        let last = close
+            .or_else(|| fields.last().map(|field| field.end - 1))
+            .unwrap_or(open);
+        let span = self
+            .tokens
+            .span(block.head.start as usize, self.tokens.list[last].end);
+        Some(Item {
+            span,
+            kind: ItemKind::Block(block),
+        })
+    }
+
+    /// The words of a head that could not be read.
+    fn faulty_head(&self, head: Statement) -> Option<Block> {
+        let words: Vec<Ident> = (head.start..head.end)
+            .map_while(|index| self.word(index))
+            .collect();
+        let span = words.first()?.span.to(words.last()?.span);
+        Some(Block {
+            words,
+            title: None,
+            fields: Vec::new(),
+            head: span,
+        })
+    }
+
+    /// A field; of a faulty one, its key with a faulty value, so that it is not missed as well.
+    fn entry(&mut self, statement: Statement) -> Option<Entry> {
+        if let Some(entry) = self.alone(statement, Rule::entry_alone, Lowering::entry) {
+            return Some(entry);
+        }
+        // A word alone is no field.
+        let key = self
+            .word(statement.start)
+            .filter(|_| statement.end > statement.start + 1)?;
+        let (start, end) = self.bounds(statement);
+        let value = self.tokens.span(end.min(key.span.end as usize), end);
+        Some(Entry {
+            span: self.tokens.span(start, end),
+            key,
+            value: Lowering::faulty(value),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::language::syntax::tests::{IMPACT, QUAKE};
+
+    #[test]
+    fn a_sound_file_reads_the_same_whole_and_in_pieces() {
+        for text in [
+            IMPACT,
+            QUAKE,
+            "a { }\r\nb \"t\" { x = 1 } # c\nlet x = (1 +\n # c\n 2)\n",
+            "c {\n x = [\n1 ,\n2] m\n\n y = 1 }",
+        ] {
+            let file = FileId(0);
+            let mut tokens = Tokens::read(text, file);
+            let (items, faults) = piecewise(&mut tokens);
+            assert_eq!(faults, []);
+            assert_eq!(Some(items), whole(text, file));
+        }
+    }
+}

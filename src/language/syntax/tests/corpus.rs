@@ -1,0 +1,215 @@
+//! Hostile and odd files: refused with the right code or accepted, always quickly.
+
+use std::time::Duration;
+
+use proptest::prelude::*;
+use rustix::time::{ClockId, clock_gettime};
+
+use super::{faults, outline, read, sound};
+use crate::text::diagnostic::Code;
+use crate::text::diagnostic::Code::*;
+
+/// Time of the processor that this thread has had, s: what else the machine does is not in it.
+fn processor_time() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    Duration::new(
+        time.tv_sec.cast_unsigned(),
+        u32::try_from(time.tv_nsec).unwrap(),
+    )
+    .as_secs_f64()
+}
+
+fn refused(text: &str, code: Code) {
+    let start = processor_time();
+    let (_, found, _) = read(text);
+    // No measurement: these take well under a second, and for ever where reading is not linear.
+    let taken = processor_time() - start;
+    assert!(taken < 60.0, "{taken} s for {} bytes", text.len());
+    let codes: Vec<Code> = found.iter().map(|fault| fault.code).collect();
+    assert!(codes.contains(&code), "{codes:?}");
+}
+
+#[test]
+fn empty_files_and_lone_comments_are_sound() {
+    for text in ["", "\n", "\n\n  \n", "# only a comment", "#"] {
+        assert!(sound(text).0.items.is_empty());
+    }
+}
+
+#[test]
+fn hostile_files_are_refused_quickly() {
+    refused("\u{feff}", BadText);
+    refused("p\0l\0a\0n\0", BadText);
+    refused("let x = 1\rlet y = 2\r", BadText);
+    refused("let x = \"abc", BadText);
+    refused(&format!("let x = \"{}", "a".repeat(1 << 20)), TooLarge);
+    refused(&format!("let x = \"{}", "a".repeat(1 << 19)), TooLarge);
+    refused(&"/*\n".repeat(10_000), Syntax);
+    refused(&format!("let x = {}", "(".repeat(100_000)), NestedTooDeep);
+    refused(
+        &format!("let x = {}1{}", "(".repeat(100_000), ")".repeat(100_000)),
+        NestedTooDeep,
+    );
+    refused(
+        &format!("let x = {}1{}", "(\n".repeat(100_000), ")\n".repeat(99_000)),
+        NestedTooDeep,
+    );
+    refused(&format!("let x = {}1", "-".repeat(100_000)), TooLarge);
+    refused(&format!("let x = 1{}", " + 1".repeat(199_999)), TooLarge);
+    refused(&format!("let x = 1{}", " +\n 1".repeat(60_000)), TooLarge);
+    refused(&format!("let x = 1{}", " ^\n 1".repeat(60_000)), TooLarge);
+    refused(&format!("let x = {}", "a".repeat(1 << 19)), TooLarge);
+    refused("plan { }\n l\u{456}mits { }\n", BadText);
+    refused("plan \"a\u{202e}b\" { }\n", BadText);
+    refused(&format!("let x = {}\n", "1".repeat(400)), BadNumber);
+    refused(&"{\n".repeat(90_000), UnclosedBracket);
+    refused(&"a {\n".repeat(60_000), UnclosedBracket);
+    refused(&"x = f(\n".repeat(35_000), UnclosedBracket);
+    refused(&"\u{1}a".repeat(100_000), BadText);
+    refused(&"1 1\n".repeat(60_000), Syntax);
+    refused(&"«".repeat(500_000), Syntax);
+    refused(&"a\nx = 1\n".repeat(30_000), Syntax);
+    let mut words = String::new();
+    for word in 0..60_000 {
+        words.push('б');
+        words.push_str(&word.to_string());
+        words.push(' ');
+    }
+    refused(&words, BadText);
+}
+
+#[test]
+fn limits_hold_at_the_limit_and_not_past_it() {
+    let name = |length: usize| format!("let {} = 1\n", "a".repeat(length));
+    assert_eq!(faults(&name(64)), []);
+    refused(&name(65), TooLarge);
+    let text = |length: usize| format!("use \"{}\"\n", "a".repeat(length));
+    assert_eq!(faults(&text(1024)), []);
+    refused(&text(1025), TooLarge);
+    let line = |length: usize| format!("#{}\n", "a".repeat(length - 1));
+    assert_eq!(faults(&line(4096)), []);
+    refused(&line(4097), TooLarge);
+    let deep = |depth: usize| format!("let x = {}1{}\n", "(".repeat(depth), ")".repeat(depth));
+    assert_eq!(faults(&deep(64)), []);
+    refused(&deep(65), NestedTooDeep);
+    let file = |length: usize| "#a\n".repeat(length / 3) + &"\n".repeat(length % 3);
+    let under_token_limit = "#".to_owned() + &"a".repeat(4000) + "\n";
+    let lines = under_token_limit.repeat((1 << 20) / under_token_limit.len());
+    let full = lines.clone() + &"\n".repeat((1 << 20) - lines.len());
+    assert_eq!(full.len(), 1 << 20);
+    assert_eq!(faults(&full), []);
+    refused(&(full + "\n"), TooLarge);
+    refused(&file(900_000), TooLarge);
+    let sum = |operators: usize| format!("let x = 1{}\n", " +\n1".repeat(operators));
+    assert_eq!(faults(&sum(999)), []);
+    refused(&sum(1000), TooLarge);
+}
+
+#[test]
+fn what_only_meaning_can_refuse_is_read() {
+    for value in ["nan", "inf", "-inf", "-0.0", "5 kNm", "3 mm", "1e-300", "0"] {
+        let (ast, _) = sound(&format!("b {{\n  x = {value}\n}}\n"));
+        assert!(!outline(&ast).contains('?'));
+    }
+    sound("let a = b\nlet b = a\nuse \"../x.psd\"\nrequire \"<script>\" a < b\n");
+    sound("let a = 1\r\nlet b = 2\nlet c = 3\r\n");
+}
+
+/// Pieces of plans in any order.
+pub fn soup() -> impl Strategy<Value = String> {
+    let pieces = prop::sample::select(vec![
+        "let ",
+        "use ",
+        "param ",
+        "require ",
+        "plan ",
+        "x",
+        " = ",
+        "1",
+        "1.5e3",
+        " kg",
+        "m/s",
+        "%",
+        "(",
+        ")",
+        "[",
+        "]",
+        "{",
+        "}",
+        ",",
+        ":",
+        "..",
+        " step ",
+        " between ",
+        "within",
+        " of ",
+        " and ",
+        "\"t\"",
+        "\"",
+        "#c",
+        "\n",
+        "\r\n",
+        "\r",
+        " + ",
+        "-",
+        "*",
+        "/",
+        "^",
+        ".",
+        "<",
+        "==",
+        "!=",
+        "µ",
+        "é",
+        "\u{202e}",
+        "\0",
+        ";",
+        "0x1",
+        "1_0",
+        "1,5",
+        "5.",
+        "\\",
+    ]);
+    prop::collection::vec(pieces, 0..60).prop_map(|pieces| pieces.concat())
+}
+
+/// Each is read as a sign of one byte, with blanks behind it: what stands after the sign begins in the middle of the letter.
+#[test]
+fn a_letter_of_several_bytes_that_is_read_as_a_sign_ends_no_text_within_itself() {
+    for letter in [
+        "［", "］", "（", "｛", "≤", "×", "“", "‘", "«", "…", "−", "²",
+    ] {
+        for text in [
+            letter.to_owned(),
+            format!("a {letter}"),
+            format!("let a = {letter}"),
+            format!("let a = 1 {letter}\nlet b = {letter}{letter}"),
+        ] {
+            let _ = faults(&text);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_text_is_read_without_panic(text in any::<String>()) {
+        let _ = faults(&text);
+    }
+
+    #[test]
+    fn any_bytes_made_text_are_read(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        let _ = faults(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn a_soup_of_words_is_read_and_a_faulty_tree_has_a_fault(text in soup()) {
+        let (ast, found, sources) = read(&text);
+        for fault in &found {
+            prop_assert!(fault.help.is_some());
+            let _ = sources.text(fault.span().unwrap());
+        }
+        prop_assert!(!found.is_empty() || !outline(&ast).contains('?'));
+    }
+}

@@ -1,0 +1,322 @@
+//! Faulty text: each fault with its code and place, the sound rest in the tree.
+
+use super::{faults, outline, read};
+use crate::text::diagnostic::Code;
+use crate::text::diagnostic::Code::*;
+
+fn one(text: &str, code: Code, place: &str) {
+    assert_eq!(faults(text), [(code, place.to_owned())], "{text}");
+}
+
+fn field(value: &str, code: Code, place: &str) {
+    one(&format!("b {{\n  x = {value}\n  y = 2\n}}\n"), code, place);
+}
+
+#[test]
+fn syntax_faults_say_what_was_found_and_expected() {
+    field("", Syntax, "");
+    field("1 kg 2", Syntax, "2");
+    field("* 2", Syntax, "*");
+    field("1 + * 2", Syntax, "*");
+    field("a b", Syntax, "b");
+    field("[1, 2", UnclosedBracket, "[");
+    field("f(1; 2)", Syntax, ";");
+    field("f(a: 1, 2)", Syntax, "2");
+    field("1)", Syntax, ")");
+    field("--1", Syntax, "-");
+    field("step", Syntax, "step");
+    field("1 < 2 < 3", Syntax, "<");
+    field("a.", Syntax, "");
+    one("let = 3\n", Syntax, "=");
+    one("require 3 < 4\n", Syntax, "3");
+    one("}\n", Syntax, "}");
+    one("limits 3 {\n  x = 1\n}\n", Syntax, "3");
+    one(
+        "a {\n x = 1\n  limits {\n  y = 2\n }\n}\n",
+        Syntax,
+        "limits",
+    );
+    one("a { x = 1 } let b = 2\n", Syntax, "let");
+    one("a { x = 1 kg y = 2 }\n", Syntax, "y");
+    one("x = 3\n", Syntax, "x");
+    one("striker pendulum\n", Syntax, "striker pendulum");
+    one("3\n", Syntax, "3");
+    let (_, found, _) = read("b {\n  mass =\n}\n");
+    assert_eq!(
+        found[0].message,
+        "found the end of the line, expected a value"
+    );
+    let (_, found, _) = read("b {\n  mass 3\n}\n");
+    assert_eq!(found[0].message, "found `3`, expected `=`");
+    let (_, found, _) = read("b {\n  mass = 3 kg x\n}\n");
+    assert!(
+        found[0]
+            .message
+            .starts_with("found `x`, expected an operator"),
+        "{}",
+        found[0].message
+    );
+    assert!(found[0].help.is_some());
+}
+
+#[test]
+fn an_open_bracket_is_reported_where_it_opens_and_swallows_nothing() {
+    for open in ["f(1", "[1, 2", "(1 + (2)", "f(1,\n    [2"] {
+        let text = format!("a {{\n  x = {open}\n  y = 2\n}}\nlet z = 3\n");
+        let (ast, found, sources) = read(&text);
+        assert_eq!(found.len(), 1, "{found:#?}");
+        assert_eq!(found[0].code, UnclosedBracket);
+        assert!(["(", "["].contains(&sources.text(found[0].span().unwrap())));
+        assert_eq!(outline(&ast), "a\n  x = ?\n  y = 2\nlet z = 3\n");
+    }
+    let (ast, found, sources) = read("a {\n  x = 1\n\nb {\n  y = 2\n}\nlet c = [1\n");
+    assert_eq!(
+        found.iter().map(|fault| fault.code).collect::<Vec<_>>(),
+        [UnclosedBracket, UnclosedBracket]
+    );
+    assert_eq!(sources.position(found[0].span().unwrap()).line, 1);
+    assert_eq!(outline(&ast), "a\n  x = 1\nb\n  y = 2\nlet c = ?\n");
+    one("a {", UnclosedBracket, "{");
+    let many = format!("a {{\n{}}}\n", "x = f(\n".repeat(100));
+    assert!(
+        faults(&many)
+            .iter()
+            .all(|(code, _)| *code == UnclosedBracket)
+            && faults(&many).len() == 100
+    );
+    field("f([1, 2)", UnclosedBracket, "[");
+}
+
+#[test]
+fn numbers_are_decimal_with_digits_on_both_sides() {
+    for (written, help) in [
+        ("1,5", "write `1.5`"),
+        ("1_000", "write `1000`"),
+        ("0x10", "write `16`"),
+        (".5", "write `0.5`"),
+        ("5.", "write `5`"),
+        ("1e", "write `1`"),
+        ("1e-400", "write `0`"),
+        ("1e400", "write a number such as `0.5` or `1.5e6`"),
+        ("1.2.3", "write a number such as `0.5` or `1.5e6`"),
+        (".5e3", "write `0.5e3`"),
+    ] {
+        field(&format!("{written} kg"), BadNumber, written);
+        let (_, found, _) = read(&format!("let x = {written}\n"));
+        assert_eq!(found[0].help.as_deref(), Some(help), "{written}");
+    }
+    for (written, help) in [
+        ("1 000", "write `1000`"),
+        ("12 345 678.5", "write `12345678.5`"),
+        ("1'000", "write `1000`"),
+        ("1,000", "write `1000` or `1.000`"),
+        ("1,000,000.5", "write `1000000.5`"),
+        ("1.000,5", "write `1000.5`"),
+    ] {
+        field(&format!("{written} kg"), BadNumber, written);
+        let (_, found, _) = read(&format!("let x = f({written} kg)\n"));
+        assert_eq!(
+            found.first().and_then(|fault| fault.help.as_deref()),
+            Some(help).filter(|_| !written.contains(',')),
+            "{written}"
+        );
+    }
+    // In a list it is a comma that is missing.
+    field("[100 200]", Syntax, "200");
+    let long = "1".repeat(41);
+    field(&long, BadNumber, &long);
+    assert_eq!(faults(&format!("let x = {}\n", "1".repeat(40))), []);
+    assert_eq!(faults("let x = [1,5] m\n"), []);
+}
+
+#[test]
+fn operators_keep_off_units() {
+    for (written, glued, mended) in [
+        ("2 kg*3", "kg*3", "kg * 3"),
+        ("2 kg*(x)", "kg*(x)", "kg * (x)"),
+        ("2 kg*k0.mass", "kg*k0.mass", "kg * k0.mass"),
+        ("[1, 2] m/2", "m/2", "m / 2"),
+        ("10 %*2", "%*2", "% * 2"),
+        ("2 m* 3", "m*", "m *"),
+    ] {
+        field(written, UnitWithoutBlank, glued);
+        let (_, found, _) = read(&format!("let x = {written}\n"));
+        assert!(
+            found[0].help.as_ref().unwrap().contains(mended),
+            "{:?}",
+            found[0].help
+        );
+    }
+    assert_eq!(
+        faults("let x = 2 kg*x\nlet y = 1 m/s..3 m/s\nlet z = 2*x\n"),
+        []
+    );
+}
+
+#[test]
+fn characters_that_hide_are_refused_and_shown() {
+    one("\u{feff}let x = 1\n", BadText, "\u{feff}");
+    one("let x = 1\0\n", BadText, "\0");
+    one("let x = \"a\u{202e}b\"\n", BadText, "\u{202e}");
+    one("let x\u{200d}y = 1\n", BadText, "\u{200d}");
+    one("let l\u{456}m = 1\n", BadText, "\u{456}");
+    one("let x = \"\u{1b}]0;t\"\n", BadText, "\u{1b}");
+    one("# \u{1b}[2J\n", BadText, "\u{1b}");
+    one("let x = \"abc\n", BadText, "\"");
+    one("let x = \"a\\qb\"\n", BadText, "\\q");
+    one("let x = 1\rlet y = 2\n", BadText, "\r");
+    assert_eq!(faults("# \u{202e} in a comment\n"), []);
+    let (_, found, _) = read("let x = \"a\u{202e}b\"\n");
+    assert!(found[0].message.contains("\\u{202e}"));
+}
+
+/// Offsets stay those of the text as it is written, and what is read is what was meant.
+#[test]
+fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
+    for (written, meant, place) in [
+        ("b {\n  x\u{a0}= 1 kg\n}\n", "b\n  x = 1 kg\n", "\u{a0}"),
+        ("b {\n  x = −1 kg\n}\n", "b\n  x = (- 1 kg)\n", "−"),
+        ("b {\n  x = 2 × 3\n}\n", "b\n  x = (2 * 3)\n", "×"),
+        ("require \"r\" a ≤ 2\n", "require \"r\" (a <= 2)\n", "≤"),
+        ("require \"r\" a => 2\n", "require \"r\" (a >= 2)\n", "=>"),
+        ("b {\n  x = 2 m² # m²\n}\n", "b\n  x = 2 m^2\n", "²"),
+        ("b {\n  x = 2 s⁻¹\n}\n", "b\n  x = 2 s^-1\n", "⁻¹"),
+        ("b {\n  x = “é”\n}\n", "b\n  x = \"é\"\n", "“é”"),
+        ("b {\n  x = 'a'\n}\n", "b\n  x = \"a\"\n", "'a'"),
+        ("b {\n  x = \"a”\n}\n", "b\n  x = \"a\"\n", "\"a”"),
+        ("b {\n  x = 1; y = 2;\n}\n", "b\n  x = ?\n", ";"),
+        ("b {\n  x = 1; # c\n}\n", "b\n  x = 1\n", ";"),
+        ("let x = 1 // = one\n", "let x = 1\n", "//"),
+        ("/* a\n} */ let x = 1\n", "let x = 1\n", "/*"),
+        (
+            "let hämmer = 1\nlet y = hämmer\n",
+            "let hammer = 1\nlet y = hammer\n",
+            "ä",
+        ),
+        (
+            "l\u{456}mits {\n  x = 1\n}\n",
+            "limits\n  x = 1\n",
+            "\u{456}",
+        ),
+        ("impact hit\n{\n  x = 1\n}\n", "impact hit\n  x = 1\n", "{"),
+        (
+            "impact hit\n  x = 1\n}\nlet y = 2\n",
+            "impact hit\n  x = 1\nlet y = 2\n",
+            "impact hit",
+        ),
+        ("let y = a->b\n", "let y = (a . b)\n", "->"),
+    ] {
+        let (ast, found, sources) = read(written);
+        assert_eq!(outline(&ast), meant, "{written}");
+        let places: Vec<&str> = found
+            .iter()
+            .map(|fault| sources.text(fault.span().unwrap()))
+            .collect();
+        assert_eq!(places, [place], "{written}: {found:#?}");
+    }
+    for sound in [
+        "# “x” − //\nlet x = 1\n",
+        "let x = \"“a” − /* ; = < ²\"\n",
+        "let x = 5 µm\nlet y = 5 μm\n",
+    ] {
+        assert_eq!(faults(sound), []);
+    }
+    let (_, found, _) = read("let a = 1\u{a0}m\nlet b = 2\u{a0}m\nlet c = 3\u{a0}m\n");
+    assert_eq!(found.len(), 1, "told once, however often");
+    assert!(
+        found[0].message.ends_with("here and in 2 more places"),
+        "{}",
+        found[0].message
+    );
+}
+
+#[test]
+fn all_faults_of_a_file_are_found_at_once() {
+    let text = "use lib\n\nspecimen beam {\n  length = 1,4 m\n  mass = elastic(3 kg\n  density = 5 kg\n  q = = 3\n  r = \"ok\"\n}\n\nlet good = 1 m\nrequire \"r\" 1 <\n\nstriker p {\n  mass = 20 kg\n  velocity = 2 m*3\n}\nlet k = (1\n";
+    assert_eq!(
+        faults(text)
+            .iter()
+            .map(|(code, place)| (*code, place.as_str()))
+            .collect::<Vec<_>>(),
+        [
+            (Syntax, "lib"),
+            (BadNumber, "1,4"),
+            (UnclosedBracket, "("),
+            (Syntax, "="),
+            (Syntax, ""),
+            (UnitWithoutBlank, "m*3"),
+            (UnclosedBracket, "(")
+        ]
+    );
+    let (ast, ..) = read(text);
+    assert_eq!(
+        outline(&ast),
+        "specimen beam\n  length = ?\n  mass = ?\n  density = 5 kg\n  q = ?\n  r = \"ok\"\nlet good = 1 m\nrequire \"r\" ?\nstriker p\n  mass = 20 kg\n  velocity = ?\nlet k = ?\n"
+    );
+}
+
+#[test]
+fn a_faulty_list_over_lines_is_one_fault() {
+    one(
+        "a {\n  x = [\n    f(1, 2),\n    f(; 2),\n    f(3),\n  ]\n  y = 1\n}\n",
+        Syntax,
+        ";",
+    );
+}
+
+#[test]
+fn helps_are_written_for_the_fault() {
+    let found = |text: &str| {
+        let (_, found, _) = read(text);
+        format!("{} | {}", found[0].message, found[0].help.clone().unwrap())
+    };
+    for (text, expected) in [
+        ("b {\n  x 3\n}", "found `3`, expected `=` | write `=` here"),
+        (
+            "b {\n  x = f(1 2)\n}",
+            "found `2`, expected a unit, an operator, `,` or `)` | write a unit, an operator, `,` or `)` here",
+        ),
+        (
+            "b {\n  x = 1 kg y\n}",
+            "found `y`, expected an operator or the end of the line | one field or item stands on one line",
+        ),
+        (
+            "striker p\n",
+            "`striker p` stands alone on its line and opens no block | a block opens with `{` on this same line, as in `striker hammer { … }`; a remark stands behind `#`",
+        ),
+        (
+            "plan \"a\" x {\n}\n",
+            "found `x`, expected `{` | write `{` here",
+        ),
+        (
+            "foo = 3\n",
+            "found the field `foo` outside a block, expected an item | move it into its block, or name a value with `let foo = …`",
+        ),
+        (
+            "}\n",
+            "found `}`, expected an item | each `}` closes one `{`: take this one away, or open the block it should close",
+        ),
+        (
+            "let step = 3\n",
+            "found `step`, expected a name | `step` is a word of the language: names are other words",
+        ),
+        (
+            "use lib\n",
+            "found `lib`, expected a text in quotes | write a text in quotes here",
+        ),
+        (
+            "b {\n x = (1 + a y)\n}",
+            "found `y`, expected an operator or `)` | write an operator or `)` here",
+        ),
+        (
+            "b {\n 3 = 4\n}\n",
+            "found `3`, expected a field | write `key = value`",
+        ),
+        (
+            "let x = 1 and\n",
+            "found the end of the line, expected a value | a value is a number with its unit, a text, a name, a list or a range",
+        ),
+    ] {
+        assert_eq!(found(text), expected);
+    }
+}

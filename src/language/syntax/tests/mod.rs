@@ -1,0 +1,157 @@
+//! Tests of the syntax: text in, tree and errors out.
+
+pub mod corpus;
+mod faulty;
+mod sound;
+
+use super::{
+    ast::{Ast, Block, Expr, ExprKind, ItemKind},
+    parse,
+};
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::Sources;
+
+pub const IMPACT: &str = include_str!("../samples/impact.psd");
+pub const QUAKE: &str = include_str!("../samples/quake.psd");
+
+/// Tree, faults and sources of one text.
+pub fn read(text: &str) -> (Ast, Vec<Diagnostic>, Sources) {
+    let mut sources = Sources::default();
+    let file = sources.add("test.psd", text);
+    let (ast, faults) = parse(&sources, file);
+    (ast, faults, sources)
+}
+
+/// The tree of a sound text.
+pub fn sound(text: &str) -> (Ast, Sources) {
+    let (ast, faults, sources) = read(text);
+    assert!(faults.is_empty(), "{text}\n{faults:#?}");
+    (ast, sources)
+}
+
+/// Code and text under the first label of each fault.
+pub fn faults(text: &str) -> Vec<(Code, String)> {
+    let (_, faults, sources) = read(text);
+    faults
+        .iter()
+        .map(|fault| (fault.code, sources.text(fault.span().unwrap()).to_owned()))
+        .collect()
+}
+
+/// The value of the single field in a block: `expression("1 + 2")`.
+pub fn expression(text: &str) -> (Expr, Sources) {
+    let (ast, sources) = sound(&format!("b {{\n  x = {text}\n}}\n"));
+    let value = block(&ast, 0).fields[0].value.clone();
+    (value, sources)
+}
+
+pub fn block(ast: &Ast, index: usize) -> &Block {
+    match &ast.items[index].kind {
+        ItemKind::Block(block) => block,
+        other => panic!("not a block: {other:?}"),
+    }
+}
+
+/// An expression as nested lists, to compare structure at a glance.
+pub fn shape(expr: &Expr) -> String {
+    let unit = |unit: &Option<super::ast::UnitToken>| {
+        unit.as_ref()
+            .map_or(String::new(), |unit| format!(" {}", unit.node))
+    };
+    let all = |items: &[Expr]| items.iter().map(shape).collect::<Vec<_>>().join(", ");
+    match &expr.kind {
+        ExprKind::Number {
+            text, unit: token, ..
+        } => format!("{text}{}", unit(token)),
+        ExprKind::Text(text) => format!("{text:?}"),
+        ExprKind::Name(name) => name.clone(),
+        ExprKind::List { items, unit: token } => format!("[{}]{}", all(items), unit(token)),
+        ExprKind::Range { start, end, step } => {
+            let step = step
+                .as_ref()
+                .map_or(String::new(), |step| format!(" step {}", shape(step)));
+            format!("({} .. {}{step})", shape(start), shape(end))
+        }
+        ExprKind::Call { name, arguments } => {
+            let arguments: Vec<String> = arguments
+                .iter()
+                .map(|argument| {
+                    let name = argument
+                        .name
+                        .as_ref()
+                        .map_or(String::new(), |name| format!("{}: ", name.node));
+                    format!("{name}{}", shape(&argument.value))
+                })
+                .collect();
+            format!("{}({})", name.node, arguments.join(", "))
+        }
+        ExprKind::Field { base, name } => format!("({} . {})", shape(base), name.node),
+        ExprKind::Index { base, index } => format!("({} @ {})", shape(base), shape(index)),
+        ExprKind::Negate(value) => format!("(- {})", shape(value)),
+        ExprKind::Binary {
+            operator,
+            left,
+            right,
+        } => {
+            format!(
+                "({} {} {})",
+                shape(left),
+                operator.node.symbol(),
+                shape(right)
+            )
+        }
+        ExprKind::Within {
+            value,
+            tolerance,
+            target,
+        } => {
+            format!(
+                "({} within {} of {})",
+                shape(value),
+                shape(tolerance),
+                shape(target)
+            )
+        }
+        ExprKind::Parenthesised(inner) => format!("<{}>", shape(inner)),
+        ExprKind::Faulty => "?".to_owned(),
+    }
+}
+
+/// The whole tree as text without places.
+pub fn outline(ast: &Ast) -> String {
+    let mut text = String::new();
+    for item in &ast.items {
+        let line = match &item.kind {
+            ItemKind::Use { path } => format!("use {:?}", path.node),
+            ItemKind::Let { name, value } => format!("let {} = {}", name.node, shape(value)),
+            ItemKind::Param {
+                name,
+                value,
+                bounds,
+            } => {
+                let bounds = bounds.as_ref().map_or(String::new(), |bounds| {
+                    format!(" between {}", shape(bounds))
+                });
+                format!("param {} = {}{bounds}", name.node, shape(value))
+            }
+            ItemKind::Require { label, condition } => {
+                format!("require {:?} {}", label.node, shape(condition))
+            }
+            ItemKind::Block(block) => {
+                let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
+                let title = block
+                    .title
+                    .as_ref()
+                    .map_or(String::new(), |title| format!(" {:?}", title.node));
+                let fields = block
+                    .fields
+                    .iter()
+                    .map(|field| format!("\n  {} = {}", field.key.node, shape(&field.value)));
+                format!("{}{title}{}", words.join(" "), fields.collect::<String>())
+            }
+        };
+        text.push_str(&line);
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,500 @@
+//! The first look at a file: its words, numbers, texts, signs and line ends, and every fault that can be seen without
+//! grammar (bad characters, bad numbers, units glued to expressions, all size limits). In: text. Out: [`Tokens`].
+//! The grammar reads the text itself; tokens serve recovery (`layout`), messages and the formatter.
+
+use super::{characters, faults, layout::ITEM_WORDS, limits, numbers};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::source::{FileId, Span, Spanned};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Word,
+    Number,
+    /// A unit directly after a number or a list.
+    Unit,
+    Text,
+    /// Brackets, operators, `=`, `,`, `:`, `..`.
+    Sign,
+    Newline,
+    /// From `#` to the end of the line.
+    Comment,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Token {
+    pub kind: Kind,
+    pub start: usize,
+    pub end: usize,
+}
+
+/// What a file is made of. Comments are in `list` too, so that the formatter finds them where they stand.
+#[derive(Debug)]
+pub struct Tokens<'a> {
+    pub text: &'a str,
+    pub file: FileId,
+    pub list: Vec<Token>,
+    pub faults: Vec<Diagnostic>,
+    /// The file was too large to be read to its end.
+    pub cut_short: bool,
+}
+
+impl<'a> Tokens<'a> {
+    #[must_use]
+    pub fn read(text: &'a str, file: FileId) -> Self {
+        let mut reader = Reader {
+            tokens: Tokens {
+                text,
+                file,
+                list: Vec::new(),
+                faults: Vec::new(),
+                cut_short: false,
+            },
+            at: 0,
+            open: Vec::new(),
+        };
+        reader.read();
+        reader.tokens
+    }
+
+    #[must_use]
+    pub fn text_of(&self, token: Token) -> &'a str {
+        &self.text[token.start..token.end]
+    }
+
+    #[must_use]
+    pub fn span(&self, start: usize, end: usize) -> Span {
+        Span::new(self.file, start, end)
+    }
+
+    /// Whether the token is the sign or word `text`.
+    #[must_use]
+    pub fn is(&self, index: usize, text: &str) -> bool {
+        self.list.get(index).is_some_and(|token| {
+            matches!(token.kind, Kind::Sign | Kind::Word) && self.text_of(*token) == text
+        })
+    }
+
+    #[must_use]
+    pub fn kind(&self, index: usize) -> Option<Kind> {
+        self.list.get(index).map(|token| token.kind)
+    }
+
+    #[must_use]
+    pub fn comments(&self) -> Vec<Spanned<String>> {
+        let comments = self.list.iter().filter(|token| token.kind == Kind::Comment);
+        comments
+            .map(|token| {
+                Spanned::new(
+                    self.text_of(*token).to_owned(),
+                    self.span(token.start, token.end),
+                )
+            })
+            .collect()
+    }
+}
+
+/// Signs of two characters; they win over those of one.
+const LONG_SIGNS: [&str; 5] = ["..", "<=", ">=", "==", "!="];
+/// Words that join two values or follow a value, so that none of them is a unit.
+pub const JOINING_WORDS: [&str; 5] = ["and", "within", "of", "step", "between"];
+
+/// Lines over which a text may have been written.
+const LINES_OF_A_TEXT: usize = 20;
+
+struct Reader<'a> {
+    tokens: Tokens<'a>,
+    at: usize,
+    /// The brackets that are open here.
+    open: Vec<char>,
+}
+
+impl<'a> Reader<'a> {
+    fn rest(&self) -> &'a str {
+        &self.tokens.text[self.at..]
+    }
+
+    fn fault(&mut self, fault: Diagnostic) {
+        self.tokens.faults.push(fault);
+    }
+
+    fn push(&mut self, kind: Kind, length: usize) {
+        self.tokens.list.push(Token {
+            kind,
+            start: self.at,
+            end: self.at + length,
+        });
+        self.at += length;
+    }
+
+    fn span(&self, length: usize) -> Span {
+        self.tokens.span(self.at, self.at + length)
+    }
+
+    fn read(&mut self) {
+        self.lines_too_long();
+        while let Some(first) = self.rest().chars().next() {
+            if self.tokens.list.len() >= limits::TOKENS {
+                self.tokens.cut_short = true;
+                self.fault(faults::too_large(
+                    self.span(first.len_utf8()),
+                    "this file",
+                    limits::TOKENS,
+                    "words and signs",
+                ));
+                return;
+            }
+            if self.tokens.faults.len() >= limits::FAULTS {
+                self.tokens.cut_short = true;
+                self.fault(faults::too_large(
+                    self.span(first.len_utf8()),
+                    "the list of faults",
+                    limits::FAULTS,
+                    "faults",
+                ));
+                return;
+            }
+            match first {
+                ' ' | '\t' => self.at += 1,
+                '\n' => self.newline(1),
+                '\r' if self.rest().starts_with("\r\n") => self.newline(2),
+                '#' => self.comment(),
+                '"' => self.text(),
+                '0'..='9' => self.number(),
+                '.' if self.rest()[1..].starts_with(|next: char| next.is_ascii_digit()) => {
+                    self.number();
+                }
+                'a'..='z' | 'A'..='Z' | '_' => self.word(),
+                _ => self.sign(first),
+            }
+        }
+    }
+
+    /// A line end. No bracket reaches past a line that starts a field or an item, so an open one is forgotten there.
+    fn newline(&mut self, length: usize) {
+        self.push(Kind::Newline, length);
+        let line = self.rest().trim_start_matches([' ', '\t']);
+        let after =
+            line.trim_start_matches(|next: char| next.is_ascii_alphanumeric() || next == '_');
+        let word = &line[..line.len() - after.len()];
+        let sign = after.trim_start_matches([' ', '\t']);
+        let field = sign.starts_with('=') && !sign.starts_with("==");
+        if !word.is_empty() && (field || ITEM_WORDS.contains(&word)) {
+            self.open.clear();
+        }
+    }
+
+    fn lines_too_long(&mut self) {
+        let mut start = 0;
+        for line in self.tokens.text.split_inclusive('\n') {
+            let length = line.trim_end_matches(['\n', '\r']).len();
+            if length > limits::LINE_BYTES {
+                let mut end = start + 40;
+                while !self.tokens.text.is_char_boundary(end) {
+                    end += 1;
+                }
+                let span = self.tokens.span(start, end);
+                self.fault(faults::too_large(
+                    span,
+                    "this line",
+                    limits::LINE_BYTES,
+                    "bytes",
+                ));
+            }
+            start += line.len();
+        }
+    }
+
+    fn comment(&mut self) {
+        let line = self.rest().split('\n').next().unwrap_or_default();
+        let line = line.strip_suffix('\r').unwrap_or(line);
+        for (range, shown) in characters::bad_runs(line, true) {
+            let span = self.tokens.span(self.at + range.start, self.at + range.end);
+            self.fault(faults::bad_character(span, &shown));
+        }
+        self.push(Kind::Comment, line.len());
+    }
+
+    fn text(&mut self) {
+        let line = self.rest().split('\n').next().unwrap_or_default();
+        let line = line.strip_suffix('\r').unwrap_or(line);
+        let mut end = None;
+        let mut escaped = false;
+        for (offset, character) in line.char_indices().skip(1) {
+            if escaped {
+                escaped = false;
+                if !matches!(character, '"' | '\\' | 'n' | 't') {
+                    let span = self.tokens.span(
+                        self.at + offset - 1,
+                        self.at + offset + character.len_utf8(),
+                    );
+                    self.fault(faults::bad_escape(span, character));
+                }
+            } else if character == '\\' {
+                escaped = true;
+            } else if character == '"' {
+                end = Some(offset + 1);
+                break;
+            }
+        }
+        let length = end.unwrap_or(line.len());
+        for (range, shown) in characters::bad_runs(&line[..length], false) {
+            let span = self.tokens.span(self.at + range.start, self.at + range.end);
+            self.fault(faults::bad_character(span, &shown));
+        }
+        if end.is_none() {
+            self.fault(faults::unclosed_text(self.span(1)));
+            // What was meant as one text is one, so that its other lines are not read as fields.
+            return self.push(Kind::Text, closed_below(self.rest()).unwrap_or(length));
+        } else if length - 2 > limits::TEXT_BYTES {
+            self.fault(faults::too_large(
+                self.span(1),
+                "this text",
+                limits::TEXT_BYTES,
+                "bytes",
+            ));
+        }
+        self.push(Kind::Text, length);
+    }
+
+    fn number(&mut self) {
+        let length = numbers::extent(
+            self.rest(),
+            self.open.is_empty(),
+            self.open.last() != Some(&'['),
+        );
+        let written = &self.rest()[..length];
+        if let Some(fault) = numbers::fault(written) {
+            self.fault(faults::bad_number(self.span(length), written, &fault));
+        }
+        self.push(Kind::Number, length);
+        self.unit();
+    }
+
+    /// The unit that may follow a number or a `]`, after blanks.
+    fn unit(&mut self) {
+        let blanks = self.rest().len() - self.rest().trim_start_matches([' ', '\t']).len();
+        let length = unit_extent(&self.rest()[blanks..]);
+        let unit = &self.rest()[blanks..blanks + length];
+        if JOINING_WORDS.contains(&unit) {
+            return;
+        }
+        if let Some((more, flat)) =
+            unit_in_parentheses(&self.rest()[blanks + length..], length == 0)
+        {
+            self.at += blanks;
+            let number = self.tokens.list.last().map_or(self.at, |token| token.start);
+            let mended = format!(
+                "{} {unit}{flat}",
+                self.tokens.text[number..self.at].trim_end()
+            );
+            self.fault(faults::unit_in_parentheses(
+                self.span(length + more),
+                &mended,
+            ));
+            self.push(Kind::Unit, length + more);
+            return;
+        }
+        if length == 0 {
+            return;
+        }
+        self.at += blanks;
+        let after = &self.rest()[length..];
+        let member = after.starts_with('.') && !after.starts_with("..");
+        if after.starts_with(['*', '/', '^'])
+            || (unit.contains(['*', '/']) && (member || after.starts_with('(')))
+        {
+            // The operator in question is the one after the unit, else the last one in it.
+            let operator = if member || after.starts_with('(') {
+                unit.rfind(['*', '/']).unwrap_or(length)
+            } else {
+                length
+            };
+            let glued = after
+                .find([' ', '\t', '\n', '\r', ',', ')', ']', '#'])
+                .unwrap_or(after.len());
+            // A parenthesis that opens there is closed there.
+            let closes = after[..glued].contains('(') && after[glued..].starts_with(')');
+            let glued = glued + usize::from(closes);
+            let span = self.span(length + glued);
+            let whole = &self.rest()[..length + glued];
+            let number = self
+                .tokens
+                .list
+                .last()
+                .filter(|token| token.kind == Kind::Number)
+                .map_or(self.at, |token| token.start);
+            let number = &self.tokens.text[number..self.at];
+            let mended = format!(
+                "{number}{} {} {}",
+                &whole[..operator],
+                &whole[operator..=operator],
+                whole[operator + 1..].trim()
+            );
+            self.fault(faults::unit_without_blank(span, mended.trim_end()));
+        }
+        self.push(Kind::Unit, length);
+    }
+
+    fn word(&mut self) {
+        let rest = self.rest();
+        let length = rest
+            .find(|next: char| !(next.is_ascii_alphanumeric() || next == '_'))
+            .unwrap_or(rest.len());
+        if length > limits::NAME_CHARS {
+            self.fault(faults::too_large(
+                self.span(length.min(80)),
+                "this name",
+                limits::NAME_CHARS,
+                "characters",
+            ));
+        }
+        self.push(Kind::Word, length);
+    }
+
+    fn sign(&mut self, first: char) {
+        if self.rest().starts_with("+/-") {
+            self.fault(faults::stray(self.span(3), "+/-"));
+            return self.push(Kind::Sign, 3);
+        }
+        if let Some(sign) = LONG_SIGNS
+            .iter()
+            .find(|sign| self.rest().starts_with(**sign))
+        {
+            return self.push(Kind::Sign, sign.len());
+        }
+        match first {
+            '(' | '[' => {
+                self.open.push(first);
+                if self.open.len() == limits::NESTING + 1 {
+                    self.fault(faults::nested_too_deep(self.span(1)));
+                }
+                self.push(Kind::Sign, 1);
+            }
+            ')' | ']' => {
+                self.open.pop();
+                self.push(Kind::Sign, 1);
+                if first == ']' {
+                    self.unit();
+                }
+            }
+            '{' | '}' => {
+                self.open.clear();
+                self.push(Kind::Sign, 1);
+            }
+            '=' | '<' | '>' | '+' | '-' | '*' | '/' | '^' | ',' | ':' | '.' => {
+                self.push(Kind::Sign, 1);
+            }
+            _ => {
+                let rest = self.rest();
+                let length = characters::stray_run(rest);
+                let shown = characters::shown(&rest[..length]);
+                let fault = if characters::is_bad(first, false) || first == '\r' {
+                    faults::bad_character(self.span(length), &shown)
+                } else if first.is_alphabetic() {
+                    faults::foreign_letter(self.span(length), &rest[..length], &shown)
+                } else {
+                    faults::stray(self.span(length), &rest[..length])
+                };
+                self.fault(fault);
+                self.push(Kind::Sign, length);
+            }
+        }
+    }
+}
+
+/// Bytes of a text that is closed some lines below the one on which it opens; None where something else begins before that.
+fn closed_below(text: &str) -> Option<usize> {
+    let mut end = 0;
+    for (index, line) in text.split_inclusive('\n').take(LINES_OF_A_TEXT).enumerate() {
+        let words = line.trim_start();
+        let after =
+            words.trim_start_matches(|next: char| next.is_ascii_alphanumeric() || next == '_');
+        let begins = after.trim_start().starts_with('=')
+            || words.starts_with('}')
+            || line.trim_end().ends_with('{');
+        match (index, line.matches('"').count()) {
+            (0, _) => {}
+            (_, 0) if !begins => {}
+            (_, 1) if !begins => return line.find('"').map(|at| end + at + 1),
+            _ => return None,
+        }
+        end += line.len();
+    }
+    None
+}
+
+/// A unit in parentheses at the start of `text`, behind `*` or `/` unless it is `alone`: its bytes, the sign included, and
+/// the same without parentheses. What is no unit is an expression.
+fn unit_in_parentheses(text: &str, alone: bool) -> Option<(usize, String)> {
+    let sign = if alone {
+        ""
+    } else {
+        text.get(..1).filter(|sign| matches!(*sign, "*" | "/"))?
+    };
+    let inside = text[sign.len()..].strip_prefix('(')?;
+    let unit = inside
+        .split([')', '\n'])
+        .next()
+        .filter(|unit| inside[unit.len()..].starts_with(')'))?;
+    let trimmed = unit.trim();
+    if unit_extent(trimmed) != trimmed.len() || crate::units::unit::parse(trimmed).is_err() {
+        return None;
+    }
+    let turned = |c: char| match c {
+        '*' if sign == "/" => '/',
+        '/' if sign == "/" => '*',
+        same => same,
+    };
+    let flat = sign.chars().chain(trimmed.chars().map(turned)).collect();
+    Some((sign.len() + 1 + unit.len() + 1, flat))
+}
+
+/// Bytes of the unit token at the start of `text`: `name[^power]` joined by `*` or `/`. 0 where there is none.
+fn unit_extent(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut end = if bytes.starts_with(b"1/") {
+        1
+    } else {
+        unit_factor(text)
+    };
+    while end > 0 && matches!(bytes.get(end), Some(b'*' | b'/')) {
+        let factor = unit_factor(&text[end + 1..]);
+        if factor == 0 {
+            break;
+        }
+        end += 1 + factor;
+    }
+    end
+}
+
+fn unit_factor(text: &str) -> usize {
+    let letter = |next: char| next.is_ascii_alphabetic() || matches!(next, 'µ' | 'μ');
+    let name = if text.starts_with('%') {
+        1
+    } else if text.starts_with(letter) {
+        text.find(|next: char| !(letter(next) || next.is_ascii_digit() || next == '_'))
+            .unwrap_or(text.len())
+    } else {
+        return 0;
+    };
+    let Some(power) = text[name..].strip_prefix('^') else {
+        return name;
+    };
+    let digits = |text: &str| {
+        text.len()
+            - text
+                .trim_start_matches(|next: char| next.is_ascii_digit())
+                .len()
+    };
+    let sign = usize::from(power.starts_with('-'));
+    let whole = digits(&power[sign..]);
+    if whole == 0 {
+        return name;
+    }
+    let mut end = sign + whole;
+    if power[end..].starts_with('.') {
+        let fraction = digits(&power[end + 1..]);
+        end += if fraction == 0 { 0 } else { 1 + fraction };
+    }
+    name + 1 + end
+}

@@ -1,0 +1,135 @@
+//! A striker as it meets what it strikes, and the time step that a contact of finite stiffness needs there. In: masses,
+//! speed, stiffnesses. Out: numbers in SI. It integrates nothing.
+
+use crate::integrator::newmark::critical_time_step;
+
+/// A striker as it meets a structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// Ms, kg
+    pub striker_mass: f64,
+    /// m/s
+    pub speed: f64,
+    /// k of a contact of finite stiffness, N/m^1.5.
+    pub hertz: Option<f64>,
+}
+
+impl Approach {
+    /// A striker of `mass` (kg) that starts with `velocity` (m/s) at the distance `gap` (m), under `gravity` (m/s²) along its way,
+    /// where the gap is closed.
+    #[must_use]
+    pub fn after_gap(mass: f64, velocity: f64, gap: f64, gravity: f64, hertz: Option<f64>) -> Self {
+        let squared = velocity * velocity + 2.0 * gravity * gap;
+        Self {
+            striker_mass: mass,
+            speed: squared.max(0.0).sqrt(),
+            hertz,
+        }
+    }
+
+    /// The contact's tangent at its deepest, `k_c = 1.5 k √δ` with δ of a blow between free masses, (5/4 μu²/k)^(2/5), N/m;
+    /// `struck` is the mass that the blow meets, kg. None of a contact that has no stiffness, or that never closes.
+    #[must_use]
+    pub fn contact_stiffness(&self, struck: f64) -> Option<f64> {
+        let hertz = self.hertz.filter(|_| self.speed > 0.0)?;
+        let reduced_mass = struck * self.striker_mass / (struck + self.striker_mass);
+        let deepest = (1.25 * reduced_mass * self.speed * self.speed / hertz).powf(0.4);
+        Some(1.5 * hertz * deepest.sqrt())
+    }
+
+    /// Critical time step of one degree of freedom that is struck, s: a tenth of its period (Melo et al. 2006, eq. 7), under a
+    /// contact of finite stiffness a tenth of the shorter period of mass (kg) and striker on the spring (N/m) and that of the
+    /// contact: with a = (K + `k_c`)/M + `k_c`/Ms, ω² = (a + √(a² − 4 K `k_c`/(M Ms)))/2. A longer step would not show the blow.
+    #[must_use]
+    pub fn critical_time_step(&self, mass: f64, stiffness: f64) -> f64 {
+        let alone = critical_time_step(mass, stiffness);
+        let Some(contact) = self.contact_stiffness(mass) else {
+            return alone;
+        };
+        let sum = (stiffness + contact) / mass + contact / self.striker_mass;
+        let product = stiffness / mass * (contact / self.striker_mass);
+        let highest = 0.5 * (sum + (sum * sum - 4.0 * product).max(0.0).sqrt());
+        alone.min(critical_time_step(1.0, highest))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Damping;
+    use crate::structure::frame::Frame;
+    use crate::structure::frame_properties::FrameProperties;
+
+    const HARD: Approach = Approach {
+        striker_mass: 10.0,
+        speed: 1.0,
+        hertz: Some(1e9),
+    };
+
+    #[test]
+    fn without_a_stiffness_of_the_contact_it_is_that_of_the_structure() {
+        for approach in [
+            Approach {
+                hertz: None,
+                ..HARD
+            },
+            Approach { speed: 0.0, ..HARD },
+        ] {
+            assert_eq!(
+                approach.critical_time_step(1.0, 300.0),
+                critical_time_step(1.0, 300.0)
+            );
+        }
+    }
+
+    /// The same question asked of a frame of one storey, whose modes are found another way.
+    #[test]
+    fn of_one_degree_of_freedom_it_is_that_of_a_frame_of_one_storey() {
+        for (mass, stiffness, approach) in [
+            (1.0, 300.0, HARD),
+            (
+                2.0,
+                4e5,
+                Approach {
+                    striker_mass: 0.5,
+                    speed: 3.0,
+                    hertz: Some(2e8),
+                },
+            ),
+            (
+                1.0,
+                4e5,
+                Approach {
+                    striker_mass: 1.0,
+                    speed: 1e-6,
+                    hertz: Some(1.0),
+                },
+            ),
+        ] {
+            let frame = Frame {
+                storeys: Vec::new(),
+                mass: vec![vec![mass]],
+                stiffness: vec![vec![stiffness]],
+                files: None,
+                matrix_uncertainty: [0.0; 2],
+            };
+            let properties = FrameProperties::of(&frame, &Damping::None).unwrap();
+            let of_frame = properties.critical_on_impact(0, &approach);
+            let found = approach.critical_time_step(mass, stiffness);
+            assert!((found / of_frame - 1.0).abs() < 1e-12, "{found} {of_frame}");
+        }
+    }
+
+    /// A blow between free masses lasts 2.943 δ/u (Hertz), and `k_c` gives ω = √(15/8)·u/δ there: 2.943·√(15/8)·200/2π = 128.3 steps
+    /// of a twentieth fall into it.
+    #[test]
+    fn a_step_shows_a_blow_on_a_free_mass() {
+        let critical = HARD.critical_time_step(1.0, 300.0);
+        let reduced = 10.0 / 11.0;
+        let lasts = 2.943 * (1.25_f64 * reduced / 1e9).powf(0.4);
+        assert!(
+            (lasts / (critical / 20.0) - 128.3).abs() < 0.2,
+            "{lasts} {critical}"
+        );
+    }
+}

@@ -1,0 +1,309 @@
+//! Contact of finite stiffness: Hunt–Crossley's F = k δ^1.5 (1 + loss·δ̇), never pulling, with an optional limit force
+//! past which the surface is dented. A blow is much shorter than a step and is followed in parts of its own length.
+
+use super::{Advance, Approaching, Start};
+use crate::contact::state::StepState;
+use crate::integrator::step_form::Motion;
+use crate::integrator::substep::{Passage, Scratch, Striker};
+use crate::matrix::Vector;
+
+/// Parts of a blow. The peak force is then good to about 1e-4; fewer, and it shows in the fourth digit.
+const PARTS_OF_A_BLOW: f64 = 200.0;
+/// Parts of a step at most; a step of many blows' length is then resolved more coarsely.
+const MOST_PARTS: f64 = 1e6;
+/// Gauss–Legendre on [0, 1], three points: (place, weight).
+const GAUSS: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_31, 5.0 / 18.0),
+    (0.5, 8.0 / 18.0),
+    (0.887_298_334_620_741_7, 5.0 / 18.0),
+];
+
+/// Counts how often two surfaces close, part by part.
+#[derive(Clone, Copy, Debug)]
+struct Closing {
+    touching: bool,
+    contacts: u32,
+}
+
+impl Closing {
+    /// From an overlap, m.
+    const fn new(depth: f64) -> Self {
+        Self {
+            touching: depth > 0.0,
+            contacts: 0,
+        }
+    }
+
+    /// Takes a part with its mean force (N) and the overlap at its end (m).
+    fn take(&mut self, force: f64, depth: f64) {
+        let closed = force > 0.0 || depth > 0.0;
+        self.contacts += u32::from(closed && !self.touching);
+        // One that opened again inside the part is over.
+        self.touching = depth > 0.0;
+    }
+}
+
+/// A blow that takes time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HertzContact {
+    /// k, N/m^1.5
+    stiffness: f64,
+    /// s/m
+    loss: f64,
+    /// N; infinite if none.
+    force_limit: f64,
+    /// Length of a part of a step, s.
+    part: f64,
+}
+
+impl HertzContact {
+    /// Resolves the impact that free bodies make (duration 2.943 `δ_max/u`).
+    #[must_use]
+    pub fn new(stiffness: f64, loss: f64, force_limit: Option<f64>, impact: Approaching) -> Self {
+        let Approaching {
+            mass,
+            striker_mass,
+            velocity,
+            time_step,
+        } = impact;
+        let reduced_mass = mass * striker_mass / (mass + striker_mass);
+        let speed = velocity.abs();
+        let deepest = (1.25 * reduced_mass * speed * speed / stiffness).powf(0.4);
+        let blow = if speed > 0.0 {
+            2.943 * deepest / speed
+        } else {
+            time_step
+        };
+        let part = (blow / PARTS_OF_A_BLOW).max(time_step / MOST_PARTS);
+        Self {
+            stiffness,
+            loss,
+            force_limit: force_limit.unwrap_or(f64::INFINITY),
+            part,
+        }
+    }
+
+    fn elastic(&self, depth: f64) -> f64 {
+        if depth > 0.0 {
+            self.stiffness * depth * depth.sqrt()
+        } else {
+            0.0
+        }
+    }
+
+    /// Mean force over a way from one depth to another, and its slope against the second.
+    fn mean(&self, from: f64, to: f64, duration: f64) -> (f64, f64) {
+        let (mut force, mut slope) = (0.0, 0.0);
+        for (place, weight) in GAUSS {
+            let depth = from + place * (to - from);
+            if depth > 0.0 {
+                force += weight * self.elastic(depth);
+                slope += weight * place * 1.5 * self.stiffness * depth.sqrt();
+            }
+        }
+        let factor = 1.0 + self.loss * (to - from) / duration;
+        if factor <= 0.0 {
+            (0.0, 0.0)
+        } else {
+            (
+                force * factor,
+                slope * factor + force * self.loss / duration,
+            )
+        }
+    }
+
+    /// Mean force of a part: `to = from + way − yielding·F` and F = mean(from, to), by Newton's method between bounds.
+    /// Both sides are monotone, so that there is one answer.
+    fn solve(&self, from: f64, way: f64, yielding: f64, duration: f64) -> f64 {
+        let (mut low, mut high) = (0.0, self.mean(from, from + way, duration).0);
+        let mut force = high.min(self.elastic(from));
+        for _ in 0..60 {
+            let (mean, slope) = self.mean(from, from + way - yielding * force, duration);
+            let residual = force - mean;
+            if residual > 0.0 {
+                high = force;
+            } else {
+                low = force;
+            }
+            let next = force - residual / (1.0 + yielding * slope);
+            let next = if next >= low && next <= high {
+                next
+            } else {
+                0.5 * (low + high)
+            };
+            let change = (next - force).abs();
+            force = next;
+            if change <= 1e-15 * high {
+                break;
+            }
+        }
+        force
+    }
+
+    /// Parts of a step in which the blow is followed.
+    fn parts(&self, time_step: f64) -> f64 {
+        (time_step / self.part).ceil().max(1.0)
+    }
+
+    /// Mean force of a part (as `solve` has it), N, and whether it is the limit that bounds it.
+    fn force(&self, from: f64, way: f64, yielding: f64, duration: f64) -> (f64, bool) {
+        let force = self.solve(from, way, yielding, duration);
+        if force > self.force_limit {
+            (self.force_limit, true)
+        } else {
+            (force, false)
+        }
+    }
+
+    /// The dent that the limit force leaves of an overlap, m: what the surface cannot hold elastically.
+    fn dent(&self, overlap: f64) -> f64 {
+        overlap - (self.force_limit / self.stiffness).powf(2.0 / 3.0)
+    }
+
+    /// Force of an instant, N.
+    fn instant(&self, depth: f64, rate: f64) -> f64 {
+        (self.elastic(depth) * (1.0 + self.loss * rate)).clamp(0.0, self.force_limit)
+    }
+
+    /// A mean of forces up to the limit is not above it by a rounding either, N.
+    const fn bounded(&self, mean: f64) -> f64 {
+        mean.min(self.force_limit)
+    }
+
+    /// The step in tangent form from where `scratch` stands, whose end goes into `to`.
+    #[inline]
+    pub(crate) fn pass<V: Vector>(
+        &self,
+        passage: &mut Passage<V>,
+        striker: &Striker,
+        start: &Start,
+        scratch: &mut Scratch<V>,
+        to: &mut Motion<V>,
+    ) -> Advance {
+        match apart(passage, striker, start, scratch, to) {
+            Some(advance) => advance,
+            None => self.follow(passage, striker, start, scratch, to),
+        }
+    }
+
+    /// The midpoint rule over parts of the step: it keeps the energy balance to rounding whatever the force is.
+    fn follow<V: Vector>(
+        &self,
+        passage: &mut Passage<V>,
+        striker: &Striker,
+        start: &Start,
+        scratch: &mut Scratch<V>,
+        to: &mut Motion<V>,
+    ) -> Advance {
+        let Striker {
+            struck,
+            mass,
+            gravity,
+            time_step,
+        } = *striker;
+        let Scratch {
+            now: at_start,
+            mean,
+            response,
+        } = scratch;
+        let (mut now, mut mean_velocity) = (std::mem::take(*at_start), std::mem::take(*mean));
+        let parts = self.parts(time_step);
+        let duration = time_step / parts;
+        let half = 0.5 * duration;
+        passage.prepare(duration, 0.0);
+        // M̂⁻¹ e_s: how the structure yields to a force on the struck degree of freedom.
+        response.update([], |_, []| 0.0);
+        response.as_mut_slice()[struck] = 1.0;
+        passage.solve(response);
+        let yielding = duration * half * (1.0 / mass + response.as_slice()[struck]);
+        let (mut xs, mut vs) = (start.striker_displacement, start.striker_velocity);
+        let mut indentation = start.indentation;
+        let (mut impulse, mut contact_loss, mut damping_work, mut limited) = (0.0, 0.0, 0.0, false);
+        let mut done = 0.0;
+        let mut closing = Closing::new(xs - passage.of_struck(&now).0 - indentation);
+        while done < parts {
+            let depth = xs - passage.of_struck(&now).0 - indentation;
+            passage.momentum(&now, half, (done + 0.5) / parts, &mut mean_velocity);
+            passage.solve(&mut mean_velocity);
+            done += 1.0;
+            let falling = vs + half * gravity;
+            let approach = duration * (falling - mean_velocity.as_slice()[struck]);
+            let (force, over) = self.force(depth, approach, yielding, duration);
+            limited |= over;
+            let mean_striker = falling - half * force / mass;
+            let pushed = half * force;
+            mean_velocity.update([response], |mean, [response]| mean + pushed * response);
+            passage.drift(&mut now, &mean_velocity, duration);
+            let striker_moved = duration * mean_striker;
+            xs += striker_moved;
+            vs = 2.0 * mean_striker - vs;
+            impulse += force * duration;
+            contact_loss += force * (striker_moved - duration * mean_velocity.as_slice()[struck]);
+            damping_work += passage.damped(&mean_velocity, duration);
+            let overlap = xs - passage.of_struck(&now).0;
+            if over {
+                indentation = indentation.max(self.dent(overlap));
+            }
+            closing.take(force, overlap - indentation);
+        }
+        let (displacement, velocity) = passage.of_struck(&now);
+        let force = self.instant(xs - displacement - indentation, vs - velocity);
+        passage.settle(force, &mut now);
+        (**at_start, **mean) = (std::mem::replace(to, now), mean_velocity);
+        let state = match (limited, impulse > 0.0) {
+            (true, _) => StepState::Limit,
+            (false, true) => StepState::Contact,
+            (false, false) => StepState::Free,
+        };
+        Advance {
+            striker_displacement: xs,
+            striker_velocity: vs,
+            state,
+            contact_force: self.bounded(impulse / time_step),
+            indentation,
+            contact_loss,
+            damping_work,
+            indentation_work: if limited {
+                self.force_limit * (indentation - start.indentation)
+            } else {
+                0.0
+            },
+            contacts: closing.contacts,
+        }
+    }
+}
+
+/// Eq. (5), if the surfaces stay apart.
+#[inline]
+fn apart<V: Vector>(
+    passage: &mut Passage<V>,
+    striker: &Striker,
+    start: &Start,
+    scratch: &Scratch<V>,
+    to: &mut Motion<V>,
+) -> Option<Advance> {
+    let Striker {
+        gravity, time_step, ..
+    } = *striker;
+    if start.displacement + start.indentation - start.striker_displacement < 0.0 {
+        return None;
+    }
+    passage.follow(scratch.now, [time_step, 1.0], None, to);
+    let striker_velocity = start.striker_velocity + gravity * time_step;
+    let striker_displacement =
+        start.striker_displacement + 0.5 * time_step * (start.striker_velocity + striker_velocity);
+    if passage.of_struck(to).0 + start.indentation - striker_displacement < 0.0 {
+        return None;
+    }
+    Some(Advance {
+        striker_displacement,
+        striker_velocity,
+        state: StepState::Free,
+        contact_force: 0.0,
+        indentation: start.indentation,
+        contact_loss: 0.0,
+        damping_work: passage.damped_between(scratch.now, to, time_step),
+        indentation_work: 0.0,
+        contacts: 0,
+    })
+}

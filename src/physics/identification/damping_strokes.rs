@@ -1,0 +1,180 @@
+//! What the strokes of a damping sweep tell of the specimen itself: whether it flowed on the way, and how stiff it is there. In: of each
+//! stroke, pairs of a reading out and one back near one place. Out: numbers in SI. It fits no damping.
+//!
+//! Viscous and Coulomb damping resist the same at every place of a stroke, so that half of out minus back is one number. An actuator that
+//! lags is behind on both ways, so that the two readings of a pair are apart: the stiffness of the strokes, which the mean of the two
+//! forces shows, brings them to one place. A specimen that
+//! flows on the way out comes back by another line: the difference then grows from where the stroke turns, by (K − `K_t`)/2 a metre, and is
+//! of its loop, not of its damping.
+
+use super::fit_line;
+
+/// Of a change along a stroke, in standard errors, that is taken for one.
+const SURE: f64 = 5.0;
+
+/// Of the mean difference: what an actuator that has not quite settled leaves is a hundredth.
+const SHARE: f64 = 0.1;
+
+/// Of the largest force: less is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A reading on the way out and one on the way back near the same place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutAndBack {
+    /// Of the way on which the place was read, m/s.
+    pub velocity: f64,
+    /// Mean of the two places, m.
+    pub place: f64,
+    /// Half of out minus back of the places, m.
+    pub half_apart: f64,
+    /// Half of out minus back of the forces, N.
+    pub half_difference: f64,
+    /// Mean of the two forces, N.
+    pub mean: f64,
+}
+
+impl OutAndBack {
+    /// Half of out minus back at one place (N), of strokes that run at `stiffness` (N/m).
+    #[must_use]
+    pub fn damping_force(&self, stiffness: f64) -> f64 {
+        self.half_difference - stiffness * self.half_apart
+    }
+}
+
+/// By how much the damping force changes along a stroke that runs at `stiffness` (N/m), N; None where it is the same all along, or too
+/// few readings tell.
+#[must_use]
+pub fn change_along(stroke: &[OutAndBack], stiffness: f64) -> Option<f64> {
+    let places: Vec<f64> = stroke.iter().map(|pair| pair.place).collect();
+    let halves: Vec<f64> = stroke
+        .iter()
+        .map(|pair| pair.damping_force(stiffness))
+        .collect();
+    let line = fit_line(&places, &halves)?;
+    let most =
+        |read: fn(&OutAndBack) -> f64| stroke.iter().map(read).fold(f64::NEG_INFINITY, f64::max);
+    let span = most(|pair| pair.place) + most(|pair| -pair.place);
+    let (change, error) = ((line.slope * span).abs(), line.slope_error * span);
+    #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
+    let mean = halves.iter().sum::<f64>() / halves.len() as f64;
+    let rounding = ROUNDING * most(|pair| pair.mean.abs());
+    (change > SURE * error && change > SHARE * mean.abs() && change > rounding).then_some(change)
+}
+
+/// K of the specimen along its strokes with its standard error, N/m: one slope of the mean force for all, each with an intercept of its
+/// own, for where a specimen rests may drift between them.
+#[must_use]
+pub fn own_stiffness<'a>(
+    strokes: &(impl Iterator<Item = &'a [OutAndBack]> + Clone),
+) -> Option<(f64, f64)> {
+    let middle = |stroke: &[OutAndBack]| {
+        #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
+        let count = stroke.len() as f64;
+        let sum = stroke.iter().fold((0.0, 0.0), |sum, pair| {
+            (sum.0 + pair.place, sum.1 + pair.mean)
+        });
+        (sum.0 / count, sum.1 / count)
+    };
+    let away = || {
+        strokes
+            .clone()
+            .filter(|stroke| !stroke.is_empty())
+            .flat_map(move |stroke| {
+                let (x, r) = middle(stroke);
+                stroke
+                    .iter()
+                    .map(move |pair| (pair.place - x, pair.mean - r))
+            })
+    };
+    let (xx, xr) = away().fold((0.0, 0.0), |sum, (x, r)| (sum.0 + x * x, sum.1 + x * r));
+    let slope = xr / xx;
+    let residual: f64 = away().map(|(x, r)| (r - slope * x).powi(2)).sum();
+    #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
+    let degrees = away().count() as f64
+        - strokes.clone().filter(|stroke| !stroke.is_empty()).count() as f64
+        - 1.0;
+    (xx > 0.0 && degrees > 0.0).then(|| (slope, (residual / degrees / xx).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stroke(half: impl Fn(f64) -> f64, offset: f64) -> Vec<OutAndBack> {
+        let pair = |index: u32| {
+            let place = 0.02 + 2e-5 * f64::from(index);
+            OutAndBack {
+                velocity: 1e-3,
+                place,
+                half_apart: 0.0,
+                half_difference: half(place),
+                mean: offset + 4e5 * place,
+            }
+        };
+        (0..40).map(pair).collect()
+    }
+
+    #[test]
+    fn what_resists_alike_at_every_place_does_not_change() {
+        assert_eq!(change_along(&stroke(|_| 3.0, 0.0), 4e5), None);
+        assert_eq!(
+            change_along(&stroke(|_| 0.0, 0.0), 4e5),
+            None,
+            "nor does what does not resist"
+        );
+        assert_eq!(
+            change_along(&stroke(|place| 3.0 + 100.0 * (place - 0.02), 0.0), 4e5),
+            None,
+            "3 %: an actuator that settles"
+        );
+        let noisy = |place: f64| 0.5 + (place * 9e6).sin();
+        assert_eq!(change_along(&stroke(noisy, 0.0), 4e5), None);
+    }
+
+    /// Half of K − `K_t` over the stroke.
+    #[test]
+    fn a_way_back_by_another_line_does() {
+        let change =
+            change_along(&stroke(|place| 1.5 + 1.8e5 * (0.0208 - place), 0.0), 4e5).unwrap();
+        assert!((change - 1.8e5 * 39.0 * 2e-5).abs() < 1e-6, "{change}");
+    }
+
+    /// An actuator that is 1 mm behind on either way: 3 N of damping, by the stiffness of the strokes alone.
+    #[test]
+    fn readings_that_are_apart_are_brought_to_one_place() {
+        let behind = 1e-3;
+        let force = |place: f64, damping: f64| 4e5 * place + damping;
+        let pair = |index: u32| {
+            let place = 0.02 + 2e-5 * f64::from(index);
+            let (out, back) = (place - behind, place + behind);
+            let (out_force, back_force) = (force(out, 3.0), force(back, -3.0));
+            OutAndBack {
+                velocity: 1e-3,
+                place,
+                half_apart: 0.5 * (out - back),
+                half_difference: 0.5 * (out_force - back_force),
+                mean: 0.5 * (out_force + back_force),
+            }
+        };
+        let pairs: Vec<OutAndBack> = (0..40).map(pair).collect();
+        let (stiffness, _) = own_stiffness(&[pairs.as_slice()].into_iter()).unwrap();
+        assert!((stiffness - 4e5).abs() < 1e-4);
+        assert!(
+            pairs
+                .iter()
+                .all(|pair| (pair.damping_force(stiffness) - 3.0).abs() < 1e-6)
+        );
+        assert_eq!(change_along(&pairs, stiffness), None);
+    }
+
+    #[test]
+    fn strokes_that_rest_elsewhere_have_one_stiffness() {
+        let strokes = [stroke(|_| 0.0, 0.0), stroke(|_| 0.0, 250.0), Vec::new()];
+        let (stiffness, error) = own_stiffness(&strokes.iter().map(Vec::as_slice)).unwrap();
+        assert!(
+            (stiffness - 4e5).abs() < 1e-4 && error < 1e-3,
+            "{stiffness} {error}"
+        );
+        assert_eq!(own_stiffness(&[&[][..]].into_iter()), None);
+    }
+}

@@ -1,0 +1,179 @@
+//! Identification from measured forces: lines, curves of several segments, loops. In: readings.
+//! Out: parameters with standard errors. It knows no rig and no plan.
+
+pub mod backbone;
+pub mod breakpoints;
+pub mod cyclic;
+pub mod damping_strokes;
+pub mod loop_sampling;
+pub mod multilinear_fit;
+
+/// Straight line with standard errors: y = intercept + slope·x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineFit {
+    pub slope: f64,
+    /// Standard; no less than by the stated errors of the readings.
+    pub slope_error: f64,
+    pub intercept: f64,
+    /// The same of the intercept.
+    pub intercept_error: f64,
+    /// Of slope and intercept, −1 to 1: both turn about the middle of the points.
+    pub correlation: f64,
+    pub r_squared: f64,
+    /// Of the scatter about the line: the points less the two numbers of it.
+    pub degrees: f64,
+    /// Fraction of the standard errors that the scatter shows; the rest is stated.
+    pub shown: f64,
+}
+
+/// The variance of a reading by what is stated of its errors. A fit counts with no less.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StatedVariance {
+    /// Of a force \[N²\].
+    pub force: f64,
+    /// Of a displacement \[m²\].
+    pub displacement: f64,
+    /// Whether the readings do not have these errors yet: those of the run will scatter by them.
+    pub expected: bool,
+}
+
+impl StatedVariance {
+    /// Of a force about a curve of this slope \[N/m\].
+    #[must_use]
+    pub fn about(self, slope: f64) -> f64 {
+        self.force + slope * slope * self.displacement
+    }
+
+    /// The variance \[N²\] that a fit of this slope \[N/m\] counts with, whose readings scatter by `scatter` \[N²\], and the fraction of its
+    /// standard errors that the scatter shows.
+    #[must_use]
+    pub fn counted(self, scatter: f64, slope: f64) -> (f64, f64) {
+        let stated = self.about(slope);
+        if self.expected {
+            (scatter + stated, 1.0)
+        } else if stated > scatter {
+            (stated, (scatter / stated).sqrt())
+        } else {
+            (scatter, 1.0)
+        }
+    }
+}
+
+impl LineFit {
+    /// The same line through points at these x, whose errors are stated to be no less; `slope` \[N/m\] is that of the force over the
+    /// displacement.
+    #[must_use]
+    pub fn stated(self, x: &[f64], stated: StatedVariance, slope: f64) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "no test has 2^53 readings")]
+        let count = x.len() as f64;
+        let mean = x.iter().sum::<f64>() / count;
+        let squares: f64 = x.iter().map(|x| (x - mean).powi(2)).sum();
+        let scatter = self.slope_error * self.slope_error * squares;
+        let (variance, shown) = stated.counted(scatter, slope);
+        if variance <= scatter || squares <= 0.0 {
+            return self;
+        }
+        Self {
+            slope_error: (variance / squares).sqrt(),
+            intercept_error: (variance * (1.0 / count + mean * mean / squares)).sqrt(),
+            shown,
+            ..self
+        }
+    }
+}
+
+/// Least squares with an intercept, about the means so that no digits are lost. None with fewer than three points, with
+/// lists of different length, or where x does not vary.
+#[must_use]
+pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
+    if x.len() != y.len() || x.len() < 3 {
+        return None;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "no test has 2^53 readings")]
+    let count = x.len() as f64;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
+    let (mean_x, mean_y) = (mean(x), mean(y));
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for (x, y) in x.iter().zip(y) {
+        let (dx, dy) = (x - mean_x, y - mean_y);
+        xx += dx * dx;
+        xy += dx * dy;
+        yy += dy * dy;
+    }
+    let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    // One value many times over has a mean that misses it by its rounding: that is no spread to fit a slope to.
+    if xx.is_nan() || xx <= count * (8.0 * f64::EPSILON * largest).powi(2) {
+        return None;
+    }
+    let slope = xy / xx;
+    let residual: f64 = x
+        .iter()
+        .zip(y)
+        .map(|(x, y)| (y - mean_y - slope * (x - mean_x)).powi(2))
+        .sum();
+    let variance = residual / (count - 2.0);
+    Some(LineFit {
+        slope,
+        slope_error: (variance / xx).sqrt(),
+        intercept: mean_y - slope * mean_x,
+        intercept_error: (variance * (1.0 / count + mean_x * mean_x / xx)).sqrt(),
+        // Covariance −x̄ s²/Sxx over both errors (JCGM 100:2008, H.3.3).
+        correlation: -mean_x / (xx / count + mean_x * mean_x).sqrt(),
+        r_squared: if yy > 0.0 { 1.0 - residual / yy } else { 1.0 },
+        degrees: count - 2.0,
+        shown: 1.0,
+    })
+}
+
+/// `F_d = c·v + F_c·sign v`: slope c (N·s/m) and intercept `F_c` (N), fitted as `F_d·sign v` against |v|. Readings at rest say
+/// nothing of it and are left out.
+#[must_use]
+pub fn fit_damping(velocities: &[f64], damping_forces: &[f64]) -> Option<LineFit> {
+    if velocities.len() != damping_forces.len() {
+        return None;
+    }
+    let (speeds, forces): (Vec<f64>, Vec<f64>) = velocities
+        .iter()
+        .zip(damping_forces)
+        .filter(|(velocity, _)| **velocity != 0.0)
+        .map(|(velocity, force)| (velocity.abs(), force * velocity.signum()))
+        .unzip();
+    fit_line(&speeds, &forces)
+}
+
+/// ∮R dX by the trapezoid, closed from the last point to the first, J: positive where energy was spent.
+#[must_use]
+pub fn loop_energy(displacements: &[f64], forces: &[f64]) -> f64 {
+    let count = displacements.len().min(forces.len());
+    (0..count)
+        .map(|i| {
+            let next = (i + 1) % count;
+            0.5 * (forces[i] + forces[next]) * (displacements[next] - displacements[i])
+        })
+        .sum()
+}
+
+/// ζ = c / (2√(KM)).
+#[must_use]
+pub fn damping_ratio(damping: f64, stiffness: f64, mass: f64) -> f64 {
+    damping / (2.0 * (stiffness * mass).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_velocity_gives_no_line_whatever_its_mean_rounds_to() {
+        let velocities: Vec<f64> = (0..51).map(|_| 0.005).collect();
+        let forces: Vec<f64> = (0..51)
+            .map(|reading| 2.0 + 0.1 * f64::from(reading % 7))
+            .collect();
+        assert_eq!(fit_damping(&velocities, &forces), None);
+        // A hundred ulps apart is a spread that was asked for.
+        let apart: Vec<f64> = (0..51)
+            .map(|reading| 0.005 + f64::from(reading % 2) * 1e-16)
+            .collect();
+        assert!(fit_line(&apart, &forces).is_some());
+    }
+}

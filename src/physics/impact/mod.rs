@@ -1,0 +1,354 @@
+//! The inputs of an impact, its state at the end of a step, and an impact on an ideal rig from start to end. In: masses,
+//! stiffnesses, a striker, a contact law. Out: numbers. The steps are those of `impact_solver`.
+
+pub mod energy;
+pub mod peaks;
+pub mod summary;
+mod until;
+
+pub use until::Until;
+
+use thiserror::Error;
+
+use super::contact::NeedsTangent;
+use super::contact::state::{ContactLaw, StepState};
+use super::impact::energy::Energies;
+pub use super::impact_solver::{FrameImpactSolver, ImpactSolver};
+use super::integrator::solver::{FrameError, State};
+use super::integrator::step_form::Matrices;
+use super::specimen::RestoringForce;
+use crate::integrator::Integrator;
+
+/// All that an impact on one degree of freedom starts from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactInput {
+    /// M, kg
+    pub mass: f64,
+    /// C, N·s/m
+    pub damping: f64,
+    /// K0, N/m
+    pub stiffness: f64,
+    /// Ms, kg
+    pub striker_mass: f64,
+    /// V0, m/s
+    pub striker_velocity: f64,
+    /// m, at least 0
+    pub gap: f64,
+    /// Acceleration of the striker along its way, m/s²: gn of a weight that falls.
+    pub gravity: f64,
+    /// Δt, s
+    pub time_step: f64,
+    /// c of `K_t within [0, c·K0]`
+    pub max_tangent_ratio: f64,
+    pub law: ContactLaw,
+    pub integrator: Integrator,
+    /// `K_I` of α-OS and of the I-modification, N/m.
+    pub operator_stiffness: f64,
+    /// Whether the recursion takes r* = `r_m` − `K_I`(`d_m` − d̃) in place of the reading: the force where the specimen was
+    /// to be, as long as it is nearly elastic.
+    pub i_modification: bool,
+    /// Standard deviation of the load cell, N.
+    pub force_noise: f64,
+    /// Of the displacement reading, m.
+    pub resolution: f64,
+}
+
+impl ImpactInput {
+    /// A rigid blow on an undamped structure at rest, by the tangent form: `mass` (kg) and `stiffness` (N/m) of the structure,
+    /// `striker_mass` (kg) and `striker_velocity` (m/s) of a striker that touches it at the start, steps of `time_step` (s).
+    #[must_use]
+    pub const fn rigid(
+        mass: f64,
+        stiffness: f64,
+        striker_mass: f64,
+        striker_velocity: f64,
+        time_step: f64,
+    ) -> Self {
+        Self {
+            mass,
+            damping: 0.0,
+            stiffness,
+            striker_mass,
+            striker_velocity,
+            gap: 0.0,
+            gravity: 0.0,
+            time_step,
+            max_tangent_ratio: 2.0,
+            law: ContactLaw::Rigid,
+            integrator: Integrator::Tangent,
+            operator_stiffness: stiffness,
+            i_modification: false,
+            force_noise: 0.0,
+            resolution: 0.0,
+        }
+    }
+
+    /// ½ Ms V0², J.
+    #[must_use]
+    pub fn striker_energy(&self) -> f64 {
+        0.5 * self.striker_mass * self.striker_velocity * self.striker_velocity
+    }
+
+    /// M, C and K of the structure.
+    #[must_use]
+    pub const fn matrices(&self) -> Matrices<f64> {
+        Matrices {
+            mass: self.mass,
+            damping: self.damping,
+            stiffness: self.stiffness,
+        }
+    }
+
+    /// The striker and its contact.
+    #[must_use]
+    pub const fn striking(&self) -> Striking {
+        Striking {
+            struck: 0,
+            mass: self.striker_mass,
+            velocity: self.striker_velocity,
+            gap: self.gap,
+            gravity: self.gravity,
+            law: self.law,
+        }
+    }
+}
+
+/// The struck degree of freedom and the striker at the end of a step; step 0 is the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactState {
+    pub step: u64,
+    /// s
+    pub time: f64,
+    /// Computed X, m.
+    pub displacement: f64,
+    /// Imposed on the specimen, m: X itself, but under α-OS the place it was foretold at.
+    pub target: f64,
+    /// m
+    pub measured_displacement: f64,
+    /// m/s
+    pub velocity: f64,
+    /// m/s²
+    pub acceleration: f64,
+    /// Measured, N.
+    pub restoring_force: f64,
+    /// What the recursion takes for the force at X, N: the reading, but for what the I-modification and α-OS correct.
+    pub force_at_computed: f64,
+    /// Mean over the step, N.
+    pub contact_force: f64,
+    /// m
+    pub striker_displacement: f64,
+    /// m/s
+    pub striker_velocity: f64,
+    /// N/m, for the step to come.
+    pub tangent_stiffness: f64,
+    /// Permanent, m.
+    pub indentation: f64,
+    pub state: StepState,
+    /// Those of the whole structure. Under `hertz` the contact loss holds also the energy stored in the contact, given back as it
+    /// opens.
+    pub energies: Energies,
+    /// Energy put into the test so far, J: what errors are shares of. At the start ½ Ms V0², and of a structure that carries a load
+    /// already what it gives back elastically, ½RᵀK⁻¹R; a weight that falls adds its work.
+    pub input: f64,
+    /// Contacts that began so far.
+    pub contacts: u64,
+}
+
+/// A striker, its contact and the degree of freedom that it hits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Striking {
+    /// The struck degree of freedom, from 0.
+    pub struck: usize,
+    /// Ms, kg
+    pub mass: f64,
+    /// V0, m/s
+    pub velocity: f64,
+    /// m, at least 0
+    pub gap: f64,
+    /// Acceleration of the striker along its path, m/s²: gn of a weight that falls.
+    pub gravity: f64,
+    pub law: ContactLaw,
+}
+
+/// Why there is no impact to follow.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum ImpactError {
+    #[error(transparent)]
+    Structure(#[from] FrameError),
+    #[error("degree of freedom {} is struck, but there are {order}", struck + 1)]
+    NoSuchPlace { struck: usize, order: usize },
+    #[error(transparent)]
+    Contact(#[from] NeedsTangent),
+}
+
+/// Takes the steps of an impact that is integrated to its end.
+pub trait Sink<V = f64> {
+    /// The end of a step; `over` where the run ends with it before its duration.
+    fn push(&mut self, structure: &State<V>, state: &ImpactState, over: bool);
+}
+
+/// Keeps nothing.
+impl<V> Sink<V> for () {
+    fn push(&mut self, _: &State<V>, _: &ImpactState, _: bool) {}
+}
+
+/// Columns to fill again and again: memory once touched costs a quarter.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Columns {
+    pub time: Vec<f64>,
+    pub displacement: Vec<f64>,
+    pub velocity: Vec<f64>,
+    pub restoring_force: Vec<f64>,
+    pub contact_force: Vec<f64>,
+    pub striker_displacement: Vec<f64>,
+    pub striker_velocity: Vec<f64>,
+    pub tangent_stiffness: Vec<f64>,
+}
+
+impl Columns {
+    fn all(&mut self) -> [&mut Vec<f64>; 8] {
+        [
+            &mut self.time,
+            &mut self.displacement,
+            &mut self.velocity,
+            &mut self.restoring_force,
+            &mut self.contact_force,
+            &mut self.striker_displacement,
+            &mut self.striker_velocity,
+            &mut self.tangent_stiffness,
+        ]
+    }
+
+    /// Empty, with room for so many steps: filling them then takes no memory.
+    pub fn prepare(&mut self, steps: usize) {
+        for column in self.all() {
+            column.clear();
+            column.reserve(steps);
+        }
+    }
+}
+
+impl Sink for Columns {
+    #[inline]
+    fn push(&mut self, _: &State<f64>, state: &ImpactState, _: bool) {
+        self.time.push(state.time);
+        self.displacement.push(state.displacement);
+        self.velocity.push(state.velocity);
+        self.restoring_force.push(state.restoring_force);
+        self.contact_force.push(state.contact_force);
+        self.striker_displacement.push(state.striker_displacement);
+        self.striker_velocity.push(state.striker_velocity);
+        self.tangent_stiffness.push(state.tangent_stiffness);
+    }
+}
+
+/// An impact on one degree of freedom of an ideal rig from rest at X = 0.
+///
+/// # Errors
+/// As [`ImpactSolver::new`].
+pub fn simulate<S: RestoringForce, K: Sink>(
+    input: &ImpactInput,
+    specimen: &mut S,
+    until: Option<Until>,
+    steps: u64,
+    sink: &mut K,
+) -> Result<ImpactState, ImpactError> {
+    let mut solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0))?;
+    let read = |solver: &mut ImpactSolver| {
+        let target = solver.predict();
+        [target, specimen.move_to(target)]
+    };
+    solver.run(until, steps, read, sink);
+    Ok(*solver.state())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::specimen::Bilinear;
+
+    const STIFFNESS: f64 = 327.65;
+    const RIGID: ContactLaw = ContactLaw::Rigid;
+    const LIMIT: ContactLaw = ContactLaw::Limit { force: 60.0 };
+    const BOUNCE: ContactLaw = ContactLaw::Restitution { coefficient: 0.5 };
+    const HERTZ: ContactLaw = ContactLaw::Hertz {
+        stiffness: 1e6,
+        loss: 0.1,
+        force_limit: Some(900.0),
+    };
+    const INTEGRATORS: [Integrator; 4] = [
+        Integrator::Tangent,
+        Integrator::Explicit,
+        Integrator::AlphaOs { alpha: 0.0 },
+        Integrator::AlphaOs { alpha: -0.1 },
+    ];
+
+    fn input(law: ContactLaw, integrator: Integrator) -> ImpactInput {
+        ImpactInput {
+            mass: 1.0,
+            damping: 2.0,
+            stiffness: STIFFNESS,
+            striker_mass: 10.0,
+            striker_velocity: 1.0,
+            gap: 1e-3,
+            gravity: 9.81,
+            time_step: 1e-3,
+            max_tangent_ratio: 2.0,
+            law,
+            integrator,
+            operator_stiffness: STIFFNESS,
+            i_modification: true,
+            force_noise: 0.0,
+            resolution: 0.0,
+        }
+    }
+
+    /// The ends of steps.
+    struct Ends(Vec<ImpactState>);
+
+    impl Sink for Ends {
+        fn push(&mut self, _: &State<f64>, state: &ImpactState, _: bool) {
+            self.0.push(*state);
+        }
+    }
+
+    /// Every number of every step to the last bit, under every law with every integrator that it takes; a pair that means nothing
+    /// is refused.
+    #[test]
+    fn an_impact_in_one_go_is_the_impact_step_by_step() {
+        for integrator in INTEGRATORS {
+            for law in [RIGID, LIMIT, BOUNCE, HERTZ] {
+                let input = input(law, integrator);
+                let mut specimen = Bilinear::new(STIFFNESS, 20.0, 0.1);
+                let mut solver = match (ImpactSolver::new(&input, 0.0, 0.0), integrator, law) {
+                    (Ok(solver), Integrator::Tangent, _) | (Ok(solver), _, RIGID | LIMIT) => solver,
+                    (
+                        Err(ImpactError::Contact(_)),
+                        Integrator::Explicit | Integrator::AlphaOs { .. },
+                        BOUNCE | HERTZ,
+                    ) => continue,
+                    (found, ..) => panic!("{integrator:?} with {law:?}: {found:?}"),
+                };
+                let mut interactive = Vec::new();
+                for _ in 0..400 {
+                    let target = solver.predict();
+                    let reading = (target * 0.999, specimen.move_to(target * 0.999));
+                    interactive.push(*solver.complete(reading.0, reading.1));
+                    if solver.over(Until::StrikerStop) {
+                        break;
+                    }
+                }
+                let (mut ends, mut specimen) =
+                    (Ends(Vec::new()), Bilinear::new(STIFFNESS, 20.0, 0.1));
+                let mut solver = ImpactSolver::new(&input, 0.0, 0.0).unwrap();
+                let read = |solver: &mut ImpactSolver| {
+                    let measured = solver.predict() * 0.999;
+                    [measured, specimen.move_to(measured)]
+                };
+                solver.run(Some(Until::StrikerStop), 400, read, &mut ends);
+                assert!(interactive.len() > 50, "{integrator:?} with {law:?}");
+                assert_eq!(ends.0, interactive, "{integrator:?} with {law:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! What an impact comes to: peaks, times, impulse, energies, from its steps as they end.
+
+use super::{ImpactInput, ImpactState, Sink};
+use crate::contact::state::{ContactLaw, StepState};
+use crate::integrator::solver::State;
+
+/// Results of an impact. Peaks are over step ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactSummary {
+    /// m
+    pub max_displacement: f64,
+    /// s
+    pub time_of_max_displacement: f64,
+    /// End of the first step with Ẋs ≤ 0, s.
+    pub stop_time: Option<f64>,
+    /// Computed X at the end of the run, m.
+    pub final_displacement: f64,
+    /// Largest |Ẋ|, m/s.
+    pub max_velocity: f64,
+    /// N
+    pub max_contact_force: f64,
+    /// ∫F dt, N·s
+    pub impulse: f64,
+    /// Blows: contacts that began ([`crate::contact::Advance::contacts`]).
+    pub contacts: u64,
+    /// Separation over closing speed of the first blow; none before it has ended.
+    pub restitution: Option<f64>,
+    /// m
+    pub indentation: f64,
+    /// J
+    pub indentation_energy: f64,
+    /// ∫R dX up to the largest X, J.
+    pub absorbed_energy: f64,
+    /// ½ Ms V0², J
+    pub striker_energy: f64,
+    /// Over the energy put into the test ([`ImpactState::input`]).
+    pub energy_error: f64,
+    /// The structure was still on its way where X was largest: not a peak.
+    pub still_rising: bool,
+    /// The striker has stopped, and the run ended with a contact force.
+    pub last_blow_cut: bool,
+}
+
+/// The first blow as it goes by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FirstBlow {
+    /// Closing speed at the last step end apart, m/s.
+    ToCome {
+        closing: f64,
+    },
+    UnderWay {
+        closing: f64,
+    },
+    Over {
+        restitution: Option<f64>,
+    },
+}
+
+/// Sums up steps one by one, step 0 first.
+#[derive(Clone, Debug)]
+pub struct SummaryBuilder {
+    input: ImpactInput,
+    first_blow: FirstBlow,
+    last_velocity: f64,
+    /// N
+    last_contact_force: f64,
+    summary: ImpactSummary,
+}
+
+impl SummaryBuilder {
+    /// Before step 0.
+    #[must_use]
+    pub fn new(input: &ImpactInput) -> Self {
+        Self {
+            input: *input,
+            first_blow: FirstBlow::ToCome {
+                closing: input.striker_velocity,
+            },
+            last_velocity: 0.0,
+            last_contact_force: 0.0,
+            summary: ImpactSummary {
+                max_displacement: f64::NEG_INFINITY,
+                time_of_max_displacement: 0.0,
+                stop_time: None,
+                final_displacement: 0.0,
+                max_velocity: 0.0,
+                max_contact_force: 0.0,
+                impulse: 0.0,
+                contacts: 0,
+                restitution: None,
+                indentation: 0.0,
+                indentation_energy: 0.0,
+                absorbed_energy: 0.0,
+                striker_energy: input.striker_energy(),
+                energy_error: 0.0,
+                still_rising: false,
+                last_blow_cut: false,
+            },
+        }
+    }
+
+    /// Takes the end of the next step.
+    pub fn push(&mut self, state: &ImpactState) {
+        let summary = &mut self.summary;
+        if state.displacement > summary.max_displacement {
+            summary.max_displacement = state.displacement;
+            summary.time_of_max_displacement = state.time;
+            summary.absorbed_energy = state.energies.restoring;
+        }
+        summary.final_displacement = state.displacement;
+        summary.max_velocity = summary.max_velocity.max(state.velocity.abs());
+        summary.max_contact_force = summary.max_contact_force.max(state.contact_force);
+        summary.impulse += state.contact_force * self.input.time_step;
+        summary.indentation = state.indentation;
+        summary.indentation_energy = state.energies.indentation;
+        if state.input > 0.0 {
+            summary.energy_error = state.energies.error / state.input;
+        }
+        if summary.stop_time.is_none() && state.step > 0 && state.striker_velocity <= 0.0 {
+            summary.stop_time = Some(state.time);
+        }
+        let touching = state.state != StepState::Free;
+        summary.contacts = state.contacts;
+        self.follow_first_blow(state, touching);
+        self.last_velocity = state.velocity;
+        self.last_contact_force = state.contact_force;
+    }
+
+    /// A blow is over at the end of the free step that follows it: the tensile step, taken again as a free one.
+    fn follow_first_blow(&mut self, state: &ImpactState, touching: bool) {
+        let closing_now = state.striker_velocity - state.velocity;
+        self.first_blow = match self.first_blow {
+            FirstBlow::ToCome { closing } if touching => FirstBlow::UnderWay { closing },
+            FirstBlow::ToCome { .. } => FirstBlow::ToCome {
+                closing: closing_now,
+            },
+            FirstBlow::UnderWay { closing } if !touching => FirstBlow::Over {
+                restitution: (closing > 0.0).then(|| -closing_now / closing),
+            },
+            unchanged => unchanged,
+        };
+    }
+
+    /// What the steps taken come to.
+    #[must_use]
+    pub fn finish(mut self) -> ImpactSummary {
+        self.summary.restitution = match (self.input.law, self.first_blow) {
+            // Located inside a step: the law's own number, which a step's ends only show with what came after.
+            (ContactLaw::Restitution { coefficient }, _) => {
+                (self.summary.contacts > 0).then_some(coefficient)
+            }
+            (_, FirstBlow::Over { restitution }) => restitution,
+            _ => None,
+        };
+        self.summary.still_rising = still_rising(
+            self.last_velocity,
+            self.summary.final_displacement,
+            self.summary.max_displacement,
+        );
+        self.summary.last_blow_cut =
+            self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
+        if self.summary.max_displacement == f64::NEG_INFINITY {
+            self.summary.max_displacement = 0.0;
+        }
+        self.summary
+    }
+}
+
+impl<V> Sink<V> for SummaryBuilder {
+    fn push(&mut self, _: &State<V>, state: &ImpactState, _: bool) {
+        self.push(state);
+    }
+}
+
+/// Whether a structure that ends with `velocity` Ẋ (m/s) at `displacement` X (m) was still on its way to the `largest` X (m). A run that goes on past that has seen a
+/// peak, whichever way the structure moves as it ends.
+pub fn still_rising(velocity: f64, displacement: f64, largest: f64) -> bool {
+    velocity > 0.0 && displacement >= largest
+}
+
+/// The summary of a run that is all there.
+#[must_use]
+pub fn summarise<'a>(
+    input: &ImpactInput,
+    states: impl IntoIterator<Item = &'a ImpactState>,
+) -> ImpactSummary {
+    let mut builder = SummaryBuilder::new(input);
+    for state in states {
+        builder.push(state);
+    }
+    builder.finish()
+}

@@ -1,0 +1,168 @@
+//! The tangent stiffness by what was measured (Melo et al. 2006, eq. 6). In: pairs of displacement and force, one a step.
+//! Out: a stiffness inside its bounds. Noise must never become a stiffness, nor keep the stiffness of long ago.
+//!
+//! A step whose change of displacement stands out of the noise gives the secant of eq. (6). One that does not is too short
+//! to tell alone: then the last readings together do, by least squares over the fewest of them whose displacements span as
+//! much as one step would have had to. With σ the noise of one reading and n readings spread evenly over the span S, the
+//! slope has a standard deviation of about √(12/n)·σ/S, less than the secant's √2·σ/S for n > 6 and never more than it for
+//! two. As long as no span stands out, the last stiffness is kept.
+
+use std::collections::VecDeque;
+
+/// A tangent stiffness needs a change of force this many times the load cell's noise. Smaller, and noise becomes a
+/// stiffness (at 10 a secant errs by 14 %, one standard deviation); larger, and it follows the specimen late. A ratio of forces.
+pub const NOISE_MULTIPLE: f64 = 10.0;
+/// Readings of a window at most: what more of them do not tell, they tell too late.
+const MOST_READINGS: usize = 4096;
+
+/// `K_t` as it is followed.
+#[derive(Clone, Debug)]
+pub struct TangentStiffness {
+    /// m, the smallest change of measured displacement that gives a stiffness; 0 where readings are exact.
+    least_change: f64,
+    largest: f64,
+    value: f64,
+    last: (f64, f64),
+    /// Readings since a span of them last told: newest last. Empty where readings are exact.
+    window: VecDeque<(f64, f64)>,
+}
+
+impl TangentStiffness {
+    /// From `initial` (N/m), never beyond `largest_ratio` times that; `force_noise` in N, `resolution` in m; the first
+    /// reading as (m, N).
+    #[must_use]
+    pub fn new(
+        initial: f64,
+        largest_ratio: f64,
+        force_noise: f64,
+        resolution: f64,
+        first: (f64, f64),
+    ) -> Self {
+        let least_change = resolution.max(NOISE_MULTIPLE * force_noise / initial);
+        let window = if least_change > 0.0 {
+            VecDeque::from([first])
+        } else {
+            VecDeque::new()
+        };
+        Self {
+            least_change,
+            largest: largest_ratio * initial,
+            value: initial,
+            last: first,
+            window,
+        }
+    }
+
+    /// N/m
+    #[must_use]
+    pub const fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// Takes the reading at the end of a step, m and N.
+    #[inline]
+    pub fn take(&mut self, displacement: f64, force: f64) {
+        let change = displacement - self.last.0;
+        if change.abs() > self.least_change {
+            self.value = ((force - self.last.1) / change).clamp(0.0, self.largest);
+        }
+        if self.least_change > 0.0 {
+            self.widen(displacement, force, change.abs() > self.least_change);
+        }
+        self.last = (displacement, force);
+    }
+
+    /// Keeps the fewest of the last readings that span enough; where the step alone did not, they tell together.
+    fn widen(&mut self, displacement: f64, force: f64, told: bool) {
+        self.window.push_back((displacement, force));
+        if told {
+            self.window.drain(..self.window.len().saturating_sub(2));
+            return;
+        }
+        if self.window.len() > MOST_READINGS {
+            self.window.pop_front();
+        }
+        let (mut low, mut high) = (displacement, displacement);
+        let needed = self.window.iter().rev().position(|(place, _)| {
+            (low, high) = (low.min(*place), high.max(*place));
+            high - low > self.least_change
+        });
+        if let Some(needed) = needed {
+            self.window.drain(..self.window.len() - 1 - needed);
+            if let Some(slope) = slope(&self.window) {
+                self.value = slope.clamp(0.0, self.largest);
+            }
+        }
+    }
+}
+
+/// Least squares of force on displacement, with an intercept.
+fn slope(readings: &VecDeque<(f64, f64)>) -> Option<f64> {
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_READINGS")]
+    let count = readings.len() as f64;
+    let (x, r) = readings.iter().fold((0.0, 0.0), |sum, reading| {
+        (sum.0 + reading.0, sum.1 + reading.1)
+    });
+    let (x, r) = (x / count, r / count);
+    let (both, own) = readings.iter().fold((0.0, 0.0), |(both, own), reading| {
+        let away = reading.0 - x;
+        (both + away * (reading.1 - r), own + away * away)
+    });
+    (own > 0.0).then(|| both / own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const INITIAL: f64 = 1000.0;
+
+    /// No noise of its own: the readings are exact, the window is what they are told.
+    fn followed(force_noise: f64, readings: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+        let mut tangent = TangentStiffness::new(INITIAL, 2.0, force_noise, 0.0, (0.0, 0.0));
+        for (displacement, force) in readings {
+            tangent.take(displacement, force);
+        }
+        tangent.value()
+    }
+
+    #[test]
+    fn exact_readings_give_the_secant_of_each_step() {
+        assert_eq!(
+            followed(0.0, [(1e-9, 0.5e-6), (2e-9, 0.8e-6)]),
+            (0.8e-6 - 0.5e-6) / (2e-9 - 1e-9)
+        );
+        assert_eq!(followed(0.0, [(1e-3, 5.0)]), 2000.0, "clamped above");
+        assert_eq!(followed(0.0, [(1e-3, -5.0)]), 0.0, "and below");
+        assert_eq!(
+            followed(0.0, [(0.0, 5.0)]),
+            INITIAL,
+            "no motion tells nothing"
+        );
+    }
+
+    /// 10 σ/K = 10 mm: no step of 1 mm tells, eleven together do. The line of the last ones is what is told.
+    #[test]
+    fn steps_too_short_to_tell_alone_tell_together() {
+        let line =
+            |steps: u32| (1..=steps).map(|step| (f64::from(step) * 1e-3, 0.4 * f64::from(step)));
+        assert_eq!(followed(1.0, line(9)), INITIAL);
+        assert!((followed(1.0, line(11)) - 400.0).abs() < 1e-9);
+        // A corner at 20 mm is behind the window 11 steps after it.
+        let corner = |steps: u32| {
+            line(20).chain((1..=steps).map(|step| (0.02 + f64::from(step) * 1e-3, 8.0)))
+        };
+        let half_way = followed(1.0, corner(5));
+        assert!(half_way > 50.0 && half_way < 350.0, "{half_way}");
+        assert!(followed(1.0, corner(12)).abs() < 1e-9);
+    }
+
+    /// A long step tells alone; what lay before it does no more, but it helps the short ones after it.
+    #[test]
+    fn a_step_long_enough_forgets_the_window() {
+        let short = || (1..=5).map(|step| (f64::from(step) * 1e-3, f64::from(step)));
+        assert!((followed(1.0, short().chain([(0.025, 9.0)])) - 4.0 / 0.02).abs() < 1e-9);
+        let on_the_line = [(0.025, 9.0), (0.026, 9.2), (0.027, 9.4)];
+        assert!((followed(1.0, short().chain(on_the_line)) - 4.0 / 0.02).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,352 @@
+//! The tangent stiffness of a structure, storey by storey (Melo et al. 2006, eq. 6): the secant of its shear over its drift;
+//! one degree of freedom is one storey. In: what the actuators read. Out: storey stiffnesses, and whether one changed.
+
+use std::fmt::Debug;
+
+use super::tangent::TangentStiffness;
+use crate::frame::{SymmetricBand, set_storeys, storeys_of};
+use crate::matrix::{Matrix, Vector};
+
+/// What the tangent form takes for `K_t`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tangents {
+    /// K0 throughout: for a frame whose matrix has no storeys.
+    Initial,
+    /// Each storey's own secant, within `[0, largest_ratio · k0]`. The frame is a shear building.
+    Storeys { largest_ratio: f64 },
+}
+
+/// How far rounding may move a secant, over the first-order bound of it: products and the specimen's own arithmetic take
+/// their share too. Smaller, and a linear frame is factored again in every step; far larger, and a slow change is missed.
+const ROUNDING_MARGIN: f64 = 4.0;
+
+/// What tangents are followed with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Following {
+    /// c of `K_t within [0, c·K0]`
+    pub largest_ratio: f64,
+    /// Standard deviation of a load cell, N.
+    pub force_noise: f64,
+    /// Of a displacement reading, m.
+    pub resolution: f64,
+}
+
+/// `K_t` as it is followed.
+pub trait FollowedTangents: Clone + Debug {
+    type Vector: Vector;
+
+    /// From the first readings (m, N); none where the stiffness is not that of storeys.
+    fn new(
+        stiffness: &<Self::Vector as Vector>::Matrix,
+        following: Following,
+        displacement: &Self::Vector,
+        force: &Self::Vector,
+    ) -> Option<Self>;
+
+    /// N/m, from the ground up.
+    fn stiffness(&self) -> &Self::Vector;
+
+    /// `K_t` into `operator`.
+    fn compose(&self, operator: &mut <Self::Vector as Vector>::Matrix);
+
+    /// Takes the readings at the end of a step. True if some storey's stiffness is another than before by more than rounding can
+    /// make it: only then is a new factor worth its price.
+    fn take(&mut self, displacement: &Self::Vector, force: &Self::Vector) -> bool;
+}
+
+/// One degree of freedom as it is followed.
+#[derive(Clone, Debug)]
+pub struct StoreyTangent {
+    storey: Storey,
+    /// N/m
+    stiffness: f64,
+}
+
+/// Storeys as they are followed.
+#[derive(Clone, Debug)]
+pub struct StoreyTangents {
+    storeys: Vec<Storey>,
+    /// N/m
+    stiffnesses: Vec<f64>,
+}
+
+#[derive(Clone, Debug)]
+struct Storey {
+    followed: TangentStiffness,
+    last: Reading,
+}
+
+/// One storey at one instant.
+#[derive(Clone, Copy, Debug)]
+struct Reading {
+    /// m
+    drift: f64,
+    /// N
+    shear: f64,
+    /// m and N: how far rounding may have moved them.
+    drift_rounding: f64,
+    shear_rounding: f64,
+}
+
+impl Storey {
+    fn new(stiffness: f64, following: Following, last: Reading) -> Self {
+        let Following {
+            largest_ratio,
+            force_noise,
+            resolution,
+        } = following;
+        let followed = TangentStiffness::new(
+            stiffness,
+            largest_ratio,
+            force_noise,
+            resolution,
+            (last.drift, last.shear),
+        );
+        Self { followed, last }
+    }
+
+    /// Takes the next reading of a storey that stands alone: every secant counts, for its factor costs one division.
+    #[inline]
+    fn take_alone(&mut self, displacement: f64, force: f64, stiffness: &mut f64) -> bool {
+        self.followed.take(displacement, force);
+        let changed = self.followed.value() != *stiffness;
+        *stiffness = self.followed.value();
+        changed
+    }
+
+    /// Takes the next reading of one storey of several; whether `stiffness` (N/m) became another by more than rounding.
+    #[inline]
+    fn take(&mut self, now: Reading, stiffness: &mut f64) -> bool {
+        self.followed.take(now.drift, now.shear);
+        let last = std::mem::replace(&mut self.last, now);
+        let difference = (self.followed.value() - *stiffness).abs();
+        let rounding = last.shear_rounding
+            + now.shear_rounding
+            + *stiffness * (last.drift_rounding + now.drift_rounding);
+        // |Δk| > margin · rounding / |Δδ|, without the division.
+        let changed = difference * (now.drift - last.drift).abs() > ROUNDING_MARGIN * rounding;
+        if changed {
+            *stiffness = self.followed.value();
+        }
+        changed
+    }
+}
+
+/// Calls with each storey's reading, from the top down: a drift is the difference of two displacements, a shear the sum of
+/// the restoring forces of the floors above.
+#[inline]
+fn each_reading(displacement: &[f64], force: &[f64], mut take: impl FnMut(usize, Reading)) {
+    let (mut shear, mut size, mut cells) = (0.0, 0.0, 0.0);
+    for storey in (0..force.len()).rev() {
+        let (here, below) = (
+            displacement[storey],
+            if storey == 0 {
+                0.0
+            } else {
+                displacement[storey - 1]
+            },
+        );
+        shear += force[storey];
+        size += force[storey].abs();
+        cells += 1.0;
+        let drift_rounding = f64::EPSILON * (here.abs() + below.abs());
+        take(
+            storey,
+            Reading {
+                drift: here - below,
+                shear,
+                drift_rounding,
+                shear_rounding: f64::EPSILON * cells * size,
+            },
+        );
+    }
+}
+
+impl FollowedTangents for StoreyTangent {
+    type Vector = f64;
+
+    fn new(stiffness: &f64, following: Following, displacement: &f64, force: &f64) -> Option<Self> {
+        let first = Reading {
+            drift: *displacement,
+            shear: *force,
+            drift_rounding: 0.0,
+            shear_rounding: 0.0,
+        };
+        Some(Self {
+            storey: Storey::new(*stiffness, following, first),
+            stiffness: *stiffness,
+        })
+    }
+
+    #[inline]
+    fn stiffness(&self) -> &f64 {
+        &self.stiffness
+    }
+
+    #[inline]
+    fn compose(&self, operator: &mut f64) {
+        operator.become_copy(&self.stiffness);
+    }
+
+    #[inline]
+    fn take(&mut self, displacement: &f64, force: &f64) -> bool {
+        self.storey
+            .take_alone(*displacement, *force, &mut self.stiffness)
+    }
+}
+
+impl FollowedTangents for StoreyTangents {
+    type Vector = Vec<f64>;
+
+    fn new(
+        stiffness: &SymmetricBand,
+        following: Following,
+        displacement: &Vec<f64>,
+        force: &Vec<f64>,
+    ) -> Option<Self> {
+        let stiffnesses = storeys_of(stiffness)?;
+        let mut storeys = Vec::with_capacity(stiffnesses.len());
+        each_reading(displacement, force, |storey, first| {
+            // Independent cells add as squares; a drift above the first storey is the difference of two readings.
+            #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
+            let cells = (stiffnesses.len() - storey) as f64;
+            let Following {
+                force_noise,
+                resolution,
+                ..
+            } = following;
+            let resolution = if storey == 0 {
+                resolution
+            } else {
+                2.0 * resolution
+            };
+            let following = Following {
+                force_noise: cells.sqrt() * force_noise,
+                resolution,
+                ..following
+            };
+            storeys.push(Storey::new(stiffnesses[storey], following, first));
+        });
+        storeys.reverse();
+        Some(Self {
+            storeys,
+            stiffnesses,
+        })
+    }
+
+    fn stiffness(&self) -> &Vec<f64> {
+        &self.stiffnesses
+    }
+
+    fn compose(&self, operator: &mut SymmetricBand) {
+        set_storeys(&self.stiffnesses, operator);
+    }
+
+    fn take(&mut self, displacement: &Vec<f64>, force: &Vec<f64>) -> bool {
+        let mut changed = false;
+        let Self {
+            storeys,
+            stiffnesses,
+        } = self;
+        if let ([storey], [stiffness]) = (&mut storeys[..], &mut stiffnesses[..]) {
+            return storey.take_alone(displacement[0], force[0], stiffness);
+        }
+        each_reading(displacement, force, |storey, now| {
+            changed |= storeys[storey].take(now, &mut stiffnesses[storey]);
+        });
+        changed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{floor_forces, storey_stiffness};
+
+    const INITIAL: [f64; 3] = [3000.0, 2000.0, 1000.0];
+
+    fn read(stiffnesses: &[f64; 3], drift: &[f64; 3]) -> (Vec<f64>, Vec<f64>) {
+        let displacement = [
+            drift[0],
+            drift[0] + drift[1],
+            drift[0] + drift[1] + drift[2],
+        ];
+        let shear = [
+            stiffnesses[0] * drift[0],
+            stiffnesses[1] * drift[1],
+            stiffnesses[2] * drift[2],
+        ];
+        let mut force = [0.0; 3];
+        floor_forces(&shear, &mut force);
+        (displacement.to_vec(), force.to_vec())
+    }
+
+    fn at_rest(noise: f64, resolution: f64) -> StoreyTangents {
+        let following = Following {
+            largest_ratio: 2.0,
+            force_noise: noise,
+            resolution,
+        };
+        StoreyTangents::new(
+            &storey_stiffness(&INITIAL),
+            following,
+            &vec![0.0; 3],
+            &vec![0.0; 3],
+        )
+        .expect("storeys")
+    }
+
+    /// Any small linear motion leaves every storey at its very number.
+    #[test]
+    fn rounding_is_no_stiffness() {
+        let mut tangents = at_rest(0.0, 0.0);
+        for step in 0..20_000 {
+            let time = f64::from(step) * 1e-3;
+            let drift = [
+                (3.0 * time).sin(),
+                0.3 * (7.0 * time).cos(),
+                1e-3 * (11.0 * time).sin(),
+            ];
+            let (displacement, force) = read(&INITIAL, &drift);
+            assert!(
+                !tangents.take(&displacement, &force),
+                "step {step}: {:?}",
+                tangents.stiffness()
+            );
+        }
+        assert_eq!(tangents.stiffness(), &INITIAL);
+    }
+
+    /// One storey softens, another stiffens beyond its bound: each by its own drift, the third is as it was.
+    #[test]
+    fn each_storey_is_followed_by_its_own_drift() {
+        let mut tangents = at_rest(0.0, 0.0);
+        let (displacement, force) = read(&[3000.0, 500.0, 9000.0], &[1e-3, -2e-3, 3e-3]);
+        assert!(tangents.take(&displacement, &force));
+        let found = tangents.stiffness();
+        assert_eq!((found[0], found[2]), (3000.0, 2000.0));
+        assert!((found[1] - 500.0).abs() < 1e-9);
+    }
+
+    /// Load cells of 1 N: a shear of three has √3 N, so that the first storey needs 10·√3/3000 m to tell, the third 10/1000.
+    #[test]
+    fn a_change_too_small_to_tell_tells_nothing() {
+        let told = |drift: [f64; 3], storey: usize| {
+            let mut tangents = at_rest(1.0, 0.0);
+            let (displacement, force) = read(&[300.0, 200.0, 100.0], &drift);
+            tangents.take(&displacement, &force);
+            tangents.stiffness()[storey] != INITIAL[storey]
+        };
+        assert!(!told([0.0057, 0.0, 0.0], 0) && told([0.0059, 0.0, 0.0], 0));
+        assert!(!told([0.0, 0.0, 0.0099], 2) && told([0.0, 0.0, 0.0101], 2));
+        let mut coarse = at_rest(0.0, 1e-3);
+        let (displacement, force) = read(&[300.0, 200.0, 100.0], &[1.5e-3, 1.5e-3, 2.5e-3]);
+        coarse.take(&displacement, &force);
+        assert_eq!(
+            coarse.stiffness()[1],
+            INITIAL[1],
+            "two readings, two quanta"
+        );
+        assert!(coarse.stiffness()[0] < INITIAL[0] && coarse.stiffness()[2] < INITIAL[2]);
+    }
+}

@@ -1,0 +1,69 @@
+//! Numerics of pseudo-dynamic structural tests: integrators, contact laws, specimen models, identification. All numbers are SI.
+//! The crate knows no plan, no rig and no file.
+//!
+//! In a pseudo-dynamic test the inertia, the damping and the striker are computed. Only the restoring force is measured. Each step
+//! predicts a displacement, reads the force R there and ends with the motion that follows from it (Melo et al. 2006).
+//!
+//! # Equation of motion
+//! X is the displacement of the structure and Xs that of the striker, F the force between them, f the load and g the acceleration
+//! along the striker's way:
+//!
+//! ```text
+//! M Ẍ + C Ẋ + R(X) = f(t) + F e_s        Ms Ẍs = Ms g − F
+//! ```
+//!
+//! M, C and K are numbers, or bands of a frame ([`matrix`]); e_s is 1 at the struck degree of freedom. On ground of acceleration
+//! ü_g the load is f = −M ι ü_g.
+//!
+//! # Tangent form of Newmark's method
+//! The acceleration of a step is constant, its average. The force at its end follows the measured tangent K_t
+//! ([`integrator::tangent`]), R₁ = R + K_t (X₁ − X):
+//!
+//! ```text
+//! (M + ½Δt C + ¼Δt² K_t) Ẍ₁ = f₁ − R − C (Ẋ + ½Δt Ẍ) − K_t (Δt Ẋ + ¼Δt² Ẍ) + F e_s
+//! ```
+//!
+//! # Operator splitting
+//! The specimen is moved to a prediction d̃ that needs no stiffness. A constant operator K_I corrects the force that was read there
+//! ([`integrator::step_form`]); explicit Newmark is the case without a correction:
+//!
+//! ```text
+//! d̃₁ = d + Δt v + Δt² (½ − β) a        d₁ = d̃₁ + Δt² β a₁        r₁ = r̃₁ + K_I (d₁ − d̃₁)
+//! M a₁ + (1 + α) (C v₁ + r₁) − α (C v + r) = (1 + α) f₁ − α f
+//! ```
+//!
+//! # Contact
+//! Every end velocity of the struck point is linear in the force, Ẋ₁ = v_free + w F. In the tangent form
+//! w = ½Δt e_sᵀ(M + ½Δt C + ¼Δt² K_t)⁻¹e_s. The rigid law asks that striker and structure end the step with one velocity:
+//!
+//! ```text
+//! F = (V_s − v_free) / (Δt/M_s + w),        V_s = Ẋs + g Δt
+//! ```
+//!
+//! A tensile force is dropped, and one beyond a limit force is cut to it. A contact of finite stiffness follows Hunt and Crossley,
+//! with δ the overlap of the two surfaces, and divides the step where the blow is shorter than it:
+//!
+//! ```text
+//! F = k δ^1.5 (1 + λ δ̇) ≥ 0
+//! ```
+//!
+//! # Example
+//! `examples/strike_a_beam.rs` strikes a beam in a loop of five lines, with [`impact::ImpactSolver`].
+
+pub mod contact;
+pub mod frame;
+pub mod identification;
+pub mod impact;
+mod impact_solver;
+pub mod integrator;
+pub mod matrix;
+pub mod perturbation;
+pub mod reintegration;
+pub mod relaxation;
+pub mod self_test;
+pub mod specimen;
+pub mod statistics;
+pub mod structure;
+pub mod tracking;
+
+pub use integrator::newmark::critical_time_step;

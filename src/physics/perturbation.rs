@@ -1,0 +1,192 @@
+//! Readings as instruments with other errors would have given them. In: a reading of the record. Out: the reading with the scale factors,
+//! zero offsets and simulated errors of a re-run. It knows no path, no procedure and no plan.
+
+/// The instruments of one axis in a re-run; each load cell and each transducer is an instrument of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instruments {
+    /// Newtons in one newton of the record.
+    pub force_scale: f64,
+    /// Metres in one metre of the record.
+    pub displacement_scale: f64,
+    /// Added to every force \[N\].
+    pub zero_offset: f64,
+    pub errors: ReadingErrors,
+}
+
+/// Errors of a reading.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReadingErrors {
+    /// Standard deviation of one force \[N\].
+    pub noise: f64,
+    /// Quantization step of the displacement \[m\].
+    pub resolution: f64,
+    /// Quantization step of the force \[N\].
+    pub force_resolution: f64,
+}
+
+impl ReadingErrors {
+    /// Whether there are any.
+    #[must_use]
+    pub fn any(&self) -> bool {
+        self.noise > 0.0 || self.force_resolution > 0.0 || self.resolution > 0.0
+    }
+
+    /// Standard uncertainty of one reading by quantization: force \[N\] and displacement \[m\], q/√12 (JCGM 100:2008, F.2.2.1).
+    #[must_use]
+    pub fn quantization(&self) -> [f64; 2] {
+        [self.force_resolution, self.resolution].map(|step| step / 12.0_f64.sqrt())
+    }
+}
+
+/// All readings of a re-run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Perturbation {
+    /// One an axis.
+    pub axes: Vec<Instruments>,
+    /// The Monte Carlo trial whose errors the readings have.
+    pub trial: Option<u16>,
+    /// Steps for each of the record, 1 or more.
+    pub finer: u8,
+}
+
+impl Perturbation {
+    /// The readings as they were.
+    #[must_use]
+    pub fn none(axes: usize) -> Self {
+        let instruments = Instruments {
+            force_scale: 1.0,
+            displacement_scale: 1.0,
+            zero_offset: 0.0,
+            errors: ReadingErrors::default(),
+        };
+        Self {
+            axes: vec![instruments; axes],
+            trial: None,
+            finer: 1,
+        }
+    }
+
+    /// A displacement or velocity of the re-run, in metres of the record.
+    #[must_use]
+    pub fn recorded(&self, axis: usize, value: f64) -> f64 {
+        value / self.axes[axis].displacement_scale
+    }
+
+    /// Displacement \[m\] and force \[N\] of an axis as these instruments read them. `reading` numbers the readings of the run, each of which
+    /// is the mean of so many samples. Every reading has errors of its own: noise, which a mean averages, and q/√12. All readings of an
+    /// axis have q/√12 in common.
+    #[must_use]
+    pub fn read(
+        &self,
+        reading: u64,
+        axis: usize,
+        samples: u32,
+        (displacement, force): (f64, f64),
+    ) -> (f64, f64) {
+        let Instruments {
+            force_scale,
+            displacement_scale,
+            zero_offset,
+            errors,
+        } = self.axes[axis];
+        let (displacement, force) = (
+            displacement_scale * displacement,
+            force_scale * force + zero_offset,
+        );
+        let Some(trial) = self.trial else {
+            return (displacement, force);
+        };
+        let [of_force, of_displacement] = errors.quantization();
+        let own = (errors.noise / f64::from(samples.max(1)).sqrt()).hypot(of_force);
+        let [force_sign, displacement_sign] = signs(trial, reading, axis);
+        let [common_force, common_displacement] = common(trial, axis);
+        (
+            displacement + of_displacement * (displacement_sign + common_displacement),
+            force + own * force_sign + of_force * common_force,
+        )
+    }
+}
+
+/// Numbers that no reading has.
+const COMMON: u64 = u64::MAX >> 16;
+
+/// Signs of an input that is drawn in a trial, by its place among them.
+#[must_use]
+pub fn sign_of_input(trial: u16, place: usize) -> f64 {
+    signs(trial, COMMON - 1 - place as u64, 0)[0]
+}
+
+/// Two signs of a reading of an axis in a trial: two bits an axis; past the last of a word, another word.
+fn signs(trial: u16, reading: u64, axis: usize) -> [f64; 2] {
+    let bits = drawn(trial, reading ^ (axis as u64 / 32) << 40) >> (2 * (axis % 32));
+    [1, 2].map(|bit| if bits & bit == 0 { 1.0 } else { -1.0 })
+}
+
+/// The errors that all readings of an axis have in common in a trial, in standard deviations: rectangular, from −√3 to √3.
+fn common(trial: u16, axis: usize) -> [f64; 2] {
+    let bits = drawn(trial, COMMON ^ (axis as u64) << 40);
+    let even = |bits: u32| {
+        3.0_f64.sqrt() * (2.0 * (f64::from(bits) + 0.5) / (f64::from(u32::MAX) + 1.0) - 1.0)
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "either half")]
+    let halves = [bits as u32, (bits >> 32) as u32];
+    halves.map(even)
+}
+
+/// Bits of a reading in a trial, the same in every run: the finaliser of `SplitMix64`.
+fn drawn(trial: u16, reading: u64) -> u64 {
+    let mut bits = (u64::from(trial) << 48 ^ reading)
+        .wrapping_add(1)
+        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^ bits >> 31
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trials_differ_and_have_both_signs_alike() {
+        let sum = |trial: u16| {
+            (0..1000)
+                .map(|reading| signs(trial, reading, 0)[0])
+                .sum::<f64>()
+        };
+        for trial in 0..8 {
+            assert!(sum(trial).abs() < 110.0, "trial {trial}: {}", sum(trial));
+        }
+        let both: f64 = (0..1000)
+            .map(|reading| signs(3, reading, 0)[0] * signs(4, reading, 0)[0])
+            .sum();
+        assert!(both.abs() < 110.0, "{both}");
+    }
+
+    /// Over many trials: σ²/n + q²/12 of each reading, and q²/12 of two readings together.
+    #[test]
+    fn readings_scatter_by_noise_and_quantization() {
+        let errors = ReadingErrors {
+            noise: 2.0,
+            resolution: 0.0,
+            force_resolution: 3.0,
+        };
+        let mut all = Perturbation::none(1);
+        all.axes[0].errors = errors;
+        let mut sums = [0.0; 2];
+        for trial in 0..4000 {
+            let perturbed = Perturbation {
+                trial: Some(trial),
+                ..all.clone()
+            };
+            let [one, other] = [1, 2].map(|reading| perturbed.read(reading, 0, 4, (0.0, 0.0)).1);
+            sums[0] += one * one / 4000.0;
+            sums[1] += one * other / 4000.0;
+        }
+        assert!(
+            (sums[0] / (1.0 + 2.0 * 9.0 / 12.0) - 1.0).abs() < 0.06,
+            "{sums:?}"
+        );
+        assert!((sums[1] / (9.0 / 12.0) - 1.0).abs() < 0.12, "{sums:?}");
+    }
+}

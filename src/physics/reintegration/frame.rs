@@ -1,0 +1,432 @@
+//! A frame re-integrated along the force–displacement path that a run recorded, with an input perturbed: on moving ground, or struck on
+//! one floor. In: the frame and its load, the path, the perturbed readings. Out: the results of the run, between the ends of
+//! steps, so that they follow the inputs smoothly. It moves no rig and knows no uncertainty.
+
+use std::cell::Cell;
+
+use super::frame_path::{FrameAgain, FramePath};
+use super::impact::{Outcome, Telling};
+use crate::contact::state::{ContactLaw, StepState};
+use crate::frame::{
+    FrameError, FrameInput, FrameMatrices, FrameSolver, FrameState, Tangents, drifts, shears,
+};
+use crate::impact::Until;
+use crate::impact::peaks::{Extremes, Peak, farther};
+use crate::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactState, Sink, Striking};
+use crate::integrator::Integrator;
+use crate::perturbation::Perturbation;
+
+/// How a frame is integrated.
+#[derive(Clone, Debug)]
+pub struct FrameRun {
+    pub matrices: FrameMatrices,
+    pub integrator: Integrator,
+    pub i_modification: bool,
+    pub tangents: Tangents,
+    /// s
+    pub time_step: f64,
+    /// At most.
+    pub steps: u64,
+    /// N and m, as the run took them.
+    pub force_noise: f64,
+    pub resolution: f64,
+    /// Whether the floors passed their targets without a stop.
+    pub gliding: bool,
+}
+
+/// A striker on one floor.
+#[derive(Clone, Copy, Debug)]
+pub struct Blow {
+    /// From 0.
+    pub struck: usize,
+    pub law: ContactLaw,
+    pub until: Until,
+    /// The struck floor and the striker as an impact on one degree of freedom has them.
+    pub body: ImpactInput,
+}
+
+/// What the floors come to, SI; an entry a floor or a storey.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Floors {
+    pub max_displacement: Vec<f64>,
+    pub max_drift: Vec<f64>,
+    /// At the end.
+    pub final_drift: Vec<f64>,
+    pub max_base_shear: f64,
+}
+
+impl Floors {
+    /// The largest displacement of all floors, m; NaN where one is none.
+    #[must_use]
+    pub fn farthest(&self) -> f64 {
+        self.max_displacement
+            .iter()
+            .fold(0.0, |most, place| farther(most, *place))
+    }
+}
+
+/// What a run comes to: as the run itself tells it, at the ends of steps, and as it is between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorsOutcome {
+    pub ends: Floors,
+    pub between: Floors,
+    /// The latter as they were where the run departed from the record.
+    pub before_departure: Option<Floors>,
+    /// With which velocities the floors of a run without stops were foretold to pass their targets, m/s: told where the way that it
+    /// was taken along does not know them.
+    pub velocities: Vec<Vec<f64>>,
+}
+
+/// What a blow on one floor comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlowOutcome {
+    pub blow: Outcome,
+    pub floors: FloorsOutcome,
+    pub striker: StrikerOutcome,
+    /// The latter as it was where the run departed from the record.
+    pub before_departure: Option<StrikerOutcome>,
+}
+
+/// What a blow on one floor comes to beside the impact and the floors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrikerOutcome {
+    /// ∫ shear d(drift) of each storey, J.
+    pub storey_energy: Vec<f64>,
+    /// Steps in contact from the first touch on.
+    pub first_blow: u64,
+    /// Of the striker at the end, m/s.
+    pub striker_velocity: f64,
+}
+
+impl FrameRun {
+    fn input<'a>(
+        &'a self,
+        again: &'a FrameAgain,
+        load: &'a [f64],
+        time_step: f64,
+    ) -> FrameInput<'a> {
+        FrameInput {
+            matrices: &self.matrices,
+            operator_stiffness: &self.matrices.stiffness,
+            integrator: self.integrator,
+            i_modification: self.i_modification,
+            tangents: self.tangents,
+            time_step,
+            initial_displacement: again.start(),
+            initial_restoring_force: again.force(),
+            initial_load: load,
+            force_noise: self.force_noise,
+            resolution: self.resolution,
+        }
+    }
+
+    /// Re-integrates a shake, the ground's accelerations (m/s²) at the ends of the finer steps from 0 on.
+    ///
+    /// # Errors
+    /// The frame, with what was moved, cannot be stepped.
+    pub fn shaken(
+        &self,
+        ground: &[f64],
+        path: &FramePath,
+        readings: &Perturbation,
+    ) -> Result<FloorsOutcome, FrameError> {
+        let mut again = path.again(readings);
+        let mut load = vec![0.0; self.matrices.order()];
+        let at = |step: usize| ground.get(step).copied().unwrap_or(0.0);
+        self.matrices.ground_load(at(0), &mut load);
+        let time_step = self.time_step / f64::from(readings.finer);
+        let mut solver = FrameSolver::new(&self.input(&again, &load, time_step))?;
+        let mut told = Peaks::new(self.matrices.order(), time_step);
+        told.take(solver.state(), 1.0);
+        let mut passing = Passing::new(self, path);
+        for step in (1..)
+            .take(usize::try_from(self.steps * u64::from(readings.finer)).unwrap_or(usize::MAX))
+        {
+            self.matrices.ground_load(at(step), &mut load);
+            solver.predict(&load);
+            let velocities = passing.foretold(&mut |to| solver.predicted_velocity(to));
+            again.move_to(solver.predict(&load), velocities);
+            if again.departed() {
+                told.departs();
+            }
+            told.take(solver.complete(again.displacement(), again.force()), 1.0);
+        }
+        Ok(told.finish(passing))
+    }
+
+    /// Re-integrates an impact on one floor.
+    ///
+    /// # Errors
+    /// As [`Self::shaken`].
+    pub fn struck(
+        &self,
+        blow: &Blow,
+        path: &FramePath,
+        readings: &Perturbation,
+    ) -> Result<BlowOutcome, ImpactError> {
+        let mut again = path.again(readings);
+        let order = self.matrices.order();
+        let Blow {
+            struck,
+            law,
+            until,
+            mut body,
+        } = *blow;
+        body.time_step /= f64::from(readings.finer);
+        let unloaded = vec![0.0; order];
+        let striking = Striking {
+            struck,
+            law,
+            ..body.striking()
+        };
+        let mut solver =
+            FrameImpactSolver::on(&self.input(&again, &unloaded, body.time_step), &striking)?;
+        let start = ImpactState {
+            measured_displacement: again.displacement()[struck],
+            ..*solver.state()
+        };
+        let departed = Cell::new(false);
+        let mut found = StruckFloors {
+            impact: Telling::new(&body, until, &start),
+            peaks: Peaks::new(order, body.time_step),
+            energy: StoreyWork::new(solver.structure()),
+            first_blow: 0,
+            first_is_over: false,
+            last: start,
+            departed: &departed,
+            before_departure: None,
+        };
+        found.peaks.take(solver.structure(), 1.0);
+        let mut passing = Passing::new(self, path);
+        let read = |solver: &mut FrameImpactSolver| {
+            let velocities = passing.foretold(&mut |to| {
+                solver.predicted_velocity(to);
+            });
+            again.move_to(solver.predict(), velocities);
+            departed.set(again.departed());
+            [again.displacement().to_vec(), again.force().to_vec()]
+        };
+        let steps = self.steps * u64::from(readings.finer);
+        solver.run(Some(until), steps, read, &mut found);
+        Ok(BlowOutcome {
+            blow: found.impact.finish(),
+            striker: found.energy.outcome(found.first_blow, &found.last),
+            before_departure: found.before_departure,
+            floors: found.peaks.finish(passing),
+        })
+    }
+}
+
+/// An impact on one floor, collected from the ends of its steps.
+struct StruckFloors<'a> {
+    impact: Telling,
+    peaks: Peaks,
+    energy: StoreyWork,
+    first_blow: u64,
+    first_is_over: bool,
+    /// At the end of the last step.
+    last: ImpactState,
+    /// Whether the reading of the step under way departed from the record.
+    departed: &'a Cell<bool>,
+    before_departure: Option<StrikerOutcome>,
+}
+
+impl Sink<Vec<f64>> for StruckFloors<'_> {
+    fn push(&mut self, frame: &FrameState, now: &ImpactState, over: bool) {
+        if self.departed.get() && self.before_departure.is_none() {
+            self.impact.departs();
+            self.peaks.departs();
+            self.before_departure = Some(self.energy.outcome(self.first_blow, &self.last));
+        }
+        self.impact.take(now, over);
+        self.peaks.take(frame, self.impact.share());
+        self.energy.take(frame, self.impact.share());
+        match now.state {
+            StepState::Free => self.first_is_over |= self.first_blow > 0,
+            _ if !self.first_is_over => self.first_blow += 1,
+            _ => {}
+        }
+        self.last = *now;
+    }
+}
+
+/// How fast the floors of a run without stops pass their targets, m/s.
+struct Passing {
+    /// At the end of the step under way; of a run that stops, nothing.
+    now: Vec<f64>,
+    gathers: bool,
+    gathered: Vec<Vec<f64>>,
+}
+
+impl Passing {
+    /// From rest.
+    fn new(run: &FrameRun, path: &FramePath) -> Self {
+        let now = vec![0.0; if run.gliding { run.matrices.order() } else { 0 }];
+        let gathers = run.gliding && !path.knows_velocities();
+        Self {
+            gathered: if gathers {
+                vec![now.clone()]
+            } else {
+                Vec::new()
+            },
+            gathers,
+            now,
+        }
+    }
+
+    fn foretold(&mut self, tell: &mut dyn FnMut(&mut [f64])) -> &[f64] {
+        if !self.now.is_empty() {
+            tell(&mut self.now);
+        }
+        if self.gathers {
+            self.gathered.push(self.now.clone());
+        }
+        &self.now
+    }
+}
+
+/// Peaks of all floors and storeys, step by step.
+struct Peaks {
+    ends: Floors,
+    displacement: Extremes,
+    drift: Extremes,
+    base_shear: Peak,
+    time_step: f64,
+    velocity: Vec<f64>,
+    /// Drift and its velocity at the end of the last step.
+    last: Vec<(f64, f64)>,
+    /// Inside the last step, where the run ends.
+    final_inside: Vec<f64>,
+    before_departure: Option<Floors>,
+}
+
+impl Peaks {
+    fn new(floors: usize, time_step: f64) -> Self {
+        let nothing = || vec![0.0; floors];
+        let ends = Floors {
+            max_displacement: nothing(),
+            max_drift: nothing(),
+            final_drift: nothing(),
+            max_base_shear: 0.0,
+        };
+        Self {
+            ends,
+            displacement: Extremes::new(floors, time_step),
+            drift: Extremes::new(floors, time_step),
+            base_shear: Peak::default(),
+            time_step,
+            velocity: nothing(),
+            last: vec![(0.0, 0.0); floors],
+            final_inside: nothing(),
+            before_departure: None,
+        }
+    }
+
+    /// Takes the end of a step, of which the run counts this share.
+    fn take(&mut self, state: &FrameState, share: f64) {
+        drifts(&state.displacement, &mut self.ends.final_drift);
+        drifts(&state.velocity, &mut self.velocity);
+        let widen = |largest: &mut [f64], values: &[f64]| {
+            for (largest, value) in largest.iter_mut().zip(values) {
+                *largest = largest.max(value.abs());
+            }
+        };
+        widen(&mut self.ends.max_displacement, &state.displacement);
+        widen(&mut self.ends.max_drift, &self.ends.final_drift);
+        let shear = state.restoring_force.iter().sum::<f64>();
+        self.ends.max_base_shear = self.ends.max_base_shear.max(shear.abs());
+        self.displacement.take(
+            state
+                .displacement
+                .iter()
+                .copied()
+                .zip(state.velocity.iter().copied()),
+        );
+        let drift = || {
+            self.ends
+                .final_drift
+                .iter()
+                .copied()
+                .zip(self.velocity.iter().copied())
+        };
+        self.drift.take(drift());
+        for (storey, now) in drift().enumerate() {
+            let (before, speed) = self.last[storey];
+            let mean = speed + 0.5 * share * (now.1 - speed);
+            self.final_inside[storey] = if share < 1.0 {
+                before + share * self.time_step * mean
+            } else {
+                now.0
+            };
+            self.last[storey] = now;
+        }
+        self.base_shear.take(shear);
+    }
+
+    /// From the next step on the path is not that of the record.
+    fn departs(&mut self) {
+        if self.before_departure.is_none() {
+            self.before_departure = Some(self.between());
+        }
+    }
+
+    fn between(&self) -> Floors {
+        Floors {
+            max_displacement: self.displacement.largest().to_vec(),
+            max_drift: self.drift.largest().to_vec(),
+            final_drift: self.final_inside.clone(),
+            max_base_shear: self.base_shear.largest(),
+        }
+    }
+
+    fn finish(self, passing: Passing) -> FloorsOutcome {
+        let between = self.between();
+        FloorsOutcome {
+            ends: self.ends,
+            between,
+            before_departure: self.before_departure,
+            velocities: passing.gathered,
+        }
+    }
+}
+
+/// ∫ shear d(drift) of each storey by the trapezoid, J.
+struct StoreyWork {
+    drift: Vec<f64>,
+    shear: Vec<f64>,
+    storeys: Vec<f64>,
+}
+
+impl StoreyWork {
+    fn new(start: &FrameState) -> Self {
+        let nothing = || vec![0.0; start.displacement.len()];
+        let mut work = Self {
+            drift: nothing(),
+            shear: nothing(),
+            storeys: nothing(),
+        };
+        drifts(&start.displacement, &mut work.drift);
+        shears(&start.force_at_computed, &mut work.shear);
+        work
+    }
+
+    /// Takes the end of a step, of which the run counts this share.
+    fn take(&mut self, state: &FrameState, share: f64) {
+        let (mut drift, mut shear) = (vec![0.0; self.drift.len()], vec![0.0; self.shear.len()]);
+        drifts(&state.displacement, &mut drift);
+        shears(&state.force_at_computed, &mut shear);
+        for storey in 0..drift.len() {
+            let moved = drift[storey] - self.drift[storey];
+            self.storeys[storey] += share * 0.5 * (self.shear[storey] + shear[storey]) * moved;
+        }
+        (self.drift, self.shear) = (drift, shear);
+    }
+
+    fn outcome(&self, first_blow: u64, end: &ImpactState) -> StrikerOutcome {
+        StrikerOutcome {
+            storey_energy: self.storeys.clone(),
+            first_blow,
+            striker_velocity: end.striker_velocity,
+        }
+    }
+}

@@ -1,0 +1,405 @@
+//! A frame as a run recorded it: the shear of each storey over its drift, along the way it went, so that the run can be taken
+//! again with an input moved a little and no model of the frame. In: targets of all floors and what was read at them, in
+//! order. Out: what would be read at targets near those, step by step.
+//!
+//! Each storey of a shear building has a path of its own (`recorded_path`), so that what is exact of one specimen is exact of every storey.
+//! A frame whose stiffness is not that of storeys is taken for what it
+//! was at the same step and, off its recorded place, for as stiff as it was at first: exact where it is elastic. At the recorded targets
+//! the recorded readings come back as they were, to the bit.
+
+use super::hysteresis_replay::{Again, Reading, RecordedPath, lag, nearest};
+use crate::frame::{SymmetricBand, drifts, shears, storeys_of};
+use crate::perturbation::Perturbation;
+
+/// One step of the record, an entry a floor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameReading {
+    /// Commanded, m.
+    pub target: Vec<f64>,
+    /// m
+    pub displacement: Vec<f64>,
+    /// N
+    pub force: Vec<f64>,
+}
+
+/// Readings of all floors along the way.
+#[derive(Clone, Debug)]
+pub struct FramePath {
+    readings: Vec<FrameReading>,
+    /// With which each target was passed, m/s, an entry a floor; of readings made at rest, none.
+    velocities: Vec<Vec<f64>>,
+    bends: Bends,
+}
+
+#[derive(Clone, Debug)]
+enum Bends {
+    /// From the ground up: shear over drift.
+    Storeys(Vec<RecordedPath>),
+    /// K at no displacement, N/m; how long each floor is behind its target, s.
+    Together(SymmetricBand, Vec<f64>),
+}
+
+impl FramePath {
+    /// `velocities` are those foretold for the targets (m/s), of readings made under way each `time_step` (s); `stiffness` is K at no displacement;
+    /// `force_noise` (N) and `resolution` (m) are those of one floor's readings. None of no reading.
+    #[must_use]
+    pub fn new(
+        readings: Vec<FrameReading>,
+        (velocities, time_step): (Vec<Vec<f64>>, f64),
+        stiffness: &SymmetricBand,
+        force_noise: f64,
+        resolution: f64,
+    ) -> Option<Self> {
+        readings.first()?;
+        let floors = stiffness.order();
+        let of_floors = |read: fn(&FrameReading) -> &Vec<f64>,
+                         to_storeys: fn(&[f64], &mut [f64])| {
+            readings
+                .iter()
+                .map(|reading| to(to_storeys, read(reading)))
+                .collect::<Vec<Vec<f64>>>()
+        };
+        let bends = match storeys_of(stiffness) {
+            None => {
+                let of_axis = |axis: usize| {
+                    let passed = readings.iter().zip(&velocities);
+                    let behind = passed.map(|(reading, velocity)| {
+                        (
+                            reading.target[axis] - reading.displacement[axis],
+                            velocity[axis],
+                        )
+                    });
+                    if velocities.is_empty() {
+                        0.0
+                    } else {
+                        lag(behind, resolution)
+                    }
+                };
+                Bends::Together(stiffness.clone(), (0..floors).map(of_axis).collect())
+            }
+            Some(stiffnesses) => {
+                let targets = of_floors(|reading| &reading.target, drifts);
+                let displacements = of_floors(|reading| &reading.displacement, drifts);
+                let forces = of_floors(|reading| &reading.force, shears);
+                let passed: Vec<Vec<f64>> =
+                    velocities.iter().map(|floors| to(drifts, floors)).collect();
+                let path = |(storey, stiffness): (usize, f64)| {
+                    let at = |step: usize| Reading {
+                        target: targets[step][storey],
+                        displacement: displacements[step][storey],
+                        force: forces[step][storey],
+                    };
+                    // A shear is the sum of the cells above, a drift the difference of two floors.
+                    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+                    let cells = (floors - storey) as f64;
+                    let quantum = if storey == 0 {
+                        resolution
+                    } else {
+                        resolution * 2.0_f64.sqrt()
+                    };
+                    let (readings, noise) = (
+                        (0..readings.len()).map(at).collect(),
+                        force_noise * cells.sqrt(),
+                    );
+                    if passed.is_empty() {
+                        return RecordedPath::new(readings, stiffness, noise, quantum);
+                    }
+                    let passed: Vec<f64> = passed.iter().map(|storeys| storeys[storey]).collect();
+                    RecordedPath::under_way(
+                        readings,
+                        (&passed, time_step),
+                        stiffness,
+                        noise,
+                        quantum,
+                    )
+                };
+                Bends::Storeys(
+                    stiffnesses
+                        .into_iter()
+                        .enumerate()
+                        .map(path)
+                        .collect::<Option<_>>()?,
+                )
+            }
+        };
+        Some(Self {
+            readings,
+            velocities,
+            bends,
+        })
+    }
+
+    /// Whether it was told how fast its targets were passed.
+    #[must_use]
+    pub const fn knows_velocities(&self) -> bool {
+        !self.velocities.is_empty()
+    }
+
+    /// What it was told, without what it made of it.
+    #[must_use]
+    pub fn into_readings(self) -> Vec<FrameReading> {
+        self.readings
+    }
+
+    /// Takes the way again from its beginning.
+    #[must_use]
+    pub fn again<'a>(&'a self, readings: &'a Perturbation) -> FrameAgain<'a> {
+        let walks = match &self.bends {
+            Bends::Storeys(paths) => paths
+                .iter()
+                .map(|path| (path, path.again(readings.finer)))
+                .collect(),
+            Bends::Together(..) => Vec::new(),
+        };
+        let first = &self.readings[0];
+        let target = first
+            .target
+            .iter()
+            .zip(&readings.axes)
+            .map(|(place, axis)| place * axis.displacement_scale);
+        let mut again = FrameAgain {
+            path: self,
+            readings,
+            storeys: walks,
+            own_step: 0,
+            step: 0,
+            target: target.collect(),
+            place: first.target.clone(),
+            velocity: vec![0.0; first.target.len()],
+            displacement: first.displacement.clone(),
+            force: first.force.clone(),
+        };
+        again.read();
+        again
+    }
+}
+
+/// Storeys of floors, by `to_storeys`.
+fn to(to_storeys: fn(&[f64], &mut [f64]), floors: &[f64]) -> Vec<f64> {
+    let mut storeys = vec![0.0; floors.len()];
+    to_storeys(floors, &mut storeys);
+    storeys
+}
+
+/// The way as it is taken again.
+#[derive(Clone, Debug)]
+pub struct FrameAgain<'a> {
+    path: &'a FramePath,
+    readings: &'a Perturbation,
+    storeys: Vec<(&'a RecordedPath, Again<'a>)>,
+    /// Of its own steps.
+    own_step: usize,
+    /// The step of the record that is nearest.
+    step: usize,
+    /// Where it begins, m.
+    target: Vec<f64>,
+    /// The last targets, in metres of the record.
+    place: Vec<f64>,
+    /// With which they were passed, m/s, in metres of the record.
+    velocity: Vec<f64>,
+    displacement: Vec<f64>,
+    force: Vec<f64>,
+}
+
+impl FrameAgain<'_> {
+    /// Where it begins, m.
+    #[must_use]
+    pub fn start(&self) -> &[f64] {
+        &self.target
+    }
+
+    /// The last reading of displacements, m.
+    #[must_use]
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// The last reading of forces, N.
+    #[must_use]
+    pub fn force(&self) -> &[f64] {
+        &self.force
+    }
+
+    /// Whether a storey has departed from the record.
+    #[must_use]
+    pub fn departed(&self) -> bool {
+        self.storeys.iter().any(|(_, again)| again.departed())
+    }
+
+    /// Goes to the targets of the next step, m, passing them with these velocities (m/s) if it does not stop there, and reads.
+    pub fn move_to(&mut self, targets: &[f64], velocities: &[f64]) {
+        self.own_step += 1;
+        self.step = nearest(self.own_step, self.readings.finer);
+        let of_record = |to: &mut [f64], from: &[f64]| {
+            for (axis, (to, from)) in to.iter_mut().zip(from).enumerate() {
+                *to = self.readings.recorded(axis, *from);
+            }
+        };
+        of_record(&mut self.place, targets);
+        of_record(&mut self.velocity, velocities);
+        let recorded = &self.path.readings[self.step.min(self.path.readings.len() - 1)];
+        self.displacement.copy_from_slice(&recorded.displacement);
+        self.force.copy_from_slice(&recorded.force);
+        match &self.path.bends {
+            Bends::Storeys(_) => self.bend_storeys(),
+            Bends::Together(stiffness, lags) => {
+                let mut off: Vec<f64> = self
+                    .place
+                    .iter()
+                    .zip(&recorded.target)
+                    .map(|(place, target)| place - target)
+                    .collect();
+                if let Some(passed_with) = self.path.velocities.get(self.step) {
+                    let faster = self
+                        .velocity
+                        .iter()
+                        .zip(passed_with)
+                        .map(|(now, then)| now - then);
+                    for (off, (faster, lag)) in off.iter_mut().zip(faster.zip(lags)) {
+                        *off -= lag * faster;
+                    }
+                }
+                for (displacement, off) in self.displacement.iter_mut().zip(&off) {
+                    *displacement += off;
+                }
+                stiffness.mul_add(1.0, &off, &mut self.force);
+            }
+        }
+        self.read();
+    }
+
+    /// What every storey does off its recorded drift, added to the recorded readings.
+    fn bend_storeys(&mut self) {
+        let (mut below, mut slower, mut off) = (0.0, 0.0, 0.0);
+        for storey in 0..self.storeys.len() {
+            let drift = self.place[storey] - below;
+            let velocity = self.velocity[storey] - slower;
+            (below, slower) = (self.place[storey], self.velocity[storey]);
+            let (path, again) = &mut self.storeys[storey];
+            let (displacement, shear) = again.pass(drift, velocity);
+            let recorded = *path.recorded(self.step);
+            off += displacement - recorded.displacement;
+            self.displacement[storey] += off;
+            let more = shear - recorded.force;
+            self.force[storey] += more;
+            if storey > 0 {
+                self.force[storey - 1] -= more;
+            }
+        }
+    }
+
+    fn read(&mut self) {
+        for axis in 0..self.force.len() {
+            let exact = (self.displacement[axis], self.force[axis]);
+            (self.displacement[axis], self.force[axis]) =
+                self.readings.read(self.own_step as u64, axis, 1, exact);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::storey_stiffness;
+
+    const STIFFNESSES: [f64; 3] = [3000.0, 2000.0, 1000.0];
+
+    fn elastic(target: &[f64]) -> FrameReading {
+        let mut force = vec![0.0; target.len()];
+        storey_stiffness(&STIFFNESSES).mul_into(target, &mut force);
+        FrameReading {
+            target: target.to_vec(),
+            displacement: target.iter().map(|place| place + 1e-5).collect(),
+            force,
+        }
+    }
+
+    fn targets() -> Vec<[f64; 3]> {
+        (0..60)
+            .map(f64::from)
+            .map(|step| {
+                [
+                    0.01 * (0.2 * step).sin(),
+                    0.02 * (0.17 * step).sin(),
+                    0.02 * (0.31 * step).sin(),
+                ]
+            })
+            .collect()
+    }
+
+    fn path(stiffness: &SymmetricBand) -> FramePath {
+        FramePath::new(
+            targets().iter().map(|target| elastic(target)).collect(),
+            (Vec::new(), 0.0),
+            stiffness,
+            0.0,
+            0.0,
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
+        let mut coupled = storey_stiffness(&STIFFNESSES);
+        coupled.set(0, 0, 5500.0);
+        for stiffness in [storey_stiffness(&STIFFNESSES), coupled] {
+            let path = path(&stiffness);
+            let none = Perturbation::none(3);
+            let mut again = path.again(&none);
+            assert_eq!(again.start(), targets()[0]);
+            for reading in path.readings.iter().skip(1) {
+                again.move_to(&reading.target, &[0.0; 3]);
+                assert_eq!(
+                    (again.displacement(), again.force()),
+                    (reading.displacement.as_slice(), reading.force.as_slice())
+                );
+            }
+        }
+    }
+
+    /// R = D_f·K·D_d⁻¹·X + zero, whatever the way and past its end: each axis has factors of its own.
+    #[test]
+    fn an_elastic_frame_off_its_targets_is_elastic() {
+        for stiffness in [storey_stiffness(&STIFFNESSES), {
+            // As a frame of no storeys: the same numbers are off its own first row.
+            let mut other = storey_stiffness(&STIFFNESSES);
+            other.set(0, 0, 5000.5);
+            other
+        }] {
+            let storeys = storeys_of(&stiffness).is_some();
+            let path = path(&stiffness);
+            let mut readings = Perturbation::none(3);
+            for (axis, instruments) in readings.axes.iter_mut().enumerate() {
+                instruments.force_scale = [1.1, 0.9, 1.2][axis];
+                instruments.displacement_scale = [1.05, 0.95, 1.0][axis];
+                instruments.zero_offset = [1.0, 2.0, -3.0][axis];
+            }
+            let mut again = path.again(&readings);
+            for (step, target) in targets()
+                .iter()
+                .chain(&[[0.03, 0.01, -0.04]; 3])
+                .enumerate()
+                .skip(1)
+            {
+                let off: Vec<f64> = target.iter().map(|place| place + 1e-3).collect();
+                again.move_to(&off, &[0.0; 3]);
+                let places: Vec<f64> = off
+                    .iter()
+                    .enumerate()
+                    .map(|(axis, off)| readings.recorded(axis, *off))
+                    .collect();
+                let by_hand = elastic(&places).force;
+                for (axis, by_hand) in by_hand.iter().enumerate() {
+                    let expected =
+                        readings.axes[axis].force_scale * by_hand + readings.axes[axis].zero_offset;
+                    // The other frame is 0.5 N/m stiffer off its way, of at most 50 mm.
+                    let within = if storeys { 1e-9 } else { 0.5 * 0.05 * 1.2 };
+                    assert!(
+                        (again.force()[axis] - expected).abs() < within,
+                        "step {step}, axis {axis}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! What a record of force over displacement is made of: branches from turn to turn, and on each the pieces of the curves it
+//! goes along. In: the readings. Out: branches and pieces with their tangents. It knows no way but the recorded one.
+//!
+//! A curve begins where the specimen turns. It is left where the specimen turns again, and gone on with once the place of
+//! that turn is passed on the way back: the loop is closed and forgotten (Masing's rule; the return-point memory of Iwan's
+//! and Preisach's models). So one branch may have pieces of several curves, and one curve pieces on several branches.
+
+use super::Reading;
+use super::rate_correction::UnderWay;
+
+/// Loops no thicker than this share of the force they span are none: the way back is the way there.
+const THIN: f64 = 1e-3;
+/// And those that miss the turn where they would close by more than this share of their height do not close.
+const OPEN: f64 = 0.02;
+/// Noise of a difference that is taken for one, in standard deviations of a reading.
+pub(super) const NOISE_BOUND: f64 = 3.0;
+
+/// Part of a curve that was gone along at a stretch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    /// Where it begins: the turn where its curve begins or had been left.
+    pub begin: Reading,
+    /// Readings after that; the first is past the last where there is none.
+    pub first: usize,
+    pub last: usize,
+    pub branch: usize,
+    /// The branch whose turn its curve began with.
+    pub curve: usize,
+    /// The branch at whose end the curve had been left, of a piece that goes on with one.
+    pub rejoins: Option<usize>,
+    /// Pieces of the same curve.
+    pub before: Option<usize>,
+    pub after: Option<usize>,
+    /// N/m, at its ends.
+    pub start_tangent: f64,
+    pub end_tangent: f64,
+}
+
+/// From one turn to the next.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branch {
+    /// 1 or −1; 0 of a record that goes nowhere.
+    pub direction: f64,
+    /// The reading before the turn at its end, or the last.
+    pub end: usize,
+    /// That turn, as the next branch begins with it: a reading, or between two of them.
+    pub turn: Reading,
+    /// The force there as its own curve leads to it, N.
+    pub led_to: f64,
+    /// Its pieces, one at least.
+    pub first_piece: usize,
+    pub last_piece: usize,
+    /// It goes back over the curve it came from.
+    pub retraces: bool,
+    /// The first reading past the place of an earlier turn that it did not go through: no loop was closed.
+    pub drifts: Option<usize>,
+}
+
+/// Cuts a record into branches and the pieces of their curves; `least` (m) is how long a piece must be to tell a tangent, `stiffness`
+/// (N/m) what holds where none does. Readings made under way turn between two of them.
+pub(super) fn cut(
+    readings: &[Reading],
+    (stiffness, force_noise, least): (f64, f64, f64),
+    under_way: Option<&UnderWay>,
+) -> (Vec<Branch>, Vec<Piece>) {
+    let mut branches: Vec<Branch> = Vec::new();
+    let mut pieces: Vec<Piece> = Vec::new();
+    // Branches that ended in a turn whose loop is not closed.
+    let mut open: Vec<usize> = Vec::new();
+    let mut elastic = stiffness;
+    let found = under_way.map_or_else(
+        || stretches(readings),
+        |under_way| stretches_of(under_way.velocities()),
+    );
+    for (begin, end, direction) in found {
+        let branch = branches.len();
+        let mut turn = readings[begin];
+        if let Some(before) = branch.checked_sub(1) {
+            if let Some(place) = under_way.and_then(|under_way| under_way.turned(begin)) {
+                let onto = readings[begin + 1];
+                let tangent = tangent(readings[begin + 1..=end].iter(), least).unwrap_or(elastic);
+                let displacement = onto.displacement + (place - onto.target);
+                branches[before].led_to +=
+                    pieces[branches[before].last_piece].end_tangent * (place - turn.target);
+                turn = Reading {
+                    target: place,
+                    displacement,
+                    force: onto.force + tangent * (place - onto.target),
+                };
+                branches[before].turn = turn;
+            }
+            open.push(before);
+        }
+        let own = Piece {
+            begin: turn,
+            first: begin + 1,
+            last: end,
+            branch,
+            curve: branch,
+            rejoins: None,
+            before: None,
+            after: None,
+            start_tangent: elastic,
+            end_tangent: elastic,
+        };
+        let first_piece = pieces.len();
+        let mut drifts = None;
+        pieces.push(own);
+        for step in begin + 1..=end {
+            let mut rejoined = None;
+            while let [.., left, _] = open[..]
+                && (readings[step].target - branches[left].turn.target) * direction > 0.0
+            {
+                let (near, far) = (
+                    if step == begin + 1 {
+                        own.begin
+                    } else {
+                        readings[step - 1]
+                    },
+                    readings[step],
+                );
+                let turn = branches[left].turn;
+                let force = near.force
+                    + (turn.target - near.target) / (far.target - near.target)
+                        * (far.force - near.force);
+                let height = (turn.force - own.begin.force).abs();
+                let unsure = NOISE_BOUND * force_noise + 0.5 * (far.force - near.force).abs();
+                let closed = (force - turn.force).abs() <= unsure + OPEN * height;
+                rejoined = closed.then_some(left);
+                drifts = drifts.or((!closed).then_some(step));
+                open.truncate(open.len() - 2);
+            }
+            if let Some(left) = rejoined {
+                let before = branches[left].last_piece;
+                let here = pieces.len();
+                pieces[here - 1].last = step - 1;
+                pieces[before].after = Some(here);
+                let curve = pieces[before].curve;
+                let begin = branches[left].turn;
+                pieces.push(Piece {
+                    begin,
+                    first: step,
+                    curve,
+                    rejoins: Some(left),
+                    before: Some(before),
+                    ..own
+                });
+            }
+        }
+        for index in first_piece..pieces.len() {
+            let piece = pieces[index];
+            let known = piece
+                .before
+                .map_or(elastic, |before| pieces[before].end_tangent);
+            let steps =
+                || std::iter::once(&piece.begin).chain(readings[piece.first..=piece.last].iter());
+            let start = tangent(steps(), least);
+            pieces[index].start_tangent = start.unwrap_or(known);
+            pieces[index].end_tangent = tangent(steps().rev(), least).or(start).unwrap_or(known);
+        }
+        if branch == 0 {
+            elastic = pieces[0].start_tangent;
+        }
+        branches.push(Branch {
+            direction,
+            end,
+            turn: readings[end],
+            led_to: readings[end].force,
+            first_piece,
+            last_piece: pieces.len() - 1,
+            retraces: false,
+            drifts,
+        });
+    }
+    for branch in 1..branches.len() {
+        branches[branch].retraces = retraces(
+            readings,
+            &pieces,
+            &branches,
+            branch,
+            NOISE_BOUND * force_noise,
+        );
+    }
+    (branches, pieces)
+}
+
+/// Readings at the ends of each stretch without a turn, and its direction.
+fn stretches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
+    let moved = readings.windows(2).map(|two| two[1].target - two[0].target);
+    stretches_of(std::iter::once(0.0).chain(moved))
+}
+
+/// The same of how it went to each reading: a way, or a velocity.
+pub(super) fn stretches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
+    let mut found = Vec::new();
+    let (mut begin, mut last, mut direction) = (0, 0, 0.0);
+    for (step, moved) in went.enumerate() {
+        last = step;
+        if moved * direction < 0.0 {
+            found.push((begin, step - 1, direction));
+            begin = step - 1;
+        }
+        if moved != 0.0 {
+            direction = moved.signum();
+        }
+    }
+    found.push((begin, last, direction));
+    found
+}
+
+/// Whether the branch goes back over the curve it turned from, as far as both reach.
+fn retraces(
+    readings: &[Reading],
+    pieces: &[Piece],
+    branches: &[Branch],
+    branch: usize,
+    noise: f64,
+) -> bool {
+    let own = pieces[branches[branch].first_piece];
+    let from = branches[branch - 1].last_piece;
+    let turn = own.begin;
+    let (mut thickness, mut span) = (0.0_f64, 0.0_f64);
+    for reading in readings.iter().take(own.last + 1).skip(own.first) {
+        let Some((_, force)) = within(readings, pieces, branches, from, reading.target) else {
+            break;
+        };
+        thickness = thickness.max((reading.force - force).abs());
+        span = span.max((reading.force - turn.force).abs());
+    }
+    thickness <= noise + THIN * span
+}
+
+/// Displacement and force at a place on the curve of a piece, where the record went there before.
+fn within(
+    readings: &[Reading],
+    pieces: &[Piece],
+    branches: &[Branch],
+    piece: usize,
+    place: f64,
+) -> Option<(f64, f64)> {
+    let mut piece = piece;
+    while (place - pieces[piece].begin.target) * branches[pieces[piece].branch].direction < 0.0 {
+        piece = pieces[piece].before?;
+    }
+    let Piece {
+        begin,
+        first,
+        last,
+        branch,
+        ..
+    } = pieces[piece];
+    let Branch {
+        direction,
+        turn,
+        led_to,
+        last_piece,
+        ..
+    } = branches[branch];
+    let reached = readings[first..=last]
+        .partition_point(|reading| (reading.target - place) * direction < 0.0);
+    let far = if first + reached <= last {
+        readings[first + reached]
+    } else if piece == last_piece && (turn.target - place) * direction >= 0.0 {
+        Reading {
+            force: led_to,
+            ..turn
+        }
+    } else {
+        return None;
+    };
+    let near = if reached == 0 {
+        begin
+    } else {
+        readings[first + reached - 1]
+    };
+    let share = if far.target == near.target {
+        1.0
+    } else {
+        (place - near.target) / (far.target - near.target)
+    };
+    Some((
+        near.displacement + share * (far.displacement - near.displacement),
+        near.force + share * (far.force - near.force),
+    ))
+}
+
+/// Slope of the least squares over the fewest readings that span more than `least` (m), two at least; None where all of
+/// them do not.
+fn tangent<'a>(readings: impl Iterator<Item = &'a Reading>, least: f64) -> Option<f64> {
+    let mut taken: Vec<(f64, f64)> = Vec::new();
+    for reading in readings {
+        taken.push((reading.target, reading.force));
+        if (reading.target - taken[0].0).abs() > least && taken.len() > 1 {
+            return slope(&taken);
+        }
+    }
+    None
+}
+
+/// Of least squares through places (m) and forces (N) there; None of one place.
+fn slope(points: &[(f64, f64)]) -> Option<f64> {
+    #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
+    let count = points.len() as f64;
+    let (x, r) = points.iter().fold((0.0, 0.0), |sum, point| {
+        (sum.0 + point.0 / count, sum.1 + point.1 / count)
+    });
+    let (both, own) = points.iter().fold((0.0, 0.0), |(both, own), point| {
+        (
+            both + (point.0 - x) * (point.1 - r),
+            own + (point.0 - x) * (point.0 - x),
+        )
+    });
+    (own > 0.0).then(|| both / own)
+}

@@ -1,0 +1,335 @@
+//! The re-run along the record. In: the record, targets one by one. Out: the readings there.
+//! It turns where its own targets turn. Each of its load reversals is the recorded one of that direction nearest in time; where the
+//! record turned and it does not, it goes on with the curve that it is on; where it turns and the record did not, it goes
+//! back as stiffly as the specimen first was. It says where it departs from the record: back where nothing is recorded, or along a
+//! curve that begins elsewhere, of a specimen whose record does not keep Masing's rule.
+
+use super::rate_correction::Speed;
+use super::{ROUNDING, RecordedPath, SETTLED, UNSEEN};
+
+/// The step of the record nearest to a step of a way that takes `finer` of them for each.
+pub const fn nearest(step: usize, finer: u8) -> usize {
+    let finer = if finer == 0 { 1 } else { finer as usize };
+    (step + finer / 2) / finer
+}
+
+/// The way as it is taken again.
+#[derive(Clone, Debug)]
+pub struct Again<'a> {
+    path: &'a RecordedPath,
+    /// Steps for each of the record.
+    finer: u8,
+    /// Of its own steps.
+    own_step: usize,
+    /// The step of the record that is nearest.
+    step: usize,
+    piece: usize,
+    /// Of the curve that begins with each branch; those to come as they were.
+    shifts: Vec<Shift>,
+    /// Where it turned at the end of each branch, m; those to come as they were.
+    turns: Vec<f64>,
+    /// The last place, in metres of the record.
+    place: f64,
+    /// With which it passed there, in metres of the record.
+    speed: Speed,
+    aside: Option<Aside>,
+    departed: bool,
+}
+
+/// By how much a curve lies elsewhere than in the record.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Shift {
+    /// m
+    place: f64,
+    /// N
+    force: f64,
+}
+
+/// Gone back where the record did not.
+#[derive(Clone, Copy, Debug)]
+struct Aside {
+    /// m
+    from: f64,
+    /// Displacement (m) and force (N) there, of the record.
+    displacement: f64,
+    force: f64,
+    /// 1 or −1
+    direction: f64,
+}
+
+impl<'a> Again<'a> {
+    pub(super) fn new(path: &'a RecordedPath, finer: u8) -> Self {
+        let turns = path
+            .branches
+            .iter()
+            .map(|branch| branch.turn.target)
+            .collect();
+        let place = path.readings[0].target;
+        let shifts = vec![Shift::default(); path.branches.len()];
+        Self {
+            path,
+            finer,
+            own_step: 0,
+            step: 0,
+            piece: 0,
+            shifts,
+            turns,
+            place,
+            speed: Speed::default(),
+            aside: None,
+            departed: false,
+        }
+    }
+
+    /// Where it begins (m), and what is read there: displacement (m) and force (N).
+    #[must_use]
+    pub fn start(&self) -> (f64, f64, f64) {
+        let (displacement, force) = self.read();
+        (self.place, displacement, force)
+    }
+
+    /// Displacement (m) and force (N) read at the target of the next step, m.
+    pub fn move_to(&mut self, target: f64) -> (f64, f64) {
+        self.pass(target, 0.0)
+    }
+
+    /// The same of a target that is passed with a velocity, m/s.
+    pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
+        let speed = self
+            .path
+            .under_way
+            .as_ref()
+            .map(|it| it.speed(self.speed, velocity, self.finer))
+            .unwrap_or_default();
+        let place = self
+            .path
+            .under_way
+            .as_ref()
+            .map_or(target, |under_way| under_way.place(target, speed.felt));
+        let before = self.step;
+        self.own_step += 1;
+        self.step = nearest(self.own_step, self.finer);
+        self.go(place, speed.felt, before);
+        (self.place, self.speed) = (place, speed);
+        self.read()
+    }
+
+    /// Whether it has departed from the record.
+    #[must_use]
+    pub const fn departed(&self) -> bool {
+        self.departed
+    }
+
+    /// Goes so far (m) where nothing is recorded.
+    fn leaves_by(&mut self, off: f64) {
+        self.departed |= off.abs() > UNSEEN * self.path.farthest;
+    }
+
+    /// Goes along a curve that lies so far (m) from its record.
+    fn shifts_by(&mut self, off: f64) {
+        self.departed |= !self.path.keeps_masing && off.abs() > ROUNDING * self.path.farthest;
+    }
+
+    fn branch(&self) -> usize {
+        self.path.pieces[self.piece].branch
+    }
+
+    /// Goes on to a place (m), to be there with a velocity (m/s), from where it was at the step `before` of the record.
+    fn go(&mut self, place: f64, velocity: f64, before: usize) {
+        let path = self.path;
+        if let Some(aside) = self.aside {
+            let branch = self.branch();
+            if (place - aside.from) * aside.direction <= 0.0 {
+                self.aside = None;
+            } else if branch + 1 < path.branches.len() && path.branches[branch].end < self.step {
+                // The record has turned by now: it was that turn.
+                self.aside = None;
+                self.turn(aside.from);
+            } else {
+                self.leaves_by(place - aside.from);
+                return;
+            }
+        } else {
+            let under_way = path.under_way.as_ref();
+            let moved = if under_way.is_some() {
+                velocity
+            } else {
+                place - self.place
+            };
+            let against = moved * path.branches[self.branch()].direction < 0.0;
+            if against {
+                let between = under_way.and_then(|it| {
+                    it.turn_between((self.place, self.speed.felt), (place, velocity), self.finer)
+                });
+                let from = between.unwrap_or(self.place);
+                if self.matched(before) {
+                    self.turn(from);
+                } else {
+                    let (displacement, force) = self.at(from);
+                    self.aside = Some(Aside {
+                        from,
+                        displacement,
+                        force,
+                        direction: moved.signum(),
+                    });
+                    self.leaves_by(place - from);
+                    return;
+                }
+            } else if self.missed() {
+                self.skip();
+            }
+        }
+        self.rejoin(place);
+    }
+
+    /// Goes on to the piece on which a turn's place is passed.
+    fn rejoin(&mut self, place: f64) {
+        let path = self.path;
+        let branch = path.branches[self.branch()];
+        while self.piece < branch.last_piece
+            && let Some(left) = path.pieces[self.piece + 1].rejoins
+            && (place - self.turns[left]) * branch.direction > 0.0
+        {
+            self.piece += 1;
+        }
+    }
+
+    /// Whether the turn after `step` is one of the record, nearer than the last one of either direction. Loops of the record
+    /// that were not made by then are skipped.
+    fn matched(&mut self, step: usize) -> bool {
+        let path = self.path;
+        let turned = |branch: usize| branch + 1 < path.branches.len();
+        let off = |branch: usize| path.branches[branch].end.abs_diff(step);
+        let branch = self.branch();
+        if !turned(branch) {
+            return false;
+        }
+        // Nearer to the turn that it came from, it only slowed down there in the record.
+        let ended = |back: usize| {
+            branch
+                .checked_sub(back)
+                .map_or(0, |before| path.branches[before].end)
+        };
+        if [1, 2]
+            .into_iter()
+            .any(|back| ended(back).abs_diff(step) < off(branch))
+        {
+            return false;
+        }
+        while turned(self.branch() + 2) && off(self.branch() + 2) < off(self.branch()) {
+            self.skip();
+        }
+        true
+    }
+
+    /// Whether the record has gone there and back again for longer than this way may be late.
+    fn missed(&self) -> bool {
+        let path = self.path;
+        let branch = self.branch();
+        let ended = |branch: usize| path.branches[branch].end;
+        // The next turn that way is nearer than the one not made.
+        branch + 2 < path.branches.len()
+            && ended(branch + 1) < self.step
+            && self.step.saturating_sub(ended(branch)) > ended(branch + 2).saturating_sub(self.step)
+    }
+
+    /// Goes on where the record had turned and come back.
+    fn skip(&mut self) {
+        let path = self.path;
+        let left = self.branch();
+        let curve = path.pieces[self.piece].curve;
+        let back = path.branches[left + 2];
+        let same = (back.first_piece..=back.last_piece)
+            .find(|piece| path.pieces[*piece].rejoins == Some(left));
+        self.piece = same.unwrap_or(back.first_piece);
+        for branch in [left + 1, left + 2] {
+            self.shifts[branch] = self.shifts[curve];
+        }
+        self.shifts_by(path.branches[left].turn.target - path.branches[left + 1].turn.target);
+    }
+
+    /// Turns at `place` (m) onto the next branch: a curve that retraces the one it came from lies as that does, another one keeps its shape.
+    /// One that closed no loop goes back to the line that it settled on.
+    fn turn(&mut self, place: f64) {
+        let path = self.path;
+        let branch = self.branch();
+        let next = branch + 1;
+        let turn = path.branches[branch].turn;
+        let before = self.shift();
+        let at = place - before.place;
+        let mut shift = before;
+        if !path.branches[next].retraces {
+            // Readings so near each other tell noise.
+            let off = at - turn.target;
+            let rise = if off.abs() <= path.least {
+                path.pieces[path.branches[branch].last_piece].end_tangent * off
+            } else {
+                path.at(self.piece, self.looked_from(), at).1 - path.branches[branch].led_to
+            };
+            let piece = path.pieces[path.branches[next].first_piece];
+            let (first, settled) = (piece.start_tangent, piece.end_tangent);
+            let mut own = Shift {
+                place: off,
+                force: rise,
+            };
+            if path.branches[next].drifts.is_some() && settled.abs() < SETTLED * first.abs() {
+                let along = (first * off - rise) / (first - settled);
+                own = Shift {
+                    place: along,
+                    force: settled * along,
+                };
+            }
+            shift = Shift {
+                place: own.place + before.place,
+                force: own.force + before.force,
+            };
+            self.shifts_by(off);
+        }
+        self.shifts[next] = shift;
+        self.turns[branch] = place;
+        self.piece = path.branches[next].first_piece;
+    }
+
+    /// Of the curve that it is on.
+    fn shift(&self) -> Shift {
+        self.shifts[self.path.pieces[self.piece].curve]
+    }
+
+    /// The step of the record that is looked from: past its end, its last.
+    fn looked_from(&self) -> usize {
+        self.step.min(self.path.readings.len() - 1)
+    }
+
+    /// Displacement and force of the specimen at the place where it is, in those of the record.
+    fn recorded(&self) -> (f64, f64) {
+        let path = self.path;
+        if let Some(aside) = self.aside {
+            let back = self.place - aside.from;
+            return (
+                aside.displacement + back,
+                aside.force + path.pieces[0].start_tangent * back,
+            );
+        }
+        self.at(self.place)
+    }
+
+    /// The same at a place (m) on the curve that it is on.
+    fn at(&self, place: f64) -> (f64, f64) {
+        let shift = self.shift();
+        let at = place - shift.place;
+        let (displacement, force) = self.path.at(self.piece, self.looked_from(), at);
+        (displacement + (place - at), force + shift.force)
+    }
+
+    fn read(&self) -> (f64, f64) {
+        let (displacement, force) = self.recorded();
+        let step = self.looked_from();
+        let recorded = self.path.readings[step].force;
+        let felt = self
+            .path
+            .under_way
+            .as_ref()
+            .map(|under_way| under_way.force(step, (force, recorded), self.speed.felt));
+        (displacement, felt.unwrap_or(force))
+    }
+}

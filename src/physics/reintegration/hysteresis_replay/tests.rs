@@ -1,0 +1,301 @@
+//! The recorded way taken again, against the specimens that were recorded.
+
+use super::*;
+use crate::specimen::{Behaviour, Pinching};
+use crate::specimen::{Bilinear, BoucWen, Degrading, Multilinear, RestoringForce, SpecimenModel};
+
+fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
+    let reading = |target: &f64| Reading {
+        target: *target,
+        displacement: target + 1e-4,
+        force: force(*target),
+    };
+    RecordedPath::new(targets.iter().map(reading).collect(), 1000.0, 0.0, 0.0).unwrap()
+}
+
+/// Out, back and out again, with a pause at the start.
+const TARGETS: [f64; 9] = [0.0, 0.0, 0.1, 0.3, 0.35, 0.2, 0.05, 0.1, 0.4];
+
+#[test]
+fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
+    let path = path(|x| 1000.0 * x + 5.0 * (1e3 * x).sin(), &TARGETS);
+    let mut again = path.again(1);
+    assert_eq!(
+        again.start(),
+        (
+            TARGETS[0],
+            path.readings[0].displacement,
+            path.readings[0].force
+        )
+    );
+    for (target, reading) in TARGETS.iter().zip(&path.readings).skip(1) {
+        assert_eq!(
+            again.move_to(*target),
+            (reading.displacement, reading.force)
+        );
+    }
+}
+
+/// Wherever it is taken, and past its end, an elastic specimen stays elastic.
+#[test]
+fn an_elastic_way_taken_off_its_targets_is_elastic() {
+    let path = path(|x| 1000.0 * x, &TARGETS);
+    let mut again = path.again(1);
+    for (step, target) in (0..).zip(TARGETS.iter().chain(&[0.5, 0.6, -0.2])).skip(1) {
+        let off = target + 0.02 * f64::from(step).cos();
+        let (displacement, force) = again.move_to(off);
+        assert!((force - 1000.0 * off).abs() < 1e-9, "step {step}: {force}");
+        assert!((displacement - off - 1e-4).abs() < 1e-12);
+    }
+}
+
+/// Yield at 0.2 m, 100 N/m past it, back with 1000 N/m: turned elsewhere, it comes back along R = `R_m` − K(`X_m` − X) of
+/// the new turning point.
+#[test]
+fn turned_elsewhere_a_yielding_specimen_comes_back_on_its_own_line() {
+    let loading = |x: f64| {
+        if x < 0.2 {
+            1000.0 * x
+        } else {
+            200.0 + 100.0 * (x - 0.2)
+        }
+    };
+    let back = |x: f64| loading(0.5) - 1000.0 * (0.5 - x);
+    let readings = [
+        (0.0, loading(0.0)),
+        (0.2, loading(0.2)),
+        (0.4, loading(0.4)),
+        (0.5, loading(0.5)),
+        (0.45, back(0.45)),
+        (0.4, back(0.4)),
+    ];
+    let readings = readings
+        .map(|(target, force)| Reading {
+            target,
+            displacement: target,
+            force,
+        })
+        .to_vec();
+    let path = RecordedPath::new(readings, 1000.0, 0.0, 0.0).unwrap();
+    for turned in [0.49, 0.5, 0.51, 0.53] {
+        let mut again = path.again(1);
+        for target in [0.21, 0.41, turned] {
+            assert!(
+                (again.move_to(target).1 - loading(target)).abs() < 1e-9,
+                "{turned}"
+            );
+        }
+        for target in [0.46, 0.39] {
+            let by_hand = loading(turned) - 1000.0 * (turned - target);
+            let (_, force) = again.move_to(target);
+            assert!(
+                (force - by_hand).abs() < 1e-9,
+                "{turned}: {force} {by_hand}"
+            );
+        }
+    }
+}
+
+/// Noise on short pieces makes no stiffness: past the end it goes on with the slope of what spans enough.
+#[test]
+fn noise_makes_no_tangent() {
+    let readings = |step: u32| {
+        let target = 1e-3 * f64::from(step);
+        let noise = if step.is_multiple_of(2) { 1.0 } else { -1.0 };
+        Reading {
+            target,
+            displacement: target,
+            force: 1000.0 * target + noise,
+        }
+    };
+    let path = RecordedPath::new((0..200).map(readings).collect(), 1000.0, 1.0, 0.0).unwrap();
+    let mut again = path.again(1);
+    for step in 1..200 {
+        again.move_to(1e-3 * f64::from(step));
+    }
+    let (_, force) = again.move_to(0.3);
+    assert!((force - 300.0).abs() < 12.0, "{force}");
+}
+
+/// Steps of `step` (m) from turn to turn.
+fn way(turns: &[f64], step: f64) -> Vec<f64> {
+    let mut places = vec![turns[0]];
+    for ends in turns.windows(2) {
+        let count = ((ends[1] - ends[0]).abs() / step).round();
+        let mut taken = 0.0;
+        while taken < count {
+            taken += 1.0;
+            places.push(ends[0] + (ends[1] - ends[0]) * taken / count);
+        }
+    }
+    places
+}
+
+fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
+    let reading = |target: &f64| Reading {
+        target: *target,
+        displacement: *target,
+        force: model.move_to(*target),
+    };
+    RecordedPath::new(targets.iter().map(reading).collect(), 1000.0, 0.0, 0.0).unwrap()
+}
+
+/// The largest force that the way taken again reads wrongly.
+fn worst(path: &RecordedPath, mut model: impl RestoringForce, targets: &[f64]) -> f64 {
+    let mut again = path.again(1);
+    model.move_to(targets[0]);
+    targets[1..]
+        .iter()
+        .map(|target| (again.move_to(*target).1 - model.move_to(*target)).abs())
+        .fold(0.0, f64::max)
+}
+
+/// Yields, comes a little back and yields on; back through a yield the other way, and out again past all of it.
+const LOOPS: [f64; 6] = [0.0, 0.4, 0.3, 0.6, -0.2, 0.8];
+const MOVED: [f64; 6] = [0.0, 0.41, 0.305, 0.62, -0.19, 0.83];
+/// m
+const STEP: f64 = 2e-3;
+
+/// Every knee is where it is on the new way: exactly, where the record has a reading at it; between two recorded points a knee
+/// is cut by K·step/4 at most, and where a loop closes there may be one of each of two curves.
+#[test]
+fn elements_side_by_side_are_told_wherever_they_are_turned() {
+    let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
+    let cut = 0.5 * 1000.0 * STEP;
+    let path = recorded(bilinear(), &way(&LOOPS, STEP));
+    assert!(path.keeps_masing);
+    let off = worst(&path, bilinear(), &way(&MOVED, STEP));
+    assert!(off < 1e-9, "{off} N");
+    let multilinear = || Multilinear::new(&[[0.1, 100.0], [0.25, 200.0], [0.7, 300.0]]);
+    let path = recorded(multilinear(), &way(&LOOPS, STEP));
+    let off = worst(&path, multilinear(), &way(&MOVED, STEP));
+    assert!(off <= cut, "{off} N");
+}
+
+/// And what is cut goes with the step.
+#[test]
+fn finer_steps_cut_less() {
+    let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
+    for step in [7e-3, 1.9e-3, 5.3e-4] {
+        let off = worst(
+            &recorded(bilinear(), &way(&LOOPS, step)),
+            bilinear(),
+            &way(&MOVED, step),
+        );
+        assert!(
+            off > 1e-3 * 1000.0 * step && off <= 0.5 * 1000.0 * step,
+            "{step} m: {off} N"
+        );
+    }
+}
+
+/// A loop that is not made is left out, one that is made a few steps early or late is that loop.
+#[test]
+fn turns_are_its_own() {
+    let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
+    let path = recorded(bilinear(), &way(&[0.0, 0.4, 0.38, 0.6, 0.5], STEP));
+    let straight = way(&[0.0, 0.61, 0.5], STEP);
+    let off = worst(&path, bilinear(), &straight);
+    assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
+    for turn in [0.39, 0.41] {
+        let off = worst(
+            &path,
+            bilinear(),
+            &way(&[0.0, turn, turn - 0.02, 0.6, 0.5], STEP),
+        );
+        assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
+    }
+}
+
+/// Back where the record never went: as stiffly as at first, and it says so.
+#[test]
+fn a_turn_that_was_not_recorded_is_told() {
+    let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
+    let path = recorded(bilinear(), &way(&[0.0, 0.6], STEP));
+    let targets = way(&[0.0, 0.4, 0.35, 0.6], STEP);
+    let off = worst(&path, bilinear(), &targets);
+    assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
+    let mut again = path.again(1);
+    for target in &targets {
+        again.move_to(*target);
+    }
+    assert!(again.departed() && !path.again(1).departed());
+}
+
+/// Sixty turns forth and back that grow and fade, `more` of them larger, m.
+fn swings(more: f64) -> Vec<f64> {
+    let turn = |turn: u32| {
+        let phase = f64::from(turn);
+        let size = 0.5 * (1.0 + 0.4 * (0.37 * phase).sin()) * (0.15 * phase).min(1.0)
+            + 0.05 * (1.3 * phase).sin();
+        let size = size * (1.0 + more * (0.9 * phase).cos());
+        if turn.is_multiple_of(2) { size } else { -size }
+    };
+    (0..60).map(turn).collect()
+}
+
+/// Elements in parallel keep Masing's rule and never depart from their record; whatever pinches, degrades or follows Bouc's and Wen's
+/// equation departs as soon as it turns elsewhere. An elastic specimen has nothing to keep.
+#[test]
+fn a_record_says_whether_it_keeps_masings_rule() {
+    let pinching = SpecimenModel::new(&Behaviour::Pinching(Pinching {
+        stiffness: 1000.0,
+        yield_force: 200.0,
+        hardening: 0.05,
+        force_factor: 0.4,
+        displacement_factor: 0.5,
+        unloading_exponent: 0.0,
+        capping: None,
+        deterioration: None,
+    }));
+    let bouc_wen = |sharpness, beta| {
+        SpecimenModel::BoucWen(Box::new(BoucWen::new(1000.0, 200.0, 0.1, sharpness, beta)))
+    };
+    let specimens = [
+        (
+            SpecimenModel::new(&Behaviour::Elastic { stiffness: 1000.0 }),
+            true,
+        ),
+        (
+            SpecimenModel::Bilinear(Bilinear::new(1000.0, 200.0, 0.1)),
+            true,
+        ),
+        (
+            SpecimenModel::Multilinear(Multilinear::new(&[
+                [0.1, 100.0],
+                [0.25, 200.0],
+                [0.7, 300.0],
+            ])),
+            true,
+        ),
+        (
+            SpecimenModel::Degrading(Box::new(Degrading::new(1000.0, 0.2, 0.0))),
+            false,
+        ),
+        (bouc_wen(1.0, 0.5), false),
+        (bouc_wen(2.0, 0.5), false),
+        (bouc_wen(1.0, 0.7), false),
+        (pinching, false),
+    ];
+    for (model, keeps) in specimens {
+        // Of one swing, and of sixty.
+        for (turns, elsewhere) in [
+            (vec![0.0, 0.6, -0.4], vec![0.0, 0.61, -0.4]),
+            (swings(0.0), swings(0.02)),
+        ] {
+            let path = recorded(model.clone(), &way(&turns, STEP));
+            assert_eq!(path.keeps_masing, keeps, "{model:?}");
+            let departed = |turns: &[f64]| {
+                let mut again = path.again(1);
+                way(turns, STEP)[1..].iter().for_each(|target| {
+                    again.move_to(*target);
+                });
+                again.departed()
+            };
+            assert!(!departed(&turns), "{model:?}");
+            assert_eq!(departed(&elsewhere), !keeps, "{model:?}");
+        }
+    }
+    let curved = path(|x| 1000.0 * x + 800.0 * x.powi(3), &way(&LOOPS, STEP));
+    assert!(curved.keeps_masing);
+}

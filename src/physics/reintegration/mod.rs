@@ -1,0 +1,8 @@
+//! Re-integration of recorded runs along their measured force–displacement path, with one input
+//! perturbed. In: a recorded run and the perturbed input. Out: the run that results. It knows no
+//! source of uncertainty.
+
+pub mod frame;
+pub mod frame_path;
+pub mod hysteresis_replay;
+pub mod impact;

@@ -1,0 +1,372 @@
+//! The parameters of every specimen model: restoring force against displacement. In: numbers in SI. Out: data that
+//! [`SpecimenModel::new`](super::SpecimenModel::new) makes a model of, and what follows from them alone: stiffnesses, capacity. It bends nothing itself.
+
+use super::{Bolted, Breaks, Deterioration, Pinching, Table};
+use crate::relaxation::logarithmic::lost_after_long;
+use crate::structure::beam::{self, Beam};
+use crate::structure::portal::Portal;
+use crate::structure::portal_mass::{self, EquivalentMasses};
+
+/// Restoring force of a virtual specimen against displacement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Behaviour {
+    /// R = K X; K in N/m.
+    Elastic { stiffness: f64 },
+    /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
+    Bilinear {
+        stiffness: f64,
+        yield_force: f64,
+        hardening: f64,
+    },
+    /// The same, wearing with the energy it has taken.
+    WearingBilinear {
+        stiffness: f64,
+        yield_force: f64,
+        hardening: f64,
+        deterioration: Deterioration,
+    },
+    /// A beam by geometry.
+    Beam(Beam),
+    /// Piecewise linear, with kinematic hardening: corners of the first loading, displacement (m) and force (N), both rising,
+    /// each stretch softer than the one before; the last one goes on.
+    Multilinear { corners: Vec<[f64; 2]> },
+    /// Smooth hysteresis after Bouc and Wen. `sharpness` is n; γ = 1 − `beta`.
+    BoucWen {
+        stiffness: f64,
+        yield_force: f64,
+        hardening: f64,
+        sharpness: f64,
+        beta: f64,
+    },
+    /// Pinched hysteresis, peak-oriented, after Ibarra, Medina & Krawinkler.
+    Pinching(Pinching),
+    /// R = K(x) X with K(x) = K (r + (1 − r)/(1 + x/h)), x the largest displacement so far (either way), h where half of what
+    /// can be lost is lost.
+    Degrading {
+        stiffness: f64,
+        half_displacement: f64,
+        residual: f64,
+    },
+    /// A bolted joint: friction, clearance, bearing, holes that grow.
+    Bolted(Bolted),
+    /// Measured points.
+    Table(Table),
+    /// Whole until it breaks, no force after.
+    Fracture { of: Box<Behaviour>, at: Breaks },
+    /// One force, displacements add.
+    Series(Vec<Behaviour>),
+    /// One displacement, forces add.
+    Parallel(Vec<Behaviour>),
+    /// What the load cell reads while the actuator moves at v: R (1 + (|v|/`reference_velocity`)^`exponent`).
+    Rate {
+        of: Box<Behaviour>,
+        reference_velocity: f64,
+        exponent: f64,
+    },
+    /// A spring and a dashpot one behind the other, beside the rest: its force relaxes. `stiffness` N/m, `time_constant` s.
+    Maxwell {
+        of: Box<Behaviour>,
+        stiffness: f64,
+        time_constant: f64,
+    },
+    /// What is reached relaxes with the logarithm of time: of every newton `share`·ln(1 + t/`reference_time`) is lost, until `longest` (s).
+    Logarithmic {
+        of: Box<Behaviour>,
+        share: f64,
+        reference_time: f64,
+        longest: f64,
+    },
+    /// A portal frame by plastic hinges.
+    Portal(Portal),
+}
+
+impl Behaviour {
+    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in
+    /// bearing.
+    #[must_use]
+    pub fn initial_stiffness(&self) -> f64 {
+        match self {
+            Self::Elastic { stiffness }
+            | Self::Bilinear { stiffness, .. }
+            | Self::WearingBilinear { stiffness, .. }
+            | Self::BoucWen { stiffness, .. }
+            | Self::Degrading { stiffness, .. } => *stiffness,
+            Self::Beam(beam) => beam.stiffness,
+            Self::Multilinear { corners } => corners.first().map_or(0.0, |[x, force]| force / x),
+            Self::Pinching(pinching) => pinching.stiffness,
+            Self::Bolted(bolted) if bolted.clearance == 0.0 && bolted.slip_force > 0.0 => {
+                2.0 * bolted.stiffness
+            }
+            Self::Bolted(bolted) => bolted.stiffness,
+            Self::Table(table) => table.initial_stiffness(),
+            Self::Portal(portal) => portal.stiffness,
+            Self::Fracture { .. }
+            | Self::Rate { .. }
+            | Self::Logarithmic { .. }
+            | Self::Maxwell { .. }
+            | Self::Series(_)
+            | Self::Parallel(_) => self.stiffness_of_parts(Self::initial_stiffness),
+        }
+    }
+
+    /// Largest slope dR/dX on any way, N/m: what stability is judged by. Most behaviours are stiffest at first; a joint that
+    /// bears while its faces still hold is twice as stiff, a Bouc–Wen spring unloads at up to 2β of its hysteretic part, and
+    /// measured points are as steep as their steepest stretch.
+    #[must_use]
+    pub fn largest_stiffness(&self) -> f64 {
+        match self {
+            Self::BoucWen {
+                stiffness,
+                hardening,
+                beta,
+                ..
+            } => stiffness * (hardening + (1.0 - hardening) * (2.0 * beta).max(1.0)),
+            Self::Bolted(bolted) if bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
+            Self::Table(table) => table.steepest(|_| true),
+            Self::Fracture { .. }
+            | Self::Rate { .. }
+            | Self::Logarithmic { .. }
+            | Self::Maxwell { .. }
+            | Self::Series(_)
+            | Self::Parallel(_) => self.stiffness_of_parts(Self::largest_stiffness),
+            Self::Elastic { .. }
+            | Self::Bilinear { .. }
+            | Self::WearingBilinear { .. }
+            | Self::Beam(_)
+            | Self::Multilinear { .. }
+            | Self::Pinching(_)
+            | Self::Degrading { .. }
+            | Self::Bolted(_)
+            | Self::Portal(_) => self.initial_stiffness(),
+        }
+    }
+
+    /// A stiffness of what is made of others, N/m, `of` each of them: behind each other the flexibilities add up, else the
+    /// stiffnesses, with that of a Maxwell spring beside them.
+    fn stiffness_of_parts(&self, of: fn(&Self) -> f64) -> f64 {
+        let parts = self.parts().iter().map(of);
+        match self {
+            Self::Series(_) => 1.0 / parts.map(|stiffness| 1.0 / stiffness).sum::<f64>(),
+            Self::Maxwell { stiffness, .. } => parts.sum::<f64>() + stiffness,
+            _ => parts.sum(),
+        }
+    }
+
+    /// Stiffness at no displacement when all that relaxes has, N/m: what a slow test measures.
+    #[must_use]
+    pub fn relaxed_stiffness(&self) -> f64 {
+        match self {
+            Self::Maxwell { of, .. } => of.relaxed_stiffness(),
+            Self::Logarithmic {
+                of,
+                share,
+                reference_time,
+                longest,
+            } => {
+                of.relaxed_stiffness() * (1.0 - lost_after_long(*share, *reference_time, *longest))
+            }
+            other => other.initial_stiffness(),
+        }
+    }
+
+    /// The behaviours it is made of.
+    #[must_use]
+    pub fn parts(&self) -> &[Behaviour] {
+        match self {
+            Self::Series(parts) | Self::Parallel(parts) => parts,
+            Self::Fracture { of, .. }
+            | Self::Rate { of, .. }
+            | Self::Maxwell { of, .. }
+            | Self::Logarithmic { of, .. } => std::slice::from_ref(of),
+            _ => &[],
+        }
+    }
+
+    /// Largest force it carries, N; infinite where nothing bounds it, None where its file alone knows.
+    #[must_use]
+    pub fn capacity(&self) -> f64 {
+        let hardens = |hardening: f64, force: f64| {
+            if hardening > 0.0 {
+                f64::INFINITY
+            } else {
+                force
+            }
+        };
+        match self {
+            // However fast it is moved, a branch resists.
+            Self::Elastic { .. } | Self::Beam(_) | Self::Maxwell { .. } => f64::INFINITY,
+            Self::Bilinear {
+                yield_force,
+                hardening,
+                ..
+            }
+            | Self::WearingBilinear {
+                yield_force,
+                hardening,
+                ..
+            }
+            | Self::BoucWen {
+                yield_force,
+                hardening,
+                ..
+            } => hardens(*hardening, *yield_force),
+            Self::Pinching(Pinching {
+                stiffness,
+                yield_force,
+                hardening,
+                capping: Some(capping),
+                ..
+            }) => {
+                yield_force
+                    + hardening * stiffness * (capping.displacement - yield_force / stiffness)
+            }
+            Self::Pinching(pinching) => hardens(pinching.hardening, pinching.yield_force),
+            Self::Multilinear { corners } => match corners.as_slice() {
+                [.., [_, before], [_, last]] if before == last => *last,
+                _ => f64::INFINITY,
+            },
+            Self::Degrading {
+                stiffness,
+                half_displacement,
+                residual,
+            } => hardens(*residual, stiffness * half_displacement),
+            Self::Bolted(bolted) => bolted.bearing_force + bolted.slip_force,
+            Self::Table(table) => {
+                table
+                    .points
+                    .iter()
+                    .fold(0.0, |most: f64, [_, force]| most.max(force.abs()))
+                    * table.scale
+            }
+            Self::Fracture {
+                of,
+                at: Breaks::Force(force),
+            } => of.capacity().min(*force),
+            Self::Fracture { of, .. } | Self::Rate { of, .. } => of.capacity(),
+            // What was lost one way is felt more the other way.
+            Self::Logarithmic {
+                of,
+                share,
+                reference_time,
+                longest,
+            } => of.capacity() * (1.0 + lost_after_long(*share, *reference_time, *longest)),
+            Self::Series(parts) => parts
+                .iter()
+                .map(Self::capacity)
+                .fold(f64::INFINITY, f64::min),
+            Self::Parallel(parts) => parts.iter().map(Self::capacity).sum(),
+            Self::Portal(portal) => portal.capacity(),
+        }
+    }
+
+    /// Equivalent masses that its geometry gives; what stands around a beam or portal goes the same way.
+    #[must_use]
+    pub fn equivalent_masses(&self) -> Option<EquivalentMasses> {
+        match self {
+            Self::Beam(beam) => beam::equivalent_masses(beam),
+            Self::Portal(portal) => portal_mass::equivalent_masses(portal),
+            Self::Fracture { of, .. }
+            | Self::Rate { of, .. }
+            | Self::Maxwell { of, .. }
+            | Self::Logarithmic { of, .. } => of.equivalent_masses(),
+            _ => None,
+        }
+    }
+
+    /// The portal that it is, also inside of what goes the same way.
+    #[must_use]
+    pub fn portal(&self) -> Option<&Portal> {
+        match self {
+            Self::Portal(portal) => Some(portal),
+            Self::Fracture { of, .. }
+            | Self::Rate { of, .. }
+            | Self::Maxwell { of, .. }
+            | Self::Logarithmic { of, .. } => of.portal(),
+            _ => None,
+        }
+    }
+
+    /// The same with every force times `factor`: it yields and breaks at the same displacements.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let all = |parts: &[Self]| parts.iter().map(|part| part.scaled(factor)).collect();
+        let mut same = self.clone();
+        match &mut same {
+            Self::Elastic { stiffness } | Self::Degrading { stiffness, .. } => *stiffness *= factor,
+            Self::Bilinear {
+                stiffness,
+                yield_force,
+                ..
+            }
+            | Self::WearingBilinear {
+                stiffness,
+                yield_force,
+                ..
+            }
+            | Self::BoucWen {
+                stiffness,
+                yield_force,
+                ..
+            } => {
+                *stiffness *= factor;
+                *yield_force *= factor;
+            }
+            // No longer the beam or portal of that geometry.
+            Self::Beam(beam) => {
+                return Self::Elastic {
+                    stiffness: beam.stiffness * factor,
+                };
+            }
+            Self::Portal(portal) => {
+                let (stiffness, yield_force) =
+                    (portal.stiffness * factor, portal.capacity() * factor);
+                return Self::Bilinear {
+                    stiffness,
+                    yield_force,
+                    hardening: 0.0,
+                };
+            }
+            Self::Multilinear { corners } => {
+                for [_, force] in corners {
+                    *force *= factor;
+                }
+            }
+            Self::Pinching(pinching) => {
+                pinching.stiffness *= factor;
+                pinching.yield_force *= factor;
+            }
+            Self::Bolted(bolted) => {
+                bolted.stiffness *= factor;
+                bolted.bearing_force *= factor;
+                bolted.slip_force *= factor;
+            }
+            Self::Table(table) => table.scale *= factor,
+            Self::Fracture { of, at } => {
+                **of = of.scaled(factor);
+                if let Breaks::Force(force) = at {
+                    *force *= factor;
+                }
+            }
+            Self::Rate { of, .. } | Self::Logarithmic { of, .. } => **of = of.scaled(factor),
+            Self::Maxwell { of, stiffness, .. } => {
+                **of = of.scaled(factor);
+                *stiffness *= factor;
+            }
+            Self::Series(parts) | Self::Parallel(parts) => *parts = all(parts),
+        }
+        same
+    }
+
+    /// Whether its force never falls while its displacement grows: what may stand in series.
+    #[must_use]
+    pub fn never_falls(&self) -> bool {
+        match self {
+            Self::Fracture { .. }
+            | Self::Pinching(Pinching {
+                capping: Some(_), ..
+            }) => false,
+            Self::Table(table) => table.points.windows(2).all(|pair| pair[1][1] >= pair[0][1]),
+            _ => self.parts().iter().all(Self::never_falls),
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! Smooth hysteresis after Bouc and Wen, independent of rate. In: a displacement. Out: the force there, integrated over the
+//! displacement to a stated error, however large the move.
+
+use super::RestoringForce;
+
+/// R = α K X + (1 − α) F_y z, dz/dX = (K/F_y) [1 − |z|ⁿ (γ + β sign(z dX))], the form that goes by the names of Bouc and Wen, normalised to γ = 1 − β, so
+/// that z tends to ±1. What it takes beyond the store ½z² F_y/K of its spring is z dX − (F_y/K) z dz = |z|ⁿ⁺¹ |dX| (β + γ sign(z dX)), which is
+/// negative on no path where β ≥ |γ|, that is β ≥ ½.
+///
+/// With y = |ΔX| K/F_y and u = z counted along the move, du/dy = 1 − uⁿ loading (u ≥ 0) and 1 + (2β − 1)|u|ⁿ unloading (u < 0).
+/// Unloading ends at u = 0, where the right-hand side loses derivatives: the way there is integrated first, so that no step
+/// crosses it, and steps beside it are as short as |u|/4. Steps of fourth order of at most 1/(32 n) of y: |Δz| < 1e-7 against the
+/// exact solution for n up to 20, and as much between one move and many (the tests measure both).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoucWen {
+    stiffness: f64,
+    yield_force: f64,
+    hardening: f64,
+    sharpness: f64,
+    beta: f64,
+    displacement: f64,
+    /// z
+    plastic: f64,
+}
+
+/// Steps of a yield displacement for n = 1.
+const STEPS: f64 = 32.0;
+/// Shortest step beside u = 0: |u|ⁿ with n ≥ 1 spoils such a step by its square at most.
+const SHORTEST: f64 = 1e-4;
+
+impl BoucWen {
+    /// `stiffness` K (N/m), `yield_force` F_y (N), `hardening` α, `sharpness` n ≥ 1, `beta` β, ½ to 1.
+    #[must_use]
+    pub const fn new(
+        stiffness: f64,
+        yield_force: f64,
+        hardening: f64,
+        sharpness: f64,
+        beta: f64,
+    ) -> Self {
+        Self {
+            stiffness,
+            yield_force,
+            hardening,
+            sharpness,
+            beta,
+            displacement: 0.0,
+            plastic: 0.0,
+        }
+    }
+
+    /// du/dy
+    fn rate(&self, along: f64) -> f64 {
+        let power = along.abs().powf(self.sharpness);
+        if along < 0.0 {
+            1.0 + (2.0 * self.beta - 1.0) * power
+        } else {
+            1.0 - power
+        }
+    }
+
+    /// y from `along` < 0 to 0: ∫ du/(1 + (2β − 1)|u|ⁿ) by Simpson's rule over t, |u| = `size` t³, which smooths the end.
+    fn way_to_zero(&self, along: f64) -> f64 {
+        let size = -along;
+        let intervals = 2.0 * (STEPS * self.sharpness).ceil();
+        let value = |place: f64| {
+            let t = place / intervals;
+            3.0 * size * t * t / self.rate(-size * t * t * t)
+        };
+        let mut sum = value(intervals);
+        let mut place = 1.0;
+        while place < intervals {
+            sum += if place % 2.0 == 1.0 { 4.0 } else { 2.0 } * value(place);
+            place += 1.0;
+        }
+        sum / (3.0 * intervals)
+    }
+
+    /// u after `way` of y on one side of 0, by the classical Runge–Kutta method.
+    fn integrate(&self, mut along: f64, mut way: f64) -> f64 {
+        while way > 0.0 && self.rate(along) > f64::EPSILON {
+            let longest = (0.25 * along.abs())
+                .max(SHORTEST)
+                .min(1.0 / (STEPS * self.sharpness));
+            // An even share of what is left, so that no last step is a sliver.
+            let step = if way <= longest {
+                way
+            } else {
+                way / (way / longest).ceil()
+            };
+            along = self.runge_kutta(along, step);
+            way = if step == way { 0.0 } else { way - step };
+        }
+        along
+    }
+
+    fn runge_kutta(&self, along: f64, step: f64) -> f64 {
+        // Trial places stay on the side of the start.
+        let side = |u: f64| {
+            if along < 0.0 {
+                u.min(-f64::MIN_POSITIVE)
+            } else {
+                u.min(1.0)
+            }
+        };
+        let first = self.rate(along);
+        let second = self.rate(side(along + 0.5 * step * first));
+        let third = self.rate(side(along + 0.5 * step * second));
+        let fourth = self.rate(side(along + step * third));
+        side(along + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth))
+    }
+}
+
+impl RestoringForce for BoucWen {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        let moved = displacement - self.displacement;
+        if moved != 0.0 {
+            let mut way = moved.abs() * self.stiffness / self.yield_force;
+            let mut along = self.plastic * moved.signum();
+            if along < 0.0 {
+                // du/dy is largest here, so that no shorter way leads to 0.
+                let to_zero = if way * self.rate(along) < -along {
+                    f64::INFINITY
+                } else {
+                    self.way_to_zero(along)
+                };
+                if way < to_zero {
+                    along = self.integrate(along, way);
+                    way = 0.0;
+                } else {
+                    along = 0.0;
+                    way -= to_zero;
+                }
+            }
+            if way > 0.0 {
+                along = self.integrate(along, way);
+            }
+            self.plastic = along * moved.signum();
+            self.displacement = displacement;
+        }
+        self.hardening * self.stiffness * displacement
+            + (1.0 - self.hardening) * self.yield_force * self.plastic
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        self.stiffness
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// z of a specimen whose y is X itself: K = F_y = 1, no hardening.
+    fn bare(sharpness: f64, beta: f64) -> BoucWen {
+        BoucWen::new(1.0, 1.0, 0.0, sharpness, beta)
+    }
+
+    /// n = 1: z = 1 − e^(−y). n = 2: z = tanh y. Unloading with β = ½ is straight: slope 1.
+    #[test]
+    fn first_loading_and_unloading_in_closed_form() {
+        for place in [0.1_f64, 0.5, 1.0, 2.0, 5.0] {
+            assert!((bare(1.0, 0.7).move_to(place) - (1.0 - (-place).exp())).abs() < 1e-8);
+            assert!(
+                (bare(2.0, 0.7).move_to(place) - place.tanh()).abs() < 1e-8,
+                "{place}"
+            );
+        }
+        let mut model = bare(1.0, 0.5);
+        let top = model.move_to(1.5);
+        assert!((model.move_to(1.5 - 0.4) - (top - 0.4)).abs() < 1e-12);
+        // n = 1, β = 1: du/dy = 1 + |u| unloading, so w = −u falls as (1 + w₀) e^(−y) − 1.
+        let mut model = bare(1.0, 1.0);
+        let top = model.move_to(1.5);
+        let back = 0.3_f64;
+        assert!((model.move_to(1.5 - back) - ((1.0 + top) * (-back).exp() - 1.0)).abs() < 1e-8);
+        // n = 2, β = 1: w = tan(atan w₀ − y).
+        let mut model = bare(2.0, 1.0);
+        let top = model.move_to(1.5);
+        assert!((model.move_to(1.5 - back) - (top.atan() - back).tan()).abs() < 1e-8);
+        assert!(
+            (BoucWen::new(2e6, 1e3, 0.1, 1.0, 0.5).move_to(1e-9) - 2e-3).abs() < 1e-8,
+            "K at first"
+        );
+    }
+
+    /// The right-hand side as the papers print it, extrapolated midpoint steps (Gragg–Bulirsch–Stoer) that share nothing
+    /// with the model.
+    fn independent(sharpness: f64, beta: f64, path: &[f64]) -> f64 {
+        let (mut place, mut z) = (0.0_f64, 0.0_f64);
+        let rate = |z: f64, way: f64| {
+            let sign = if z * way > 0.0 {
+                1.0
+            } else if z * way < 0.0 {
+                -1.0
+            } else {
+                0.0
+            };
+            way * (1.0 - z.abs().powf(sharpness) * (1.0 - beta + beta * sign))
+        };
+        for to in path {
+            let pieces = 4000;
+            let h = (to - place).abs() / f64::from(pieces);
+            let way = (to - place).signum();
+            for _ in 0..pieces {
+                let midpoint = |n: i32| {
+                    let step = h / f64::from(n);
+                    let (mut before, mut now) = (z, z + step * rate(z, way));
+                    for _ in 1..n {
+                        (before, now) = (now, before + 2.0 * step * rate(now, way));
+                    }
+                    0.5 * (now + before + step * rate(now, way))
+                };
+                let (two, four) = (midpoint(2), midpoint(4));
+                z = four + (four - two) / 3.0;
+            }
+            place = *to;
+        }
+        z
+    }
+
+    #[test]
+    fn an_independent_integration_finds_the_same() {
+        let path = [1.7, -0.6, 0.4, -2.5, 3.0, 2.2];
+        for (sharpness, beta) in [
+            (1.0, 0.5),
+            (1.0, 0.9),
+            (1.5, 0.6),
+            (2.0, 0.5),
+            (3.3, 1.0),
+            (8.0, 0.7),
+            (20.0, 0.5),
+        ] {
+            let mut model = bare(sharpness, beta);
+            for to in path {
+                model.move_to(to);
+            }
+            let by_other_means = independent(sharpness, beta, &path);
+            assert!(
+                (model.plastic - by_other_means).abs() < 1e-7,
+                "n {sharpness}, β {beta}: {}",
+                model.plastic - by_other_means
+            );
+        }
+    }
+
+    #[test]
+    fn it_hardly_depends_on_the_size_of_its_moves() {
+        for (sharpness, beta) in [
+            (1.0, 1.0),
+            (1.0, 0.66),
+            (1.3, 0.6),
+            (2.0, 0.9),
+            (5.0, 0.6),
+            (20.0, 0.6),
+        ] {
+            let (mut once, mut often) = (bare(sharpness, beta), bare(sharpness, beta));
+            let mut from = 0.0;
+            for to in [2.0, -1.5, -0.58, 0.3, 1.1, -3.0] {
+                for i in 1..=997 {
+                    often.move_to(from + (to - from) * f64::from(i) / 997.0);
+                }
+                let apart = once.move_to(to) - often.move_to(to);
+                assert!(apart.abs() < 1e-7, "n {sharpness}: {apart}");
+                from = to;
+            }
+        }
+    }
+
+    /// The order of the method is what the bound on the step rests on: half the step, a sixteenth of the error.
+    #[test]
+    fn the_error_falls_with_the_fourth_power_of_the_step() {
+        let error = |count: u32| {
+            let model = bare(2.0, 0.5);
+            let mut along = 0.0;
+            for _ in 0..count {
+                along = model.runge_kutta(along, 1.0 / f64::from(count));
+            }
+            (along - 1.0_f64.tanh()).abs()
+        };
+        let ratio = error(16) / error(32);
+        assert!((ratio - 16.0).abs() < 2.0, "{ratio}");
+    }
+
+    /// n → ∞ is the elastic–plastic specimen.
+    #[test]
+    fn a_sharp_knee_is_perfectly_plastic() {
+        let (mut sharp, mut plastic) =
+            (bare(400.0, 0.5), super::super::Bilinear::new(1.0, 1.0, 0.0));
+        for to in [0.5, 2.0, 1.2, -3.0, -2.5, 1.0] {
+            assert!((sharp.move_to(to) - plastic.move_to(to)).abs() < 0.01);
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Restoring-force models of virtual specimens, one file each. In: the parameters of a model, then
+//! displacements. Out: restoring forces, from a [`SpecimenModel`]. A model knows its own path and
+//! nothing of time.
+
+mod behaviour;
+mod bilinear;
+mod bolted;
+mod bouc_wen;
+mod degrading;
+mod deteriorating_bilinear;
+mod deterioration;
+mod fracture;
+mod multilinear;
+mod pinching;
+#[cfg(test)]
+mod pinching_tests;
+mod series;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use behaviour::Behaviour;
+pub use bilinear::Bilinear;
+pub use bolted::{Bolted, BoltedJoint};
+pub use bouc_wen::BoucWen;
+pub use degrading::Degrading;
+pub use deteriorating_bilinear::WearingBilinear;
+pub use deterioration::Deterioration;
+pub use fracture::{Breaks, Fracture};
+pub use multilinear::Multilinear;
+pub use pinching::{Capping, PinchedHysteresis, Pinching};
+pub use series::Series;
+pub use table::{AlongTheCurve, PlasticCurve, Table, Unloading};
+
+/// What a virtual rig bends.
+pub trait RestoringForce {
+    /// Moves on to `displacement` (m) and gives the force there, N.
+    fn move_to(&mut self, displacement: f64) -> f64;
+    /// Stiffness before anything has happened, N/m.
+    fn initial_stiffness(&self) -> f64;
+}
+
+/// R = K X.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    pub stiffness: f64,
+}
+
+impl RestoringForce for Elastic {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        self.stiffness * displacement
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        self.stiffness
+    }
+}
+
+/// Any specimen a plan can declare. The two of every day stand in it; the others, which carry more, stand beside.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpecimenModel {
+    Elastic(Elastic),
+    Bilinear(Bilinear),
+    WearingBilinear(Box<WearingBilinear>),
+    Multilinear(Multilinear),
+    BoucWen(Box<BoucWen>),
+    Pinched(Box<PinchedHysteresis>),
+    Degrading(Box<Degrading>),
+    Bolted(Box<BoltedJoint>),
+    Plastic(Box<PlasticCurve>),
+    AlongTheCurve(Box<AlongTheCurve>),
+    Fracture(Box<Fracture>),
+    Series(Box<Series>),
+    Parallel(Vec<SpecimenModel>),
+}
+
+impl SpecimenModel {
+    /// A model of `behaviour`, at no displacement and untouched. What acts on the load cell by its speed or in time is the rig's.
+    #[must_use]
+    pub fn new(behaviour: &Behaviour) -> Self {
+        match behaviour {
+            Behaviour::Elastic { stiffness } => Self::Elastic(Elastic {
+                stiffness: *stiffness,
+            }),
+            Behaviour::Beam(beam) => Self::Elastic(Elastic {
+                stiffness: beam.stiffness,
+            }),
+            Behaviour::Bilinear {
+                stiffness,
+                yield_force,
+                hardening,
+            } => Self::Bilinear(Bilinear::new(*stiffness, *yield_force, *hardening)),
+            Behaviour::WearingBilinear {
+                stiffness,
+                yield_force,
+                hardening,
+                deterioration,
+            } => Self::WearingBilinear(Box::new(WearingBilinear::new(
+                *stiffness,
+                *yield_force,
+                *hardening,
+                *deterioration,
+            ))),
+            Behaviour::Portal(portal) => {
+                Self::Bilinear(Bilinear::new(portal.stiffness, portal.capacity(), 0.0))
+            }
+            Behaviour::Multilinear { corners } => Self::Multilinear(Multilinear::new(corners)),
+            Behaviour::BoucWen {
+                stiffness,
+                yield_force,
+                hardening,
+                sharpness,
+                beta,
+            } => Self::BoucWen(Box::new(BoucWen::new(
+                *stiffness,
+                *yield_force,
+                *hardening,
+                *sharpness,
+                *beta,
+            ))),
+            Behaviour::Pinching(pinching) => {
+                Self::Pinched(Box::new(PinchedHysteresis::new(*pinching)))
+            }
+            Behaviour::Degrading {
+                stiffness,
+                half_displacement,
+                residual,
+            } => Self::Degrading(Box::new(Degrading::new(
+                *stiffness,
+                *half_displacement,
+                *residual,
+            ))),
+            Behaviour::Bolted(bolted) => Self::Bolted(Box::new(BoltedJoint::new(*bolted))),
+            Behaviour::Table(table) => table::model(table),
+            Behaviour::Fracture { of, at } => {
+                Self::Fracture(Box::new(Fracture::new(Self::new(of), *at)))
+            }
+            Behaviour::Series(parts) => Series::of(parts.iter().map(Self::new)),
+            Behaviour::Parallel(parts) => Self::Parallel(parts.iter().map(Self::new).collect()),
+            Behaviour::Rate { of, .. }
+            | Behaviour::Maxwell { of, .. }
+            | Behaviour::Logarithmic { of, .. } => Self::new(of),
+        }
+    }
+}
+
+impl RestoringForce for SpecimenModel {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        match self {
+            Self::Elastic(model) => model.move_to(displacement),
+            Self::Bilinear(model) => model.move_to(displacement),
+            Self::WearingBilinear(model) => model.move_to(displacement),
+            Self::Multilinear(model) => model.move_to(displacement),
+            Self::BoucWen(model) => model.move_to(displacement),
+            Self::Pinched(model) => model.move_to(displacement),
+            Self::Degrading(model) => model.move_to(displacement),
+            Self::Bolted(model) => model.move_to(displacement),
+            Self::Plastic(model) => model.move_to(displacement),
+            Self::AlongTheCurve(model) => model.move_to(displacement),
+            Self::Fracture(model) => model.move_to(displacement),
+            Self::Series(model) => model.move_to(displacement),
+            Self::Parallel(models) => models
+                .iter_mut()
+                .map(|model| model.move_to(displacement))
+                .sum(),
+        }
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        match self {
+            Self::Elastic(model) => model.initial_stiffness(),
+            Self::Bilinear(model) => model.initial_stiffness(),
+            Self::WearingBilinear(model) => model.initial_stiffness(),
+            Self::Multilinear(model) => model.initial_stiffness(),
+            Self::BoucWen(model) => model.initial_stiffness(),
+            Self::Pinched(model) => model.initial_stiffness(),
+            Self::Degrading(model) => model.initial_stiffness(),
+            Self::Bolted(model) => model.initial_stiffness(),
+            Self::Plastic(model) => model.initial_stiffness(),
+            Self::AlongTheCurve(model) => model.initial_stiffness(),
+            Self::Fracture(model) => model.initial_stiffness(),
+            Self::Series(model) => model.initial_stiffness(),
+            Self::Parallel(models) => models.iter().map(RestoringForce::initial_stiffness).sum(),
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! Pinched hysteresis, peak-oriented. In: a displacement. Out: the force there, exact however large the move: every branch is
+//! straight, and a move is cut at their ends.
+
+use super::RestoringForce;
+use super::deterioration::Deterioration;
+use super::deterioration::Wear;
+
+/// Numbers of a pinched hysteresis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pinching {
+    /// N/m
+    pub stiffness: f64,
+    /// N
+    pub yield_force: f64,
+    /// Stiffness of the backbone past yield over the initial one.
+    pub hardening: f64,
+    /// κ_F: force of the break point over that of the straight way to the peak.
+    pub force_factor: f64,
+    /// κ_D: 1 − displacement of the break point over the largest permanent one.
+    pub displacement_factor: f64,
+    /// a of the unloading stiffness K (x_y/x_max)^a.
+    pub unloading_exponent: f64,
+    /// Where its strength begins to fall with the displacement. None: nowhere.
+    pub capping: Option<Capping>,
+    /// How it wears with the energy it has taken. None: not at all.
+    pub deterioration: Option<Deterioration>,
+}
+
+/// A backbone that falls beyond a displacement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capping {
+    /// m
+    pub displacement: f64,
+    /// How steeply it falls, over the initial stiffness.
+    pub slope: f64,
+    /// Strength that is never lost, over the first one.
+    pub residual: f64,
+}
+
+/// After Ibarra, Medina & Krawinkler, *Hysteretic models that incorporate strength and stiffness deterioration*, Earthquake
+/// Engng Struct. Dyn. 34 (2005) 1489–1511; the break point and the order of the deterioration as `IMKPinching` of OpenSees has them:
+/// - the backbone is K to F_y, then hardening, and, where it is capped, from `x_c` on a line that falls, down to the residual strength;
+/// - unloading has the stiffness K (x_y/x_p)^a, x_p the peak displacement that way (as in Takeda's model), but at
+///   least that of the peak's chord, F_p/x_p; a return before the force is gone goes back up the same line;
+/// - from no force at u₀, reloading runs to the break point U = (1 − κ_D)·U_p, F = κ_F·F_p (U − u₀)/(x_p − u₀), with U_p the
+///   permanent displacement of the peak that way, and on to the peak; where u₀ is past the break point, straight to the peak;
+/// - from the peak on it is the backbone;
+/// - it wears by the energy of its excursions (`Wear`): basic strength, post-capping strength, unloading stiffness, and the peak that it
+///   reloads to. Nothing is lost while it is elastic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PinchedHysteresis {
+    plan: Pinching,
+    /// Farthest displacements on the backbone, forwards and backwards, m, both counted positive.
+    peaks: [f64; 2],
+    displacement: f64,
+    force: f64,
+    /// Where the force was last 0, m.
+    zero: f64,
+    pub(super) wear: Wear,
+    /// Where an unloading began that has not come to no force yet: displacement (m), force (N).
+    turn: Option<[f64; 2]>,
+}
+
+impl PinchedHysteresis {
+    /// As built, without load.
+    #[must_use]
+    pub fn new(plan: Pinching) -> Self {
+        let yielded = plan.yield_force / plan.stiffness;
+        Self {
+            plan,
+            peaks: [yielded; 2],
+            displacement: 0.0,
+            force: 0.0,
+            zero: 0.0,
+            wear: Wear::new(plan.deterioration, plan.yield_force, plan.stiffness),
+            turn: None,
+        }
+    }
+
+    /// Force of the backbone that way at `displacement` past yield, N.
+    fn backbone(&self, way: f64, displacement: f64) -> f64 {
+        let strength = self.wear.strength[usize::from(way < 0.0)];
+        let yield_force = strength * self.plan.yield_force;
+        let past = displacement - yield_force / self.plan.stiffness;
+        let hardened = yield_force + strength * self.plan.hardening * self.plan.stiffness * past;
+        match self.plan.capping {
+            None => hardened,
+            Some(capping) => {
+                let capped =
+                    self.cap(way, capping) - capping.slope * self.plan.stiffness * displacement;
+                hardened
+                    .min(capped)
+                    .max(capping.residual * self.plan.yield_force)
+            }
+        }
+    }
+
+    /// Force where the post-capping line meets no displacement, N.
+    fn cap(&self, way: f64, capping: Capping) -> f64 {
+        let Capping {
+            displacement,
+            slope,
+            ..
+        } = capping;
+        let Pinching {
+            stiffness,
+            yield_force,
+            hardening,
+            ..
+        } = self.plan;
+        let top = yield_force + hardening * stiffness * (displacement - yield_force / stiffness);
+        self.wear.capping[usize::from(way < 0.0)] * (top + slope * stiffness * displacement)
+    }
+
+    /// Where the backbone that way begins to fall, and where it stops to, m.
+    fn corners(&self, way: f64) -> [f64; 2] {
+        let Some(capping) = self.plan.capping else {
+            return [f64::INFINITY; 2];
+        };
+        let Pinching {
+            stiffness,
+            yield_force,
+            hardening,
+            ..
+        } = self.plan;
+        let strength = self.wear.strength[usize::from(way < 0.0)];
+        let (cap, falls) = (self.cap(way, capping), capping.slope * stiffness);
+        let hardens = strength * hardening * stiffness;
+        let at_none = strength * yield_force * (1.0 - strength * hardening);
+        let begins = (cap - at_none) / (hardens + falls);
+        [begins, (cap - capping.residual * yield_force) / falls]
+    }
+
+    /// Stiffness at which a force that way unloads, N/m.
+    fn unloading(&self, way: f64) -> f64 {
+        let peak = self.peak(way);
+        let ductility = peak * self.plan.stiffness / self.plan.yield_force;
+        // Never softer than the way there, from where the force was gone: what was taken is not given back twice.
+        let falls = self.wear.wears() || self.plan.capping.is_some();
+        let from = if falls {
+            (self.zero * way).clamp(0.0, 0.999 * peak)
+        } else {
+            0.0
+        };
+        let worn = self.wear.unloading
+            * self.plan.stiffness
+            * ductility.powf(-self.plan.unloading_exponent);
+        worn.max(self.backbone(way, peak) / (peak - from))
+    }
+
+    const fn peak(&self, way: f64) -> f64 {
+        if way > 0.0 {
+            self.peaks[0]
+        } else {
+            self.peaks[1]
+        }
+    }
+
+    /// Ends of the straight branches of a reloading from no force at `zero` to the peak, all counted along the way.
+    fn branches(&self, way: f64, zero: f64) -> [[f64; 2]; 2] {
+        let peak = self.peak(way);
+        let top = self.backbone(way, peak);
+        let permanent = peak - top / self.unloading(way);
+        let at = (1.0 - self.plan.displacement_factor) * permanent;
+        if at <= zero {
+            return [[peak, top]; 2];
+        }
+        [
+            [
+                at,
+                self.plan.force_factor * top * (at - zero) / (peak - zero),
+            ],
+            [peak, top],
+        ]
+    }
+
+    /// Goes along a straight branch to `end` or as far as `to`; true where `to` was reached. All counted along the way.
+    fn along(&mut self, way: f64, end: [f64; 2], to: f64) -> bool {
+        let (from, force) = (self.displacement * way, self.force * way);
+        let [end_at, end_force] = end;
+        let reached = to < end_at;
+        let force = if reached {
+            force + (end_force - force) * ((to - from) / (end_at - from))
+        } else {
+            end_force
+        };
+        self.pass(way * if reached { to } else { end_at }, way * force);
+        reached
+    }
+
+    /// Goes straight to a place (m) and the force there (N).
+    fn pass(&mut self, displacement: f64, force: f64) {
+        self.wear
+            .work(0.5 * (self.force + force) * (displacement - self.displacement));
+        (self.displacement, self.force) = (displacement, force);
+    }
+
+    /// Unloads a force against the way, or comes back up to where an unloading began; true where `to` was reached. A force that
+    /// has unloaded to exactly zero still ends its excursion when the motion goes on.
+    fn elastic(&mut self, way: f64, to: f64) -> bool {
+        let unloads = self.turn.is_some_and(|[_, force]| force * way < 0.0);
+        if self.force * way < 0.0 || unloads {
+            if self.turn.is_none() {
+                self.turn = Some([self.displacement, self.force]);
+                self.wear
+                    .turned(0.5 * self.force * self.force / self.unloading(-way));
+            }
+            let end = self.displacement * way - self.force * way / self.unloading(-way);
+            if self.along(way, [end, 0.0], to) {
+                return true;
+            }
+            self.zero = self.displacement;
+            self.turn = None;
+            let side = usize::from(way < 0.0);
+            self.peaks[side] *= self.wear.ended(side);
+        }
+        if let Some([at, force]) = self.turn {
+            if self.along(way, [at * way, force * way], to) {
+                return true;
+            }
+            self.turn = None;
+        }
+        false
+    }
+
+    fn go(&mut self, way: f64, to: f64) {
+        if self.elastic(way, to) {
+            return;
+        }
+        for end in self.branches(way, self.zero * way) {
+            if self.displacement * way < end[0] && self.along(way, end, to) {
+                return;
+            }
+        }
+        for corner in self.corners(way) {
+            if self.peak(way) < corner && corner < to {
+                self.beyond(way, corner);
+            }
+        }
+        if to > self.peak(way) {
+            self.beyond(way, to);
+        }
+        self.displacement = way * to;
+    }
+
+    /// On along the backbone, which is straight until there (m along the way).
+    fn beyond(&mut self, way: f64, to: f64) {
+        self.peaks[usize::from(way < 0.0)] = to;
+        self.pass(way * to, way * self.backbone(way, to));
+    }
+}
+
+impl RestoringForce for PinchedHysteresis {
+    fn move_to(&mut self, displacement: f64) -> f64 {
+        let moved = displacement - self.displacement;
+        if moved != 0.0 {
+            self.go(moved.signum(), displacement * moved.signum());
+            self.displacement = displacement;
+        }
+        self.force
+    }
+
+    fn initial_stiffness(&self) -> f64 {
+        self.plan.stiffness
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::tests::energy_along;
+    use super::*;
+
+    /// 1000 N/mm to 1 kN, perfectly plastic; κ_F = 0.4, κ_D = 0.5.
+    pub(crate) const PLAN: Pinching = Pinching {
+        stiffness: 1e6,
+        yield_force: 1000.0,
+        hardening: 0.0,
+        force_factor: 0.4,
+        displacement_factor: 0.5,
+        unloading_exponent: 0.0,
+        capping: None,
+        deterioration: None,
+    };
+
+    #[test]
+    fn the_points_of_the_rule_by_hand() {
+        let mut model = PinchedHysteresis::new(PLAN);
+        let path = [
+            (0.0005, 500.0),
+            (0.0050, 1000.0),
+            // Unloads with K; back up before the force is gone; no force at 4 mm.
+            (0.0045, 500.0),
+            (0.0048, 800.0),
+            (0.0045, 500.0),
+            (0.0040, 0.0),
+            // Backwards to the peak at −1 mm: its permanent displacement is 0, so is the break point's; −400·4/5 = −320 N there.
+            (0.0020, -160.0),
+            (0.0000, -320.0),
+            (-0.0010, -1000.0),
+            (-0.0030, -1000.0),
+            (-0.0020, 0.0),
+            // Forwards: break point at half of 4 mm, 400·(2 + 2)/(5 + 2) N.
+            (0.0020, 1600.0 / 7.0),
+            (0.0050, 1000.0),
+            (0.0060, 1000.0),
+        ];
+        for (displacement, force) in path {
+            let found = model.move_to(displacement);
+            assert!(
+                (found - force).abs() < 1e-9,
+                "{displacement} m: {found} N is not {force} N"
+            );
+        }
+    }
+
+    #[test]
+    fn unloading_softens_with_the_peak_and_never_below_its_chord() {
+        let soft = Pinching {
+            unloading_exponent: 0.5,
+            ..PLAN
+        };
+        let mut model = PinchedHysteresis::new(soft);
+        model.move_to(0.004);
+        // K/√4 = 500 N/mm.
+        assert!((model.move_to(0.003) - 500.0).abs() < 1e-9);
+        let mut hard = PinchedHysteresis::new(Pinching {
+            unloading_exponent: 1.0,
+            hardening: 0.5,
+            ..PLAN
+        });
+        let top = hard.move_to(0.004);
+        assert!((top - 2500.0).abs() < 1e-9);
+        assert!(
+            (hard.move_to(0.002) - 1250.0).abs() < 1e-9,
+            "to the origin, not past it"
+        );
+    }
+
+    /// A hair before the displacement of zero force the force rounds to zero. Loading the other way begins there, not at the
+    /// reversal point.
+    #[test]
+    fn an_unloading_that_rounds_to_zero_force_has_ended() {
+        let mut model = PinchedHysteresis::new(Pinching {
+            unloading_exponent: 1.0,
+            ..PLAN
+        });
+        model.move_to(-0.002);
+        assert_eq!(model.move_to(-1e-30), 0.0);
+        let next = model.move_to(0.0005);
+        assert!((next - 500.0).abs() < 1e-9, "{next} N");
+    }
+
+    /// A settled cycle ±A of the perfectly plastic one with κ_D = 1 (break points at no displacement): by hand, with A = 5 x_y,
+    /// the reloading polygon (−4, 0), (0, 400·4/9), (5, 1000), unloading to (4, 0), and the same mirrored: areas in N·mm.
+    #[test]
+    fn energy_of_a_settled_cycle() {
+        let mut model = PinchedHysteresis::new(Pinching {
+            displacement_factor: 1.0,
+            ..PLAN
+        });
+        let (amplitude, middle) = (0.005, 1600.0 / 9.0);
+        model.move_to(amplitude);
+        model.move_to(-amplitude);
+        let energy = energy_along(&mut model, -amplitude, &[amplitude, -amplitude], 1e-6);
+        let half = 0.5 * 4.0 * middle + 0.5 * 5.0 * (middle + 1000.0) - 0.5 * 1000.0;
+        assert!(
+            (energy / (2e-3 * half) - 1.0).abs() < 1e-6,
+            "{energy} J is not {} J",
+            2e-3 * half
+        );
+    }
+}

@@ -1,0 +1,65 @@
+//! The energy balance of a structure, step by step. In: the ends of a step. Out: energies in the relative form.
+
+use std::ops::{Add as _, Sub as _};
+
+use crate::integrator::step_form::Matrices;
+use crate::matrix::{Matrix as _, Vector};
+
+/// Energies at the end of a step, all in J, cumulated from the start; of displacements and velocities against the ground
+/// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90: what an absolute one adds is the ground's own work). They add up:
+/// `kinetic + restoring + damping + error = input`.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct FrameEnergies {
+    /// ½ ẊᵀMẊ
+    pub kinetic: f64,
+    /// ∫ Rᵀ dX over the computed X, trapezoid.
+    pub restoring: f64,
+    /// ∫ ẊᵀCẊ dt
+    pub damping: f64,
+    /// ∫ FᵀẊ dt; under a ground motion −∫ ẊᵀMι `ü_g` dt.
+    pub input: f64,
+    /// What remains of the input: the integration error, and under α-OS with α < 0 what it damps numerically. With the
+    /// tangent form it is rounding as long as the specimen is linear.
+    pub error: f64,
+}
+
+/// Both ends of a step: vectors before and after.
+#[derive(Clone, Copy)]
+pub(crate) struct Ends<'a, V> {
+    pub displacement: [&'a V; 2],
+    pub velocity: [&'a V; 2],
+    /// At the computed displacement.
+    pub restoring_force: [&'a V; 2],
+    pub load: [&'a V; 2],
+}
+
+impl FrameEnergies {
+    /// The balance one step on; `damping_work` where the velocity has jumped inside the step, J, otherwise that of the mean
+    /// velocity. `scratch` is two vectors of the structure's order.
+    #[inline]
+    pub(crate) fn advance<V: Vector>(
+        &self,
+        matrices: &Matrices<V>,
+        time_step: f64,
+        ends: &Ends<V>,
+        damping_work: Option<f64>,
+        [first, second]: [&mut V; 2],
+    ) -> Self {
+        let restoring = V::trapezoid(ends.restoring_force, ends.displacement, f64::sub);
+        let input = V::trapezoid(ends.load, ends.velocity, f64::add);
+        let damping_work = damping_work.unwrap_or_else(|| {
+            first.update(ends.velocity, |_, [before, after]| 0.5 * (before + after));
+            matrices.damping.product(first, second);
+            time_step * first.dot(second)
+        });
+        let mut next = Self {
+            kinetic: 0.5 * matrices.mass.quadratic(ends.velocity[1], second),
+            restoring: self.restoring + 0.5 * restoring,
+            damping: self.damping + damping_work,
+            input: self.input + time_step * (0.25 * input),
+            error: 0.0,
+        };
+        next.error = next.input - (next.kinetic + next.restoring + next.damping);
+        next
+    }
+}

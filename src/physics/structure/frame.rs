@@ -1,0 +1,136 @@
+//! Frames of storeys: many degrees of freedom, one for each floor, counted from the ground up. A frame has a matrix of mass and one of
+//! stiffness. It computes no motion.
+
+use crate::specimen::Behaviour;
+
+/// A structure of several floors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// From the ground up; empty where the plan gives the matrices.
+    pub storeys: Vec<Storey>,
+    /// M, kg, row by row: symmetric, positive definite.
+    pub mass: Vec<Vec<f64>>,
+    /// K at no displacement, N/m, row by row: symmetric, positive definite.
+    pub stiffness: Vec<Vec<f64>>,
+    /// The files of mass and stiffness, where the matrices were read.
+    pub files: Option<[String; 2]>,
+    /// Standard, of the matrices of mass and stiffness, each as a whole, relative; 0 where none is stated.
+    pub matrix_uncertainty: [f64; 2],
+}
+
+/// One storey: a floor on its columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Storey {
+    /// kg, of the floor
+    pub mass: f64,
+    /// Standard, kg; 0 where none is stated.
+    pub mass_uncertainty: f64,
+    /// N/m, of all its columns together
+    pub stiffness: f64,
+    /// Standard, N/m; 0 where none is stated.
+    pub stiffness_uncertainty: f64,
+    /// m
+    pub height: Option<f64>,
+    /// Storey shear against drift, what a virtual rig bends.
+    pub behaviour: Behaviour,
+    /// On the load cells of a virtual rig, N·s/m of drift velocity.
+    pub damping: f64,
+    /// The same, N: friction against the drift.
+    pub coulomb: f64,
+}
+
+impl Storey {
+    /// Of this mass (kg), stiffness (N/m) and behaviour, and nothing else stated.
+    #[must_use]
+    pub const fn new(mass: f64, stiffness: f64, behaviour: Behaviour) -> Self {
+        let (mass_uncertainty, stiffness_uncertainty) = (0.0, 0.0);
+        Self {
+            mass,
+            mass_uncertainty,
+            stiffness,
+            stiffness_uncertainty,
+            height: None,
+            behaviour,
+            damping: 0.0,
+            coulomb: 0.0,
+        }
+    }
+}
+
+impl Frame {
+    /// A frame of storeys: M diagonal, K tridiagonal with `k_i + k_{i+1}` on its diagonal.
+    #[must_use]
+    pub fn of_storeys(storeys: Vec<Storey>) -> Self {
+        let count = storeys.len();
+        let mut mass = vec![vec![0.0; count]; count];
+        let mut stiffness = vec![vec![0.0; count]; count];
+        for (floor, storey) in storeys.iter().enumerate() {
+            mass[floor][floor] = storey.mass;
+            stiffness[floor][floor] += storey.stiffness;
+            if floor > 0 {
+                stiffness[floor - 1][floor - 1] += storey.stiffness;
+                stiffness[floor - 1][floor] = -storey.stiffness;
+                stiffness[floor][floor - 1] = -storey.stiffness;
+            }
+        }
+        Self {
+            storeys,
+            mass,
+            stiffness,
+            files: None,
+            matrix_uncertainty: [0.0; 2],
+        }
+    }
+
+    /// Floors, each with an actuator and a load cell.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// ιᵀMι, kg: what moves with the ground.
+    #[must_use]
+    pub fn total_mass(&self) -> f64 {
+        self.mass.iter().flatten().sum()
+    }
+
+    /// Standard, of the mass of all floors together, kg: each is independent of the others, a matrix is one.
+    #[must_use]
+    pub fn total_mass_uncertainty(&self) -> f64 {
+        let of_floors = self
+            .storeys
+            .iter()
+            .map(|storey| storey.mass_uncertainty.powi(2))
+            .sum::<f64>()
+            .sqrt();
+        of_floors.hypot(self.matrix_uncertainty[0] * self.total_mass())
+    }
+
+    /// The same frame with other matrices: each times its factor.
+    #[must_use]
+    pub fn scaled(&self, [mass, stiffness]: [f64; 2]) -> Self {
+        let times = |matrix: &[Vec<f64>], factor: f64| -> Vec<Vec<f64>> {
+            matrix
+                .iter()
+                .map(|row| row.iter().map(|entry| factor * entry).collect())
+                .collect()
+        };
+        Self {
+            mass: times(&self.mass, mass),
+            stiffness: times(&self.stiffness, stiffness),
+            ..self.clone()
+        }
+    }
+
+    /// The same frame with other storeys: its matrices follow.
+    #[must_use]
+    pub fn with(&self, change: impl FnOnce(&mut [Storey])) -> Self {
+        let mut storeys = self.storeys.clone();
+        change(&mut storeys);
+        if storeys.is_empty() {
+            self.clone()
+        } else {
+            Self::of_storeys(storeys)
+        }
+    }
+}

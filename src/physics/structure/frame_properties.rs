@@ -1,0 +1,157 @@
+//! What follows from a frame's masses, stiffness and damping before anything moves: matrices, modes, the longest stable step.
+//! In: a frame of the plan, damping. Out: numbers in SI. It integrates nothing.
+
+use thiserror::Error;
+
+use crate::contact::contact_time_step::Approach;
+use crate::frame::BandFactor;
+use crate::frame::{
+    Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand,
+    damping_matrix, modes, storey_stiffness,
+};
+use crate::integrator::Integrator;
+use crate::integrator::stability::{Met, longest_stable_step};
+use crate::structure::frame::Frame;
+
+/// A frame, ready to be integrated.
+#[derive(Clone, Debug)]
+pub struct FrameProperties {
+    pub matrices: FrameMatrices,
+    pub modes: Modes,
+}
+
+/// Why a frame has no motion.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NoProperties {
+    #[error("{0}")]
+    Rows(#[from] RowsError),
+    #[error("{0}")]
+    Modes(#[from] ModesError),
+    #[error("{0}")]
+    Damping(#[from] DampingError),
+}
+
+impl FrameProperties {
+    /// # Errors
+    /// A matrix is not positive definite, or no damping matrix has these ratios.
+    pub fn of(frame: &Frame, damping: &Damping) -> Result<Self, NoProperties> {
+        let mass = SymmetricBand::from_dense(&frame.mass)?;
+        let stiffness = SymmetricBand::from_dense(&frame.stiffness)?;
+        let modes = modes(&mass, &stiffness)?;
+        let damping = damping_matrix(damping, &mass, &stiffness, &modes)?;
+        Ok(Self {
+            matrices: FrameMatrices {
+                mass,
+                damping,
+                stiffness,
+            },
+            modes,
+        })
+    }
+
+    /// A tenth of the shortest period, s (Melo et al. 2006, sec. 5).
+    #[must_use]
+    pub fn critical_time_step(&self) -> f64 {
+        self.modes.critical_time_step()
+    }
+
+    /// Effective mass of one floor, 1/(e_sᵀM⁻¹e_s), kg: what a blow of no duration meets there.
+    #[must_use]
+    pub fn struck_mass(&self, struck: usize) -> f64 {
+        let mut push = vec![0.0; self.matrices.order()];
+        push[struck] = 1.0;
+        // A mass that is not positive definite has no modes, and no properties.
+        if let Ok(factor) = BandFactor::new(&self.matrices.mass) {
+            factor.solve_in_place(&mut push);
+        }
+        1.0 / push[struck]
+    }
+
+    /// A tenth of the shortest period there is while a striker touches a floor, s. Under a contact of finite stiffness that is
+    /// the period of frame and striker with the contact's tangent at its deepest ([`Approach::contact_stiffness`]): a longer step
+    /// would not show the blow. A contact without stiffness of its own has none.
+    #[must_use]
+    pub fn critical_on_impact(&self, struck: usize, approach: &Approach) -> f64 {
+        let alone = self.critical_time_step();
+        let Some(contact) = approach.contact_stiffness(self.struck_mass(struck)) else {
+            return alone;
+        };
+        let order = self.matrices.order();
+        let mut mass = SymmetricBand::zero(order + 1, self.matrices.mass.half_bandwidth());
+        let mut stiffness = SymmetricBand::zero(
+            order + 1,
+            self.matrices.stiffness.half_bandwidth().max(order - struck),
+        );
+        for row in 0..order {
+            for column in 0..=row {
+                if row - column <= self.matrices.mass.half_bandwidth() {
+                    mass.set(row, column, self.matrices.mass.entry(row, column));
+                }
+                if row - column <= self.matrices.stiffness.half_bandwidth() {
+                    stiffness.set(row, column, self.matrices.stiffness.entry(row, column));
+                }
+            }
+        }
+        mass.set(order, order, approach.striker_mass);
+        stiffness.set(struck, struck, stiffness.entry(struck, struck) + contact);
+        stiffness.set(order, struck, -contact);
+        stiffness.set(order, order, contact);
+        modes(&mass, &stiffness).map_or(alone, |together| together.critical_time_step().min(alone))
+    }
+
+    /// Fraction of critical damping of each mode: `φᵀCφ / (2ω φᵀMφ)`.
+    #[must_use]
+    pub fn damping_ratios(&self) -> Vec<f64> {
+        let ratio = |(mode, shape): (usize, &Vec<f64>)| {
+            let FrameMatrices { mass, damping, .. } = &self.matrices;
+            damping.form(shape, shape)
+                / (2.0 * self.modes.angular_frequency(mode) * mass.form(shape, shape))
+        };
+        self.modes.shapes.iter().enumerate().map(ratio).collect()
+    }
+
+    /// Longest stable Δt, s; infinite where there is none. Of a virtual specimen it is also known how its storeys begin to
+    /// bend, which may be stiffer than what the plan integrates with.
+    #[must_use]
+    pub fn longest_stable_step(
+        &self,
+        integrator: Integrator,
+        virtual_specimen: Option<&Frame>,
+    ) -> f64 {
+        let own = self.highest(&self.matrices.stiffness);
+        let mut met = Met {
+            highest: own,
+            shortfall: 0.0,
+            share: 0.0,
+            damping_ratio: 0.0,
+        };
+        if let Some(frame) = virtual_specimen.filter(|frame| !frame.storeys.is_empty()) {
+            let behaves: Vec<f64> = frame
+                .storeys
+                .iter()
+                .map(|storey| storey.behaviour.largest_stiffness())
+                .collect();
+            met.highest = own.max(self.highest(&storey_stiffness(&behaves)));
+            let storeys = || frame.storeys.iter().zip(&behaves);
+            met.share = storeys()
+                .map(|(storey, behaves)| 1.0 - storey.stiffness / behaves)
+                .fold(0.0, f64::max);
+            if met.share > 0.0 {
+                // Storeys that are softer count as a trifle: the bound is then a little low, never high.
+                let trifle = |behaves: f64| 1e-12 * behaves;
+                let beyond: Vec<f64> = storeys()
+                    .map(|(storey, b)| (b - storey.stiffness).max(trifle(*b)))
+                    .collect();
+                met.shortfall = self.highest(&storey_stiffness(&beyond));
+            }
+        }
+        longest_stable_step(integrator, &met)
+    }
+
+    /// ω² of the highest mode with another stiffness, rad²/s².
+    fn highest(&self, stiffness: &SymmetricBand) -> f64 {
+        modes(&self.matrices.mass, stiffness).map_or(0.0, |modes| {
+            (std::f64::consts::TAU / modes.shortest_period()).powi(2)
+        })
+    }
+}

@@ -1,0 +1,322 @@
+//! How well an actuator follows, and what that does to the run: the field's monitors of a hybrid test, one degree of
+//! freedom each. In: at every step the place that was asked for, the place that was measured, the force. Out: sums so far.
+//! It holds no rig: whoever does compares them with the limits.
+//!
+//! With d_c commanded, d_m measured and r_m the force read, by the trapezoidal rule over the steps:
+//!
+//! ```text
+//! energy error        E_err = ∫ r_m dd_c − ∫ r_m dd_m          J
+//! tracking indicator  TI = ½(∫ d_m dd_c − ∫ d_c dd_m)          m²
+//! NRMS error          √(Σ(d_m − d_c)² / Σ d_c²)                1
+//! peak error          max |d_m − d_c|                          m
+//! ```
+//!
+//! Where the recursion takes another force r* than the one read, as under the I-modification, r* = r_m − K_I(d_m − d_c), it
+//! supposes that the specimen goes on from d_m to d_c along K_I. So do the monitors:
+//!
+//! ```text
+//! E_err = ∫ r* dd_c − (∫ r_m dd_m + ∫_{d_m}^{d_c} r dx),    ∫_{d_m}^{d_c} r dx = ½(r_m + r*)(d_c − d_m)
+//! ```
+//!
+//! What the specimen stores on the way that it is behind by is given back when the actuator gets there, and is no error; on a
+//! spring K = K_I nothing is left at any step, however large the lag (without the last term it would swing by sin φ of ½KA²
+//! twice a cycle of A sin ωt, and end as it began). What is left is what the specimen did not do as K_I says.
+//!
+//! **Energy error**: the recursion believes that the
+//! specimen took ∫ r_m dd_c, it took ∫ r_m dd_m. Negative: tracking puts energy into the test, and its amplitudes grow;
+//! positive: it takes energy out, as damping would. A share of the input, it is the one number to stop a test by.
+//! **Tracking indicator**: the area that command against measurement encloses. It falls as long as
+//! the actuator lags, and rises while it leads; an error in proportion leaves it where it is.
+//! **NRMS and peak error** tell of the size, and of no direction.
+
+use serde::{Deserialize, Serialize};
+
+/// Share of the input energy at which a run is remarked on. Half a damping ratio of a per cent over a dozen cycles is of
+/// this size: more of it shows in the results.
+pub const WARN: f64 = 0.02;
+/// Share of the input energy at which the rig is held, where the plan says nothing else.
+pub const HOLD: f64 = 0.05;
+
+/// What the monitors show after a step.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Tracking {
+    /// E_err, J; negative: tracking puts energy in.
+    pub energy_error: f64,
+    /// TI, m²; falling: the actuator lags.
+    pub indicator: f64,
+    /// Root mean square of the error over that of the command; 0 as long as nothing was commanded.
+    pub nrms_error: f64,
+    /// Largest |measured − commanded| so far, m.
+    pub peak_error: f64,
+}
+
+impl Tracking {
+    /// All axes of a specimen told as one: energies and areas add, of the others the largest counts.
+    #[must_use]
+    pub fn together(axes: &[Self]) -> Self {
+        axes.iter().fold(Self::default(), |all, axis| Self {
+            energy_error: all.energy_error + axis.energy_error,
+            indicator: all.indicator + axis.indicator,
+            nrms_error: all.nrms_error.max(axis.nrms_error),
+            peak_error: all.peak_error.max(axis.peak_error),
+        })
+    }
+
+    /// E_err as a share of the energy put into the test (J), signed; none while nothing was.
+    #[must_use]
+    pub fn share_of(&self, input_energy: f64) -> Option<f64> {
+        (input_energy > 0.0).then(|| self.energy_error / input_energy)
+    }
+}
+
+/// Sums up the steps of one degree of freedom.
+#[derive(Clone, Copy, Debug)]
+pub struct Monitor {
+    commanded: f64,
+    measured: f64,
+    force: f64,
+    /// r* − r_m at the last step, N.
+    corrected: f64,
+    /// ∫ r* dd_c − ∫ r_m dd_m, J.
+    integrated: f64,
+    /// Work from where it was measured before the first step to where it was sent, J.
+    behind_at_start: f64,
+    errors: f64,
+    commands: f64,
+    tracking: Tracking,
+}
+
+impl Monitor {
+    /// From what was asked for (m), measured (m) and read (N) before the first step.
+    #[must_use]
+    pub fn new(commanded: f64, measured: f64, force: f64) -> Self {
+        Self::new_as(commanded, measured, force, force)
+    }
+
+    /// The same, where a correction would have `taken` (N) for the force at the command; the recursion begins with the one read.
+    #[must_use]
+    pub fn new_as(commanded: f64, measured: f64, force: f64, taken: f64) -> Self {
+        let mut monitor = Self {
+            commanded,
+            measured,
+            force,
+            corrected: 0.0,
+            integrated: 0.0,
+            behind_at_start: work_behind((commanded, measured), force, taken - force),
+            errors: 0.0,
+            commands: 0.0,
+            tracking: Tracking::default(),
+        };
+        monitor.size(commanded, measured);
+        monitor
+    }
+
+    /// Takes the end of a step.
+    pub fn take(&mut self, commanded: f64, measured: f64, force: f64) -> Tracking {
+        self.take_as(commanded, measured, force, force)
+    }
+
+    /// The same, where the recursion takes `taken` (N) for the force at the command.
+    pub fn take_as(&mut self, commanded: f64, measured: f64, force: f64, taken: f64) -> Tracking {
+        let corrected = taken - force;
+        let (asked, went) = (commanded - self.commanded, measured - self.measured);
+        let tracking = &mut self.tracking;
+        self.integrated += 0.5 * (self.force + force) * (asked - went)
+            + 0.5 * (self.corrected + corrected) * asked;
+        tracking.energy_error = self.integrated
+            - (work_behind((commanded, measured), force, corrected) - self.behind_at_start);
+        tracking.indicator +=
+            0.25 * ((self.measured + measured) * asked - (self.commanded + commanded) * went);
+        (self.commanded, self.measured, self.force, self.corrected) =
+            (commanded, measured, force, corrected);
+        self.size(commanded, measured);
+        self.tracking
+    }
+
+    /// What following has come to so far.
+    #[must_use]
+    pub const fn tracking(&self) -> Tracking {
+        self.tracking
+    }
+
+    fn size(&mut self, commanded: f64, measured: f64) {
+        let error = measured - commanded;
+        self.errors += error * error;
+        self.commands += commanded * commanded;
+        self.tracking.peak_error = self.tracking.peak_error.max(error.abs());
+        self.tracking.nrms_error = if self.commands > 0.0 {
+            (self.errors / self.commands).sqrt()
+        } else {
+            0.0
+        };
+    }
+}
+
+/// ½(r_m + r*)(d_c − d_m), J; none where no force is corrected, for then nothing is supposed of the way between.
+fn work_behind((commanded, measured): (f64, f64), force: f64, corrected: f64) -> f64 {
+    if corrected == 0.0 {
+        0.0
+    } else {
+        (force + 0.5 * corrected) * (commanded - measured)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STIFFNESS: f64 = 1000.0;
+    const STEPS: u32 = 4000;
+
+    /// One cycle of A sin ωt; the actuator goes where `place` says.
+    fn cycle(amplitude: f64, place: impl Fn(f64) -> f64) -> Tracking {
+        let at = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
+        let mut monitor = Monitor::new(0.0, place(0.0), STIFFNESS * place(0.0));
+        for step in 1..=STEPS {
+            let angle = at(step);
+            let measured = place(angle);
+            monitor.take(amplitude * angle.sin(), measured, STIFFNESS * measured);
+        }
+        monitor.tracking()
+    }
+
+    /// Behind by φ on a spring: E_err = −πKA² sin φ and TI = −πA² sin φ a cycle; ahead, the same with the other sign.
+    #[test]
+    fn a_lag_puts_energy_in_and_a_lead_takes_it_out() {
+        let (amplitude, phase): (f64, f64) = (0.01, 0.1);
+        for sign in [-1.0, 1.0] {
+            let found = cycle(amplitude, |angle| amplitude * (angle + sign * phase).sin());
+            let area = std::f64::consts::PI * amplitude * amplitude * phase.sin();
+            assert!(
+                (found.energy_error - sign * STIFFNESS * area).abs() < 1e-5 * STIFFNESS * area,
+                "{found:?}"
+            );
+            assert!(
+                (found.indicator - sign * area).abs() < 1e-5 * area,
+                "{found:?}"
+            );
+            // |sin(a + φ) − sin a| is at most 2 sin(φ/2), and that is its ratio of root mean squares too.
+            assert!((found.peak_error - 2.0 * amplitude * (0.5 * phase).sin()).abs() < 1e-8);
+            assert!(
+                (found.nrms_error - 2.0 * (0.5 * phase).sin()).abs() < 1e-4,
+                "{found:?}"
+            );
+        }
+    }
+
+    /// An error in proportion stores energy and gives it back: nothing is left after a cycle, and no area is enclosed.
+    #[test]
+    fn an_error_of_gain_shows_in_its_size_only() {
+        let found = cycle(0.01, |angle| 0.009 * angle.sin());
+        assert!(found.energy_error.abs() < 1e-12 && found.indicator.abs() < 1e-15);
+        assert!((found.nrms_error - 0.1).abs() < 1e-12 && (found.peak_error - 0.001).abs() < 1e-12);
+    }
+
+    /// A cycle of A sin ωt behind by φ on a spring K, corrected along `operator`: the error at every step.
+    fn corrected(
+        amplitude: f64,
+        phase: f64,
+        operator: f64,
+        force: impl Fn(f64) -> f64,
+    ) -> Vec<f64> {
+        let angle = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
+        let place = |angle: f64| amplitude * (angle - phase).sin();
+        let taken =
+            |commanded: f64, measured: f64| force(measured) - operator * (measured - commanded);
+        let first = place(0.0);
+        let mut monitor = Monitor::new_as(0.0, first, force(first), taken(0.0, first));
+        let steps = (1..=2 * STEPS).map(|step| {
+            let (commanded, measured) = (amplitude * angle(step).sin(), place(angle(step)));
+            monitor
+                .take_as(
+                    commanded,
+                    measured,
+                    force(measured),
+                    taken(commanded, measured),
+                )
+                .energy_error
+        });
+        steps.collect()
+    }
+
+    /// Corrected along the spring's own K nothing is an error at any step, where without the correction a cycle puts in
+    /// πKA² sin φ. The recursion begins with a force that nothing has corrected: half of that over the first step.
+    #[test]
+    fn what_a_spring_gives_back_is_no_error() {
+        for (amplitude, phase) in [(0.01_f64, 0.1_f64), (0.01, 1.2), (0.03, -0.5)] {
+            let way = amplitude * (std::f64::consts::TAU / f64::from(STEPS)).sin();
+            let first = -0.5 * STIFFNESS * amplitude * phase.sin() * way;
+            for error in corrected(amplitude, phase, STIFFNESS, |place| STIFFNESS * place) {
+                assert!(
+                    (error - first).abs() < 1e-12 * STIFFNESS,
+                    "{phase}: {error} J, {first} J"
+                );
+            }
+        }
+    }
+
+    /// A `K_I` that is not the spring's corrects by its share alone: r* = K d_m − K_I(d_m − d_c), and of each cycle
+    /// π(K − K_I)A² sin φ is left.
+    #[test]
+    fn what_a_correction_leaves_counts() {
+        let (amplitude, phase): (f64, f64) = (0.01, 0.2);
+        for share in [0.5, 0.9, 1.3] {
+            let steps = corrected(amplitude, phase, share * STIFFNESS, |place| {
+                STIFFNESS * place
+            });
+            let (one, two) = (steps[STEPS as usize - 1], steps[2 * STEPS as usize - 1]);
+            let exact = -std::f64::consts::PI
+                * (1.0 - share)
+                * STIFFNESS
+                * amplitude
+                * amplitude
+                * phase.sin();
+            assert!(
+                ((two - one) / exact - 1.0).abs() < 1e-5,
+                "K_I = {share} K: {} J a cycle, {exact} J",
+                two - one
+            );
+        }
+    }
+
+    /// A specimen that flows at ±F where the recursion supposes that it is still elastic: over a way w it is off by K_I·e·w, e
+    /// what the actuator is behind by.
+    #[test]
+    fn a_correction_of_what_flows_is_an_error() {
+        let (flow, behind, operator, step) = (5.0, 1e-3, STIFFNESS, 1e-4);
+        let mut monitor = Monitor::new_as(0.1, 0.1 - behind, flow, flow + operator * behind);
+        let mut last = Tracking::default();
+        for index in 1..=100 {
+            let commanded = 0.1 + step * f64::from(index);
+            last = monitor.take_as(
+                commanded,
+                commanded - behind,
+                flow,
+                flow + operator * behind,
+            );
+        }
+        // Less half of the first step, which begins with the force that was read.
+        let exact = operator * behind * step * 99.5;
+        assert!(
+            (last.energy_error - exact).abs() < 1e-12,
+            "{last:?}, {exact} J"
+        );
+    }
+
+    /// By hand: from rest to 2 mm asked, 1 mm gone, 10 N read: ½·10 N·1 mm; ¼(1·2 − 2·1) mm² is nothing on the first step.
+    #[test]
+    fn one_step_by_hand() {
+        let mut monitor = Monitor::new(0.0, 0.0, 0.0);
+        let first = monitor.take(0.002, 0.001, 10.0);
+        assert!((first.energy_error - 0.005).abs() < 1e-15 && first.indicator.abs() < 1e-18);
+        // Back to 0 asked, 1.5 mm gone: ½(10+15)(−2 − 0.5) mm, ¼((1+1.5)(−2) − 2·0.5) mm².
+        let second = monitor.take(0.0, 0.0015, 15.0);
+        assert!(
+            (second.energy_error - (0.005 - 0.03125)).abs() < 1e-15,
+            "{second:?}"
+        );
+        assert!((second.indicator + 1.5e-6).abs() < 1e-18, "{second:?}");
+        assert_eq!(second.share_of(0.0), None);
+        assert!((second.share_of(0.5).unwrap() + 0.0525).abs() < 1e-12);
+    }
+}

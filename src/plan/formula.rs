@@ -1,0 +1,590 @@
+//! Checked expressions. Names are resolved, units are gone, dimensions agree; what is left to do at run time is
+//! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
+//! Out: an [`Estimate`], the value with its standard uncertainty.
+
+use crate::uncertainty::{Contribution, Moved, Source, combined, combined_entries, sources_of};
+
+/// Position of a procedure in the plan, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ProcedureId(pub usize);
+
+/// Which number of a result is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    Value,
+    /// `.u`, the standard uncertainty.
+    Uncertainty,
+}
+
+/// A result of a procedure: `k0.stiffness`, `k0.stiffness.u`. `name` is the schema's own word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ResultReference {
+    pub procedure: ProcedureId,
+    pub name: &'static str,
+    pub part: Part,
+}
+
+/// A checked expression, in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Formula {
+    Constant(f64),
+    /// A number that the plan states with its uncertainty.
+    Stated(Stated),
+    Result(ResultReference),
+    /// Δt of eq. 7 for the impact at hand; stands only in `time_step`.
+    CriticalTimeStep,
+    List(Vec<Formula>),
+    Index(Box<Formula>, usize),
+    Negate(Box<Formula>),
+    Binary(Operator, Box<Formula>, Box<Formula>),
+    Call(Function, Vec<Formula>),
+}
+
+/// A number of the plan, SI, and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stated {
+    pub source: Source,
+    pub value: f64,
+    /// Standard.
+    pub uncertainty: f64,
+}
+
+impl Stated {
+    /// The number, as a constant where it is exact.
+    #[must_use]
+    pub fn formula(self) -> Formula {
+        if self.uncertainty > 0.0 {
+            Formula::Stated(self)
+        } else {
+            Formula::Constant(self.value)
+        }
+    }
+}
+
+/// Between two numbers; their dimensions were checked with the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+}
+
+/// Of one number or of a list, by its name in the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    Abs,
+    Min,
+    Max,
+    Sum,
+    Mean,
+    Sqrt,
+    Sin,
+    Cos,
+}
+
+/// A value and its standard uncertainty (both SI); no uncertainty where nothing measured went in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    pub value: f64,
+    pub uncertainty: Option<f64>,
+}
+
+/// What a result may be: one number or a list, with the standard uncertainty of a number where it was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ResultValue {
+    /// `value` is None where the result does not exist in this run (no stop time: the striker did not stop).
+    Number {
+        value: Option<f64>,
+        uncertainty: Option<f64>,
+    },
+    List(Vec<f64>),
+}
+
+/// Where formulas find results.
+pub trait Results: Sync {
+    /// The result, or None if its procedure has not run to it.
+    fn result(&self, reference: ResultReference) -> Option<ResultValue>;
+
+    /// What its uncertainty is made of; of a result that says no more, all of it is its own.
+    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        let ResultReference {
+            procedure, name, ..
+        } = reference;
+        match self.result(reference) {
+            Some(ResultValue::Number {
+                uncertainty: Some(own),
+                ..
+            }) => {
+                vec![Contribution::new(
+                    Source::Fit {
+                        procedure,
+                        result: name,
+                    },
+                    own,
+                )]
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Degrees of freedom by which the size of a source is known; infinite of what was not estimated from readings.
+    fn degrees(&self, _: Source) -> f64 {
+        f64::INFINITY
+    }
+
+    /// By how many of its standard uncertainties a source is moved here.
+    fn moved(&self, _: Source) -> f64 {
+        0.0
+    }
+
+    /// Why a measured result that exists has no expanded uncertainty; None where it has one, or is exact.
+    fn no_uncertainty(&self, _: ResultReference) -> Option<String> {
+        None
+    }
+}
+
+/// No procedure has run: constants only.
+pub struct NoResults;
+
+impl Results for NoResults {
+    fn result(&self, _: ResultReference) -> Option<ResultValue> {
+        None
+    }
+}
+
+/// Why a formula has no value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FormulaError {
+    #[error("the result `{0}` does not exist in this run")]
+    Missing(&'static str),
+    #[error("the uncertainty of `{0}` is not known in this run")]
+    NoUncertainty(&'static str),
+    #[error("the value is not a finite number")]
+    NotFinite,
+    #[error("a list stands where one number is wanted")]
+    NotANumber,
+    #[error("the list has no entry {0}")]
+    NoSuchEntry(usize),
+}
+
+#[derive(Clone, Debug)]
+enum Value {
+    Number(f64),
+    List(Vec<f64>),
+}
+
+impl Formula {
+    /// The value, and its standard uncertainty propagated to first order: the root sum of squares of what each source of the
+    /// results it reads does to the value (JCGM 100:2008, 5.1.2 and, of results that share sources, 5.2.2). `critical` is Δtc
+    /// (s), for `time_step` only.
+    ///
+    /// # Errors
+    /// A result that does not exist in this run, or a value that is not finite.
+    pub fn evaluate(
+        &self,
+        results: &dyn Results,
+        critical: Option<f64>,
+    ) -> Result<Estimate, FormulaError> {
+        let value = self.number(results, critical)?;
+        let uncertainty = combined(&self.contributions(results, critical)?);
+        Ok(Estimate { value, uncertainty })
+    }
+
+    /// What each source of the results it reads does to the value.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn contributions(
+        &self,
+        results: &dyn Results,
+        critical: Option<f64>,
+    ) -> Result<Vec<Contribution>, FormulaError> {
+        let mut references = Vec::new();
+        self.collect_references(&mut references);
+        let mut sources = sources_of(&references, results);
+        self.collect_stated(&mut sources);
+        if sources.is_empty() {
+            return Ok(Vec::new());
+        }
+        let value = self.number(results, critical)?;
+        let effect = |source| {
+            // Half the effect of moving the source by ±u: exact for a linear formula.
+            let up = self.number(
+                &Moved {
+                    results,
+                    source,
+                    by: 1.0,
+                },
+                critical,
+            )?;
+            let down = self.number(
+                &Moved {
+                    results,
+                    source,
+                    by: -1.0,
+                },
+                critical,
+            )?;
+            let (above, below) = (up - value, value - down);
+            // Both sides move it the same way: it folds there, as `abs` does about 0, and the halves would cancel.
+            let folds = above * below < 0.0;
+            Ok(Contribution::new(
+                source,
+                if folds {
+                    above.abs().max(below.abs()).copysign(above)
+                } else {
+                    0.5 * (up - down)
+                },
+            ))
+        };
+        sources.into_iter().map(effect).collect()
+    }
+
+    /// The value where no result is needed: constants folded by `check`.
+    #[must_use]
+    pub fn constant(&self) -> Option<f64> {
+        self.number(&NoResults, None).ok()
+    }
+
+    /// The result this formula is, if it is nothing but one.
+    #[must_use]
+    pub fn as_result(&self) -> Option<ResultReference> {
+        if let Self::Result(reference) = self {
+            Some(*reference)
+        } else {
+            None
+        }
+    }
+
+    /// Adds every result the formula reads, each once.
+    pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
+        match self {
+            Self::Constant(_) | Self::Stated(_) | Self::CriticalTimeStep => {}
+            Self::Result(reference) => {
+                if !into.contains(reference) {
+                    into.push(*reference);
+                }
+            }
+            Self::Negate(inner) | Self::Index(inner, _) => inner.collect_references(into),
+            Self::Binary(_, left, right) => {
+                left.collect_references(into);
+                right.collect_references(into);
+            }
+            Self::List(parts) | Self::Call(_, parts) => {
+                for part in parts {
+                    part.collect_references(into);
+                }
+            }
+        }
+    }
+
+    /// Adds the source of every number that it states with an uncertainty, each once.
+    pub fn collect_stated(&self, into: &mut Vec<Source>) {
+        match self {
+            Self::Constant(_) | Self::Result(_) | Self::CriticalTimeStep => {}
+            Self::Stated(stated) => {
+                if !into.contains(&stated.source) {
+                    into.push(stated.source);
+                }
+            }
+            Self::Negate(inner) | Self::Index(inner, _) => inner.collect_stated(into),
+            Self::Binary(_, left, right) => {
+                left.collect_stated(into);
+                right.collect_stated(into);
+            }
+            Self::List(parts) | Self::Call(_, parts) => {
+                for part in parts {
+                    part.collect_stated(into);
+                }
+            }
+        }
+    }
+
+    /// Whether it states a number with an uncertainty.
+    #[must_use]
+    pub fn is_uncertain(&self) -> bool {
+        let mut stated = Vec::new();
+        self.collect_stated(&mut stated);
+        !stated.is_empty()
+    }
+
+    /// Everything in it that is no constant and no list.
+    #[must_use]
+    pub fn terms(&self) -> usize {
+        match self {
+            Self::Constant(_) => 0,
+            Self::Stated(_) | Self::Result(_) | Self::CriticalTimeStep => 1,
+            Self::Negate(inner) | Self::Index(inner, _) => 1 + inner.terms(),
+            Self::Binary(_, left, right) => 1 + left.terms() + right.terms(),
+            Self::Call(_, parts) => 1 + parts.iter().map(Self::terms).sum::<usize>(),
+            Self::List(parts) => parts.iter().map(Self::terms).sum(),
+        }
+    }
+
+    /// Whether `critical` stands in it.
+    #[must_use]
+    pub fn reads_critical_time_step(&self) -> bool {
+        match self {
+            Self::CriticalTimeStep => true,
+            Self::Constant(_) | Self::Stated(_) | Self::Result(_) => false,
+            Self::Negate(inner) | Self::Index(inner, _) => inner.reads_critical_time_step(),
+            Self::Binary(_, left, right) => {
+                left.reads_critical_time_step() || right.reads_critical_time_step()
+            }
+            Self::List(parts) | Self::Call(_, parts) => {
+                parts.iter().any(Self::reads_critical_time_step)
+            }
+        }
+    }
+
+    fn number(&self, results: &dyn Results, critical: Option<f64>) -> Result<f64, FormulaError> {
+        match self.value(results, critical)? {
+            Value::Number(value) if value.is_finite() => Ok(value),
+            Value::Number(_) => Err(FormulaError::NotFinite),
+            Value::List(_) => Err(FormulaError::NotANumber),
+        }
+    }
+
+    fn value(&self, results: &dyn Results, critical: Option<f64>) -> Result<Value, FormulaError> {
+        let number = |formula: &Formula| formula.number(results, critical);
+        Ok(match self {
+            Self::Constant(value) => Value::Number(*value),
+            Self::Stated(Stated {
+                source,
+                value,
+                uncertainty,
+            }) => {
+                let by = results.moved(*source);
+                Value::Number(if by == 0.0 {
+                    *value
+                } else {
+                    value + by * uncertainty
+                })
+            }
+            Self::CriticalTimeStep => {
+                Value::Number(critical.ok_or(FormulaError::Missing("critical"))?)
+            }
+            Self::Result(reference) => {
+                match (
+                    results
+                        .result(*reference)
+                        .ok_or(FormulaError::Missing(reference.name))?,
+                    reference.part,
+                ) {
+                    (ResultValue::List(values), Part::Value) => Value::List(values),
+                    (ResultValue::List(values), Part::Uncertainty) => {
+                        let entries =
+                            combined_entries(&results.contributions(*reference), values.len());
+                        let known: Option<Vec<f64>> = entries.into_iter().collect();
+                        Value::List(known.ok_or(FormulaError::NoUncertainty(reference.name))?)
+                    }
+                    (ResultValue::Number { value, .. }, Part::Value) => {
+                        Value::Number(value.ok_or(FormulaError::Missing(reference.name))?)
+                    }
+                    (ResultValue::Number { uncertainty, .. }, Part::Uncertainty) => Value::Number(
+                        uncertainty.ok_or(FormulaError::NoUncertainty(reference.name))?,
+                    ),
+                }
+            }
+            Self::List(parts) => Value::List(parts.iter().map(number).collect::<Result<_, _>>()?),
+            Self::Index(inner, index) => match inner.value(results, critical)? {
+                Value::List(values) => Value::Number(
+                    *values
+                        .get(*index)
+                        .ok_or(FormulaError::NoSuchEntry(*index))?,
+                ),
+                Value::Number(_) => return Err(FormulaError::NotANumber),
+            },
+            Self::Negate(inner) => Value::Number(-number(inner)?),
+            Self::Binary(operator, left, right) => {
+                let (left, right) = (number(left)?, number(right)?);
+                Value::Number(match operator {
+                    Operator::Add => left + right,
+                    Operator::Subtract => left - right,
+                    Operator::Multiply => left * right,
+                    Operator::Divide => left / right,
+                    Operator::Power => left.powf(right),
+                })
+            }
+            Self::Call(function, arguments) => {
+                let mut values = Vec::new();
+                for argument in arguments {
+                    match argument.value(results, critical)? {
+                        Value::Number(value) => values.push(value),
+                        Value::List(list) => values.extend(list),
+                    }
+                }
+                Value::Number(function.apply(&values))
+            }
+        })
+    }
+}
+
+impl Function {
+    pub const ALL: &'static [(&'static str, Function)] = &[
+        ("abs", Self::Abs),
+        ("min", Self::Min),
+        ("max", Self::Max),
+        ("sum", Self::Sum),
+        ("mean", Self::Mean),
+        ("sqrt", Self::Sqrt),
+        ("sin", Self::Sin),
+        ("cos", Self::Cos),
+    ];
+
+    /// Value of the function over its arguments, lists spread out; NaN of nothing.
+    fn apply(self, values: &[f64]) -> f64 {
+        let Some(&first) = values.first() else {
+            return f64::NAN;
+        };
+        match self {
+            Self::Abs => first.abs(),
+            Self::Sqrt => first.sqrt(),
+            Self::Sin => first.sin(),
+            Self::Cos => first.cos(),
+            Self::Min => values.iter().copied().fold(first, f64::min),
+            Self::Max => values.iter().copied().fold(first, f64::max),
+            Self::Sum => values.iter().sum(),
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "a list has at most some million entries"
+            )]
+            Self::Mean => values.iter().sum::<f64>() / values.len() as f64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct One;
+    impl Results for One {
+        fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+            (reference.name == "stiffness").then_some(ResultValue::Number {
+                value: Some(100.0),
+                uncertainty: Some(2.0),
+            })
+        }
+    }
+
+    fn stiffness() -> Formula {
+        Formula::Result(ResultReference {
+            procedure: ProcedureId(0),
+            name: "stiffness",
+            part: Part::Value,
+        })
+    }
+
+    #[test]
+    fn uncertainty_is_propagated_to_first_order() {
+        let half = Formula::Binary(
+            Operator::Divide,
+            Box::new(stiffness()),
+            Box::new(Formula::Constant(2.0)),
+        );
+        assert_eq!(
+            half.evaluate(&One, None),
+            Ok(Estimate {
+                value: 50.0,
+                uncertainty: Some(1.0)
+            })
+        );
+        let root = Formula::Call(Function::Sqrt, vec![stiffness()])
+            .evaluate(&One, None)
+            .unwrap();
+        assert!((root.uncertainty.unwrap() - 0.1).abs() < 1e-4);
+        let difference = Formula::Binary(
+            Operator::Subtract,
+            Box::new(stiffness()),
+            Box::new(stiffness()),
+        );
+        assert_eq!(
+            difference.evaluate(&One, None),
+            Ok(Estimate {
+                value: 0.0,
+                uncertainty: Some(0.0)
+            })
+        );
+    }
+
+    /// ½mv² of m = 20 ± 0.1 kg and v = 1 ± 0.01 m/s: u = √((½v²u_m)² + (mv·u_v)²), and nothing of what it is taken from itself.
+    #[test]
+    fn a_stated_number_carries_its_uncertainty() {
+        let of = |source, value, uncertainty| {
+            Stated {
+                source,
+                value,
+                uncertainty,
+            }
+            .formula()
+        };
+        let times =
+            |a: Formula, b: Formula| Formula::Binary(Operator::Multiply, Box::new(a), Box::new(b));
+        let (mass, velocity) = (
+            of(Source::StrikerMass(0), 20.0, 0.1),
+            of(Source::StrikerVelocity(0), 1.0, 0.01),
+        );
+        let energy = times(
+            times(Formula::Constant(0.5), mass),
+            times(velocity.clone(), velocity),
+        );
+        let found = energy.evaluate(&NoResults, None).unwrap();
+        assert_eq!((found.value, energy.constant()), (10.0, Some(10.0)));
+        assert!((found.uncertainty.unwrap() - 0.05_f64.hypot(0.2)).abs() < 1e-12);
+        let nothing = Formula::Binary(
+            Operator::Subtract,
+            Box::new(energy.clone()),
+            Box::new(energy),
+        );
+        assert_eq!(
+            nothing.evaluate(&NoResults, None),
+            Ok(Estimate {
+                value: 0.0,
+                uncertainty: Some(0.0)
+            })
+        );
+        assert_eq!(
+            of(Source::StrikerMass(0), 20.0, 0.0),
+            Formula::Constant(20.0)
+        );
+    }
+
+    /// |K − 99.9| with K = 100 ± 2: one way and the other it grows by nearly 2, and half of their difference is nearly nothing.
+    #[test]
+    fn what_folds_within_its_uncertainty_is_as_uncertain_as_what_is_folded() {
+        let off = |by: f64| {
+            let off = Formula::Binary(
+                Operator::Subtract,
+                Box::new(stiffness()),
+                Box::new(Formula::Constant(by)),
+            );
+            Formula::Call(Function::Abs, vec![off])
+                .evaluate(&One, None)
+                .unwrap()
+                .uncertainty
+                .unwrap()
+        };
+        assert!(
+            (off(99.9) - 2.0).abs() < 1e-12
+                && (off(100.0) - 2.0).abs() < 1e-12
+                && (off(90.0) - 2.0).abs() < 1e-12
+        );
+    }
+
+    #[test]
+    fn a_result_that_does_not_exist_is_an_error_and_so_is_a_division_by_zero() {
+        assert_eq!(
+            stiffness().evaluate(&NoResults, None),
+            Err(FormulaError::Missing("stiffness"))
+        );
+        let zero = Formula::Binary(
+            Operator::Divide,
+            Box::new(stiffness()),
+            Box::new(Formula::Constant(0.0)),
+        );
+        assert_eq!(zero.evaluate(&One, None), Err(FormulaError::NotFinite));
+    }
+}

@@ -1,0 +1,164 @@
+//! What a plan does not say of striker, specimen and rig, and no uncertainty knows therefore. In: a plan. Out: words. It judges nothing: a
+//! plan may well leave out what is small.
+
+use crate::plan::{Calibration, Plan, RigPlan};
+
+/// The uncertain inputs of striker and specimen that a procedure depends on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Dependence {
+    /// Index into `Plan::strikers`.
+    pub striker: Option<usize>,
+    /// Standard uncertainty of the mass of one degree of freedom, kg; 0 where none is stated.
+    pub mass_uncertainty: Option<f64>,
+    /// Index into `Plan::specimens` of a frame, whose masses it depends on.
+    pub frame: Option<usize>,
+}
+
+impl Plan {
+    /// Uncertainties of the striker, the specimen and the rig that the plan does not declare and a procedure depends on.
+    #[must_use]
+    pub fn undeclared(&self, dependence: Dependence) -> Vec<&'static str> {
+        let striker = dependence
+            .striker
+            .and_then(|striker| self.strikers.get(striker));
+        let frame = dependence
+            .frame
+            .and_then(|specimen| self.specimens.get(specimen))
+            .and_then(|specimen| specimen.frame.as_ref());
+        let mass_of_frame = frame.is_some_and(|frame| {
+            let storeys = frame
+                .storeys
+                .iter()
+                .any(|storey| storey.mass_uncertainty == 0.0);
+            if frame.storeys.is_empty() {
+                frame.matrix_uncertainty[0] == 0.0
+            } else {
+                storeys
+            }
+        });
+        let mass_of_one = dependence.mass_uncertainty == Some(0.0);
+        let own = [
+            (
+                "the mass of the striker",
+                striker.is_some_and(|striker| striker.mass_uncertainty == 0.0),
+            ),
+            (
+                "the velocity of the striker",
+                striker.is_some_and(|striker| striker.velocity_uncertainty == 0.0),
+            ),
+            ("the mass of the specimen", mass_of_one || mass_of_frame),
+        ];
+        let own = own
+            .into_iter()
+            .filter(|(_, lacking)| *lacking)
+            .map(|(name, _)| name);
+        own.chain(self.rig.undeclared(self.degrees_of_freedom()))
+            .collect()
+    }
+}
+
+impl RigPlan {
+    /// Uncertainties of the rig that the plan does not declare of one of so many axes at least.
+    #[must_use]
+    pub fn undeclared(&self, axes: usize) -> Vec<&'static str> {
+        let lacks = |read| self.lacks(axes, read);
+        let all = [
+            (FORCE, lacks(|calibration| calibration.force_uncertainty)),
+            (
+                DISPLACEMENT,
+                lacks(|calibration| calibration.displacement_uncertainty),
+            ),
+            (
+                "the zero of the load cell",
+                lacks(|calibration| calibration.zero_uncertainty),
+            ),
+            ("the drift of that zero in the run", self.drift.is_none()),
+        ];
+        all.into_iter()
+            .filter(|(_, lacking)| *lacking)
+            .map(|(name, _)| name)
+            .collect()
+    }
+
+    /// The calibrations without which a budget of so many axes is partial, and no expanded uncertainty follows from it.
+    #[must_use]
+    pub fn undeclared_calibrations(&self, axes: usize) -> Vec<&'static str> {
+        self.undeclared(axes)
+            .into_iter()
+            .filter(|name| [FORCE, DISPLACEMENT].contains(name))
+            .collect()
+    }
+
+    fn lacks(&self, axes: usize, read: fn(&Calibration) -> f64) -> bool {
+        (0..axes.max(1)).any(|axis| read(&self.calibration_of(axis)) == 0.0)
+    }
+}
+
+const FORCE: &str = "the calibration of the force";
+const DISPLACEMENT: &str = "the calibration of the displacement";
+
+#[cfg(test)]
+mod tests {
+    use crate::plan::{Calibration, DriftCheck, Plan, ProcedureKind, ZeroAfter};
+    use crate::tests::testing::empty_plan;
+
+    /// Of a blow striker and specimen too, and of nothing that was declared.
+    #[test]
+    fn what_is_not_declared_of_striker_and_specimen_is_named() {
+        use crate::plan::formula::Formula;
+        use crate::procedures::facts_of;
+        use crate::tests::testing::{elastic_plan, impact, ramp, struck_frame};
+        let blow = ProcedureKind::Impact(impact(Formula::Constant(300.0)));
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramp(1e-3)), blow]);
+        let undeclared = |plan: &Plan, place: usize| {
+            plan.undeclared(facts_of(&plan.procedures[place].kind).dependence)
+        };
+        assert_eq!(undeclared(&plan, 0).len(), 4);
+        assert_eq!(
+            undeclared(&plan, 1)[..3],
+            [
+                "the mass of the striker",
+                "the velocity of the striker",
+                "the mass of the specimen"
+            ]
+        );
+        plan.strikers[0].velocity_uncertainty = 0.01;
+        if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
+            blow.mass_uncertainty = 0.01;
+        }
+        assert_eq!(
+            undeclared(&plan, 1)[..2],
+            ["the mass of the striker", "the calibration of the force"]
+        );
+        let mut frame = struck_frame();
+        assert!(undeclared(&frame, 0).contains(&"the mass of the specimen"));
+        if let Some(frame) = &mut frame.specimens[0].frame {
+            *frame = frame.with(|storeys| {
+                for storey in storeys {
+                    storey.mass_uncertainty = 0.01;
+                }
+            });
+        }
+        assert!(!undeclared(&frame, 0).contains(&"the mass of the specimen"));
+    }
+
+    #[test]
+    fn what_is_not_declared_is_named() {
+        let mut rig = empty_plan().rig;
+        assert_eq!(rig.undeclared(1).len(), 4);
+        rig.calibration = Calibration {
+            force_uncertainty: 0.01,
+            displacement_uncertainty: 0.001,
+            zero_uncertainty: 1.0,
+            ..Calibration::default()
+        };
+        assert_eq!(rig.undeclared(2), ["the drift of that zero in the run"]);
+        rig.drift = Some(DriftCheck {
+            force: 5.0,
+            displacement: None,
+            over: 1.0,
+            after: ZeroAfter::Start,
+        });
+        assert!(rig.undeclared(2).is_empty());
+    }
+}

@@ -1,0 +1,122 @@
+//! What a plan does with frames of storeys: the motion of the ground under them, a striker on one of their floors, their damping.
+//! In: what `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
+
+use crate::physics::frame::Damping;
+use crate::plan::formula::Formula;
+use crate::plan::{Contact, Stepping, Until};
+
+/// Degrees of freedom of one frame, at most: each has an actuator and a load cell of its own.
+pub const MOST_STOREYS: usize = 64;
+
+/// The motion of the ground, from 0 s on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ground {
+    pub name: String,
+    pub file: String,
+    /// What one of the record's numbers is worth, m/s², already in `accelerations`.
+    pub unit: f64,
+    /// Factor of the plan, already in `accelerations`.
+    pub scale: f64,
+    /// Standard, of the accelerations, relative; 0 where none is stated.
+    pub scale_uncertainty: f64,
+    /// s, from 0, rising.
+    pub times: Vec<f64>,
+    /// m/s²
+    pub accelerations: Vec<f64>,
+}
+
+impl Ground {
+    /// s
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    /// Shortest and longest time between two samples, s.
+    #[must_use]
+    pub fn spacing(&self) -> (f64, f64) {
+        let spacings = self.times.windows(2).map(|pair| pair[1] - pair[0]);
+        spacings.fold((f64::INFINITY, 0.0), |(low, high), spacing| {
+            (low.min(spacing), high.max(spacing))
+        })
+    }
+
+    /// Largest acceleration by size, m/s².
+    #[must_use]
+    pub fn peak(&self) -> f64 {
+        self.accelerations
+            .iter()
+            .fold(0.0, |peak: f64, acceleration| peak.max(acceleration.abs()))
+    }
+}
+
+/// A frame on moving ground.
+#[derive(Clone, Debug)]
+pub struct Shake {
+    /// Index into `Plan::specimens`; it has a frame.
+    pub specimen: usize,
+    /// Index into `Plan::grounds`.
+    pub ground: usize,
+    pub damping: ShakeDamping,
+    /// Standard, of each damping ratio; 0 where none is stated.
+    pub damping_uncertainty: f64,
+    pub stepping: Stepping,
+    /// Factor on the record.
+    pub scale: Formula,
+    /// s of virtual time. None: to the end of the record.
+    pub duration: Option<Formula>,
+}
+
+/// A striker on one floor of a frame.
+#[derive(Clone, Debug)]
+pub struct StoreyImpact {
+    /// Index into `Plan::specimens`; it has a frame.
+    pub specimen: usize,
+    /// Index into `Plan::strikers`.
+    pub striker: usize,
+    /// The struck floor, from 0.
+    pub struck: usize,
+    pub damping: ShakeDamping,
+    /// Standard, of each damping ratio; 0 where none is stated.
+    pub damping_uncertainty: f64,
+    pub contact: Contact,
+    pub stepping: Stepping,
+    /// s, at most.
+    pub duration: Formula,
+    pub until: Until,
+}
+
+/// Fractions of critical damping.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShakeDamping {
+    /// C = a M + b K, this ratio in the first two modes; in the only mode of one storey.
+    Rayleigh(Formula),
+    /// Each mode its own, the longest period first.
+    Modal(Vec<Formula>),
+}
+
+impl ShakeDamping {
+    /// The ratios as `physics` takes them, where they are known before the run.
+    #[must_use]
+    pub fn known(&self) -> Option<Damping> {
+        Some(match self {
+            Self::Rayleigh(ratio) => rayleigh(ratio.constant()?),
+            Self::Modal(ratios) => Damping::Modal(
+                ratios
+                    .iter()
+                    .map(Formula::constant)
+                    .collect::<Option<_>>()?,
+            ),
+        })
+    }
+}
+
+/// Rayleigh damping with one ratio in the first two modes; no ratio is no damping at all.
+#[must_use]
+pub fn rayleigh(ratio: f64) -> Damping {
+    if ratio == 0.0 {
+        Damping::None
+    } else {
+        Damping::rayleigh(ratio)
+    }
+}

@@ -1,0 +1,175 @@
+//! The figures of a frame on moving ground, and of one that is unloaded: which there are, what each shows, and its curve on a
+//! chart of several shakes. In: a history. Out: [`Chart`]s in SI with their captions.
+
+use super::figures;
+use crate::plan::{Figure, FigureKind};
+use crate::procedures::impact::figures::limits_on;
+use crate::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
+use crate::report::Run;
+use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
+use crate::report::figures::points::Points;
+use crate::units::Dimension;
+
+/// Those of a shake, in the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[
+    FigureKind::Modes,
+    FigureKind::Ground,
+    FigureKind::Displacement,
+    FigureKind::Drift,
+    FigureKind::Hysteresis,
+    FigureKind::BaseShear,
+    FigureKind::Energy,
+    FigureKind::Tracking,
+];
+
+/// That of a frame that is unloaded.
+pub(crate) const UNLOADING_FIGURES: &[FigureKind] = &[FigureKind::Hysteresis];
+
+/// Those that several shakes share: one curve of each.
+pub(crate) const SHARED: &[FigureKind] = &[
+    FigureKind::Displacement,
+    FigureKind::Drift,
+    FigureKind::Hysteresis,
+    FigureKind::BaseShear,
+];
+
+/// A figure of a shake and its caption; None before the first step, and of what it does not draw.
+pub(crate) fn chart(
+    run: &Run<'_>,
+    name: &str,
+    history: &ShakeHistory,
+    figure: &Figure,
+) -> Option<(Chart, String)> {
+    if history.steps.is_empty() {
+        return None;
+    }
+    let limits = |result| figures::of_size(limits_on(run, figure.procedure, result));
+    let chosen = if figures::is_chosen(&history.steps) {
+        "; not every one is drawn"
+    } else {
+        ""
+    };
+    Some(match figure.kind {
+        FigureKind::Modes => (
+            figures::modes(history.modes.as_ref()?),
+            format!(
+                "{name}: shapes of the natural modes and their periods, floor by floor from the ground up."
+            ),
+        ),
+        FigureKind::Ground => (
+            figures::ground(history),
+            format!("{name}: acceleration of the ground, as it was applied, against virtual time."),
+        ),
+        FigureKind::Displacement => (
+            figures::displacement(&history.steps),
+            format!(
+                "{name}: displacement of each floor relative to the ground against virtual time{chosen}."
+            ),
+        ),
+        FigureKind::Drift => (
+            figures::drift(&history.steps, &limits("max_drift")),
+            format!("{name}: drift of each storey against virtual time{chosen}."),
+        ),
+        FigureKind::Hysteresis => (
+            figures::hysteresis(&history.steps),
+            format!(
+                "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
+            ),
+        ),
+        FigureKind::BaseShear => (
+            figures::base_shear(&history.steps, &limits("max_base_shear")),
+            format!(
+                "{name}: base shear, the sum of the measured restoring forces, against virtual time."
+            ),
+        ),
+        FigureKind::Energy => (
+            figures::energy(history),
+            format!("{name}: what the motion of the ground put in, and what became of it."),
+        ),
+        FigureKind::Tracking => (figures::tracking(&history.steps), followed(name, chosen)),
+        _ => return None,
+    })
+}
+
+/// The way of a frame to where it carries no load.
+pub(crate) fn unloading_chart(
+    name: &str,
+    steps: &[UnloadStep],
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    (kind == FigureKind::Hysteresis && !steps.is_empty()).then(|| {
+        (
+            figures::hysteresis(steps),
+            format!(
+                "{name}: measured storey shear against drift, from where the unloading began to where each storey rests."
+            ),
+        )
+    })
+}
+
+/// What the tracking of a frame shows, whatever moved it.
+pub(crate) fn followed(name: &str, chosen: &str) -> String {
+    format!(
+        "{name}: what the actuator of each floor missed of its commands{chosen}, and the tracking indicator of all of them over the \
+         largest command; an indicator that falls says that the lag feeds energy into the test."
+    )
+}
+
+/// The curve that stands for this history on a chart of several; None of a figure that is not shared.
+pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedCurve> {
+    let points = points(kind, history)?;
+    let over_time = |name, dimension| (Quantity::time(), Quantity::of(name, dimension));
+    let (length, force) = (Dimension::LENGTH, Dimension::FORCE);
+    let ((x, y), words) = match kind {
+        FigureKind::Displacement => (
+            over_time("Displacement of the top floor", length),
+            "displacement of the top floor against virtual time",
+        ),
+        FigureKind::Drift => (
+            over_time("Drift of the lowest storey", length),
+            "drift of the lowest storey against virtual time",
+        ),
+        FigureKind::Hysteresis => (
+            (
+                Quantity::along("Drift of the lowest storey", length),
+                Quantity::of("Base shear", force),
+            ),
+            "measured shear of the lowest storey against its drift",
+        ),
+        FigureKind::BaseShear => (
+            over_time("Base shear", force),
+            "base shear, the sum of the measured restoring forces, against virtual time",
+        ),
+        _ => return None,
+    };
+    Some(SharedCurve {
+        x,
+        y,
+        words,
+        points,
+    })
+}
+
+fn points(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option<Points> {
+    let lowest = |values: Vec<f64>| values.first().copied().unwrap_or(0.0);
+    let base_shear = |step: &ShakeStep| step.restoring_force.iter().sum();
+    Some(match kind {
+        FigureKind::Displacement => steps
+            .iter()
+            .map(|step| (step.time, step.computed.last().copied().unwrap_or(0.0)))
+            .collect(),
+        FigureKind::Drift => steps
+            .iter()
+            .map(|step| (step.time, lowest(step.drift())))
+            .collect(),
+        FigureKind::Hysteresis => steps
+            .iter()
+            .map(|step| (lowest(step.drift()), base_shear(step)))
+            .collect(),
+        FigureKind::BaseShear => steps
+            .iter()
+            .map(|step| (step.time, base_shear(step)))
+            .collect(),
+        _ => return None,
+    })
+}

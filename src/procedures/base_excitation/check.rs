@@ -1,0 +1,123 @@
+//! `shake NAME { … }`: the frame, the ground under it, damping, and a time step that is stable.
+
+use crate::language::check::checker::{Checker, Shape};
+use crate::language::check::declarations::frame;
+use crate::language::check::messages::{frames as fault, types};
+use crate::plan::formula::Formula;
+use crate::plan::{Contact, Frame, Ground, ProcedureKind, Shake, ShakeDamping};
+use crate::procedures::stepping;
+use crate::procedures::stepping::check::FrameSteps;
+use crate::schema::Kind;
+
+pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    let declared = &checker.scope.blocks[block];
+    let head = declared.block.head;
+    let ground = checker.reference(block, "ground", Kind::Ground);
+    let specimen = checker.specimen_block(block);
+    let damping = damping(checker, block);
+    let damping_uncertainty = damping_uncertainty(checker, block, damping.as_ref());
+    let stepping = stepping::check::stepping(checker, block, Some(&Contact::Rigid), 5.0);
+    let scale = checker.quantity(block, "scale");
+    let duration = checker.optional(block, "duration");
+    let specimen = specimen?;
+    if !frame::is_frame(checker, specimen) {
+        let tested = &checker.scope.blocks[specimen];
+        let (name, declared) = (
+            tested.name.map_or("", |name| name.node.as_str()),
+            tested.block.head,
+        );
+        let at = checker
+            .given(block, "specimen")
+            .map_or(head, |(_, entry)| entry.value.span);
+        return checker.fail(fault::no_storeys(name, at, declared));
+    }
+    Some(ProcedureKind::Shake(Shake {
+        specimen: checker.scope.place_in_kind(specimen),
+        ground: checker.scope.place_in_kind(ground?),
+        damping: damping?,
+        damping_uncertainty: damping_uncertainty?,
+        stepping: stepping?,
+        scale: scale?,
+        duration: duration?,
+    }))
+}
+
+/// One number is Rayleigh's, a list has one for each mode.
+pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
+    let Some((entry, written)) = checker.given(block, "damping_ratio") else {
+        return Some(ShakeDamping::Rayleigh(Formula::Constant(0.0)));
+    };
+    let typed = checker.entry(block, entry, written.value.span)?;
+    Some(match typed.shape {
+        Shape::Number => ShakeDamping::Rayleigh(typed.formula),
+        Shape::List if matches!(typed.formula, Formula::List(_)) => {
+            ShakeDamping::Modal(typed.parts())
+        }
+        Shape::List => return checker.fail(types::list_for_number(written.value.span)),
+    })
+}
+
+/// Standard, of each ratio: no ratio less its uncertainty is below 0.
+pub fn damping_uncertainty(
+    checker: &mut Checker,
+    block: usize,
+    damping: Option<&ShakeDamping>,
+) -> Option<f64> {
+    const FIELD: &str = "damping_ratio_uncertainty";
+    let uncertainty = checker.constant(block, FIELD)?;
+    let ratios = match damping? {
+        ShakeDamping::Rayleigh(ratio) => std::slice::from_ref(ratio),
+        ShakeDamping::Modal(ratios) => ratios,
+    };
+    let least = ratios.iter().filter_map(Formula::constant).reduce(f64::min);
+    match (
+        least.filter(|least| uncertainty > *least),
+        checker.given(block, FIELD),
+    ) {
+        (Some(least), Some((_, entry))) => {
+            let at = entry.value.span;
+            checker.fail(fault::damping_too_uncertain(uncertainty, least, at))
+        }
+        _ => Some(uncertainty),
+    }
+}
+
+/// What the time step of a shake must be held against, as far as it is known before the run: what that of any frame must
+/// be, and the record.
+pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, ground: &Ground) {
+    let duration = shake
+        .duration
+        .as_ref()
+        .map_or(Some(ground.duration()), Formula::constant);
+    let Shake {
+        specimen,
+        damping,
+        stepping,
+        ..
+    } = shake;
+    let steps = FrameSteps {
+        specimen: *specimen,
+        frame,
+        damping,
+        stepping,
+        duration,
+    };
+    let Some((_, step)) = stepping::check::judge(checker, block, &steps, |properties| {
+        Some(properties.critical_time_step())
+    }) else {
+        return;
+    };
+    let spacing = ground.spacing().0;
+    if step > spacing * (1.0 + 1e-9) {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker
+            .given(block, "time_step")
+            .map_or(head, |(_, entry)| entry.value.span);
+        checker.faults.push(fault::record_finer_than_step(
+            at,
+            step,
+            spacing,
+            &ground.name,
+        ));
+    }
+}

@@ -1,0 +1,34 @@
+//! What the drivers of check and report must know of a shake without carrying it out. In: it. Out: facts.
+
+use super::chart;
+use crate::plan::{Dependence, Shake};
+use crate::procedures::facts::{Facts, Recorded, Tests};
+use crate::procedures::stepping;
+use crate::record::ShakeHistory;
+
+pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
+    Facts {
+        tests: Tests::Frame,
+        stepping: Some(&shake.stepping),
+        frame_damping: Some((&shake.damping, shake.damping_uncertainty)),
+        dependence: Dependence {
+            frame: Some(shake.specimen),
+            ..Dependence::default()
+        },
+        figures: chart::FIGURES,
+        shared_figures: chart::SHARED,
+        ..Facts::default()
+    }
+}
+
+pub(crate) fn recorded(history: &ShakeHistory) -> Recorded {
+    let ends = history.steps.first().zip(history.steps.last());
+    Recorded {
+        lists_are_tabled: true,
+        time_spans: ends
+            .map(|(first, last)| (last.time - first.time, last.wall_time - first.wall_time)),
+        budgeted: stepping::report::FRAME_BUDGET,
+        entries: "floor",
+        uncertainty: stepping::report::UNCERTAINTY,
+    }
+}

@@ -1,0 +1,336 @@
+//! Charts of a frame on moving ground, and of floors and storeys whatever moved them. In: the steps, the modes. Out:
+//! [`Chart`]s in SI. Floors and storeys are told apart by colour and dash, the lowest first.
+
+use crate::record::{Floors, Modes, ShakeHistory, ShakeStep};
+use crate::report::figures::chart::{
+    Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Quantity, Reference, SOLID, Series, Style,
+    palette,
+};
+use crate::report::figures::points::{Gathering, Points};
+use crate::units::Dimension;
+
+/// More than this many curves cannot be told apart in one picture.
+const MOST_CURVES: usize = 6;
+
+const COLOURS: [Colour; MOST_CURVES] = [
+    palette::BLUE,
+    palette::VERMILION,
+    palette::GREEN,
+    palette::PURPLE,
+    palette::SKY,
+    palette::BLACK,
+];
+const DASHES: [&[f64]; MOST_CURVES] = [SOLID, DASHED, LONG, DASH_DOT, SOLID, DOTTED];
+
+/// Displacement of each floor against the ground.
+pub(crate) fn displacement<S: Floors>(steps: &[S]) -> Chart {
+    each_floor(
+        steps,
+        Quantity::of("Displacement", Dimension::LENGTH),
+        "floor",
+        |step| step.computed().to_vec(),
+    )
+}
+
+pub(crate) fn drift<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
+    let mut chart = each_floor(
+        steps,
+        Quantity::of("Drift", Dimension::LENGTH),
+        "storey",
+        S::drift,
+    );
+    chart.references = limits
+        .iter()
+        .map(|limit| Reference {
+            label: limit.label.clone(),
+            y: limit.y,
+        })
+        .collect();
+    chart
+}
+
+/// Storey shear against drift: the area of a loop is the energy it took.
+pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
+    let curves = each(steps, |step| {
+        step.drift().into_iter().zip(step.shear()).collect()
+    });
+    let curves = curves
+        .into_iter()
+        .enumerate()
+        .map(|(curve, (storey, points))| Series {
+            label: format!("storey {}", storey + 1),
+            points,
+            style: retraced(curve),
+        });
+    Chart {
+        x: Quantity::along("Drift", Dimension::LENGTH),
+        y: Quantity::of("Storey shear", Dimension::FORCE),
+        bands: Vec::new(),
+        series: curves.collect(),
+        references: Vec::new(),
+    }
+}
+
+pub(crate) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
+    let read = |step: &S| step.restoring_force().iter().sum();
+    let mut chart = over_time(Quantity::of("Base shear", Dimension::FORCE));
+    chart.series = vec![one(
+        steps,
+        "base shear",
+        read,
+        Style::line(palette::BLUE, 1.6, SOLID),
+    )];
+    chart.references = limits
+        .iter()
+        .map(|limit| Reference {
+            label: limit.label.clone(),
+            y: limit.y,
+        })
+        .collect();
+    chart
+}
+
+pub(crate) fn ground(history: &ShakeHistory) -> Chart {
+    let mut chart = over_time(Quantity::of(
+        "Acceleration of the ground",
+        Dimension::ACCELERATION,
+    ));
+    chart.series = vec![one(
+        &history.steps,
+        "as applied",
+        |step| step.ground_acceleration,
+        Style::line(palette::BLUE, 1.4, SOLID),
+    )];
+    chart
+}
+
+/// What the actuator of each floor missed, and the tracking indicator of all as a length: over the largest command.
+pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
+    let missed = |step: &S| {
+        step.measured()
+            .iter()
+            .zip(step.command())
+            .map(|(measured, command)| measured - command)
+            .collect()
+    };
+    let mut chart = each_floor(
+        steps,
+        Quantity::of("Tracking error", Dimension::LENGTH),
+        "floor",
+        missed,
+    );
+    // Mostly rounding and noise, from side to side at every step: dashes would not be seen.
+    for (curve, series) in chart.series.iter_mut().enumerate() {
+        series.style = Style::line(COLOURS[curve % MOST_CURVES], 0.7, SOLID);
+    }
+    let largest = steps
+        .iter()
+        .flat_map(S::command)
+        .map(|command| command.abs())
+        .fold(0.0, f64::max);
+    if largest > 0.0 {
+        let all = |step: &S| {
+            step.tracking()
+                .iter()
+                .map(|axis| axis.indicator)
+                .sum::<f64>()
+        };
+        let points = steps
+            .iter()
+            .map(|step| (step.time(), all(step) / largest))
+            .collect();
+        let label = "tracking indicator / largest command".to_owned();
+        chart.series.push(Series {
+            label,
+            points,
+            style: Style::line(palette::BLACK, 2.2, DOTTED),
+        });
+    }
+    chart
+}
+
+/// The input, and what it became.
+pub(crate) fn energy(history: &ShakeHistory) -> Chart {
+    type Part = (&'static str, fn(&ShakeStep) -> f64, Style);
+    let parts: [Part; 4] = [
+        (
+            "input",
+            |step| step.energies.input,
+            Style::line(palette::BLACK, 1.6, SOLID),
+        ),
+        (
+            "restoring",
+            |step| step.energies.restoring,
+            Style::line(palette::BLUE, 2.0, LONG),
+        ),
+        (
+            "damping",
+            |step| step.energies.damping,
+            Style::line(palette::PURPLE, 2.0, DASH_DOT),
+        ),
+        (
+            "kinetic",
+            |step| step.energies.kinetic,
+            Style::line(palette::SKY, 1.4, SOLID),
+        ),
+    ];
+    let mut chart = over_time(Quantity::of("Energy", Dimension::ENERGY));
+    let drawn = parts
+        .into_iter()
+        .filter(|(_, read, _)| history.steps.iter().any(|step| read(step) != 0.0));
+    chart.series = drawn
+        .map(|(label, read, style)| one(&history.steps, label, read, style))
+        .collect();
+    chart
+}
+
+/// Shapes of the first modes, floor by floor from the ground up; the largest entry of each is 1.
+pub(crate) fn modes(modes: &Modes) -> Chart {
+    let shapes = modes
+        .shapes
+        .iter()
+        .zip(&modes.periods)
+        .take(MOST_CURVES)
+        .enumerate();
+    let series = shapes.map(|(mode, (shape, period))| Series {
+        label: format!(
+            "mode {}, {}",
+            mode + 1,
+            crate::report::number::text(*period, Dimension::TIME)
+        ),
+        points: std::iter::once((0.0, 0.0))
+            .chain(shape.iter().copied().zip((1..).map(f64::from)))
+            .collect(),
+        style: Style {
+            marker: Some(crate::report::figures::chart::Marker::Disc(3.2)),
+            ..style(mode, 1.6)
+        },
+    });
+    Chart {
+        x: Quantity::along("Shape, largest entry 1", Dimension::NUMBER),
+        y: Quantity {
+            end: End::Whole,
+            ..Quantity::of("Floor", Dimension::NUMBER)
+        },
+        bands: Vec::new(),
+        series: series.collect(),
+        references: Vec::new(),
+    }
+}
+
+/// Bounds on the size of what swings to both sides stand on both: the words at the first.
+pub(crate) fn of_size(limits: Vec<Reference>) -> Vec<Reference> {
+    let both = |limit: Reference| {
+        let other = (limit.y != 0.0).then(|| Reference {
+            label: String::new(),
+            y: -limit.y,
+        });
+        std::iter::once(limit).chain(other)
+    };
+    limits.into_iter().flat_map(both).collect()
+}
+
+/// Whether not every floor is drawn, for the caption.
+pub(crate) fn is_chosen<S: Floors>(steps: &[S]) -> bool {
+    floors(steps) > MOST_CURVES
+}
+
+fn floors<S: Floors>(steps: &[S]) -> usize {
+    steps.first().map_or(0, |step| step.computed().len())
+}
+
+/// The floors that are drawn: all, or as many as can be told apart, evenly from the lowest to the highest.
+pub(crate) fn shown(floors: usize) -> Vec<usize> {
+    if floors <= MOST_CURVES {
+        return (0..floors).collect();
+    }
+    (0..MOST_CURVES)
+        .map(|curve| curve * (floors - 1) / (MOST_CURVES - 1))
+        .collect()
+}
+
+fn each_floor<S: Floors>(steps: &[S], y: Quantity, what: &str, read: fn(&S) -> Vec<f64>) -> Chart {
+    let curves = each(steps, |step| {
+        read(step)
+            .into_iter()
+            .map(|value| (step.time(), value))
+            .collect()
+    });
+    let curves = curves
+        .into_iter()
+        .enumerate()
+        .map(|(curve, (floor, points))| Series {
+            label: format!("{what} {}", floor + 1),
+            points,
+            style: style(curve, 1.6),
+        });
+    let mut chart = over_time(y);
+    chart.series = curves.collect();
+    chart
+}
+
+/// The curves of the floors that are drawn, each with its floor; `read` gives a point of every floor.
+fn each<S: Floors>(steps: &[S], read: impl Fn(&S) -> Vec<(f64, f64)>) -> Vec<(usize, Points)> {
+    let mut curves: Vec<(usize, Gathering)> = shown(floors(steps))
+        .into_iter()
+        .map(|floor| (floor, Gathering::default()))
+        .collect();
+    for step in steps {
+        let points = read(step);
+        for (floor, curve) in &mut curves {
+            curve.push(points[*floor]);
+        }
+    }
+    curves
+        .into_iter()
+        .map(|(floor, curve)| (floor, curve.points()))
+        .collect()
+}
+
+pub(crate) fn style(curve: usize, width: f64) -> Style {
+    Style::line(
+        COLOURS[curve % MOST_CURVES],
+        width,
+        DASHES[curve % MOST_CURVES],
+    )
+}
+
+/// A path that is gone again and again fills its own dashes: storeys are told apart by width, the thinner on top.
+fn retraced(curve: usize) -> Style {
+    const WIDTHS: [f64; MOST_CURVES] = [3.2, 2.4, 1.8, 1.3, 0.9, 0.6];
+    Style::line(
+        COLOURS[curve % MOST_CURVES],
+        WIDTHS[curve % MOST_CURVES],
+        SOLID,
+    )
+}
+
+fn over_time(y: Quantity) -> Chart {
+    Chart {
+        x: Quantity::time(),
+        y,
+        bands: Vec::new(),
+        series: Vec::new(),
+        references: Vec::new(),
+    }
+}
+
+fn one<S: Floors>(steps: &[S], label: &str, read: fn(&S) -> f64, style: Style) -> Series {
+    Series {
+        label: label.to_owned(),
+        points: steps.iter().map(|step| (step.time(), read(step))).collect(),
+        style,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shown;
+
+    #[test]
+    fn of_many_floors_the_lowest_and_the_highest_are_always_drawn() {
+        assert_eq!(shown(2), [0, 1]);
+        assert_eq!(shown(6), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(shown(64), [0, 12, 25, 37, 50, 63]);
+    }
+}

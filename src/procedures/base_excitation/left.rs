@@ -1,0 +1,32 @@
+//! How a shake leaves the frame to what comes next. In: a shake and the ground motions. Out: where it ends, in words, and what helps.
+
+use crate::physics::frame::Damping;
+use crate::plan::formula::Formula;
+use crate::plan::{Ground, Shake};
+use crate::procedures::facts::Motion;
+
+/// A damped frame comes to rest by itself where the ground rests for long enough.
+pub(crate) fn left(shake: &Shake, grounds: &[Option<Ground>]) -> Motion<'static> {
+    Motion {
+        what: "shake",
+        ends: "ends wherever its last step is",
+        help: "take the load off in between: `unload rest { }`, or let the ground rest until the frame does: a longer \
+    `duration`, with a `damping_ratio`",
+        rests: comes_to_rest(shake, grounds),
+    }
+}
+
+/// Whether the ground rests before a damped frame's run ends.
+fn comes_to_rest(shake: &Shake, grounds: &[Option<Ground>]) -> bool {
+    let still = grounds
+        .get(shake.ground)
+        .and_then(Option::as_ref)
+        .map(Ground::duration);
+    let longer = shake
+        .duration
+        .as_ref()
+        .and_then(Formula::constant)
+        .zip(still)
+        .is_some_and(|(all, moving)| all > moving);
+    longer && shake.damping.known() != Some(Damping::None)
+}

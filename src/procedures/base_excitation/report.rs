@@ -1,0 +1,487 @@
+//! A frame on moving ground, as a report tells it: its storeys, the record, the modes, what each storey went through, the
+//! energy. In: a plan and a record. Out: blocks.
+
+use crate::physics::frame::{SymmetricBand, storeys_of};
+use crate::plan::formula::ResultValue;
+use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
+use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
+use crate::report::content::{budget, described, method, tracking};
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number::percent;
+use crate::report::{Run, number, specimen_text};
+use crate::units::Dimension;
+use crate::units::display::significant;
+
+/// Storeys from the ground up, or the files of the matrices.
+pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
+    let mut rows = vec![
+        ("degrees of freedom", frame.degrees_of_freedom().to_string()),
+        (
+            "mass of all floors",
+            number::stated(frame.total_mass(), Dimension::MASS),
+        ),
+    ];
+    if let Some([mass, stiffness]) = &frame.files {
+        rows.push(("mass matrix", mass.clone()));
+        rows.push(("stiffness matrix", stiffness.clone()));
+        rows.push(("virtual behaviour", "elastic, R = K·X".to_owned()));
+    }
+    body.push(described(rows));
+    if frame.storeys.is_empty() {
+        return;
+    }
+    let mut columns = vec![
+        Column::numbers("Storey"),
+        Column::numbers("Mass"),
+        Column::numbers("Stiffness"),
+        Column::numbers("Height"),
+        Column::words("Virtual behaviour", 1),
+    ];
+    // What only some frames have is a column of those.
+    let damping = frame.storeys.iter().any(|storey| storey.damping != 0.0);
+    let friction = frame.storeys.iter().any(|storey| storey.coulomb != 0.0);
+    columns.extend(damping.then(|| Column::numbers("Virtual damping")));
+    columns.extend(friction.then(|| Column::numbers("Virtual friction")));
+    let row = |(index, storey): (usize, &crate::plan::Storey)| -> Vec<Text> {
+        let mut cells: Vec<Text> = vec![
+            (index + 1).to_string().into(),
+            number::stated(storey.mass, Dimension::MASS).into(),
+            number::stated(storey.stiffness, Dimension::STIFFNESS).into(),
+            storey
+                .height
+                .map_or_else(
+                    || "—".to_owned(),
+                    |height| number::stated(height, Dimension::LENGTH),
+                )
+                .into(),
+            specimen_text::words(&storey.behaviour, &number::stated).into(),
+        ];
+        cells.extend(damping.then(|| number::stated(storey.damping, Dimension::DAMPING).into()));
+        cells.extend(friction.then(|| number::stated(storey.coulomb, Dimension::FORCE).into()));
+        cells
+    };
+    body.push(Block::Table(Table {
+        columns,
+        rows: frame.storeys.iter().enumerate().map(row).collect(),
+    }));
+}
+
+/// The record as it was read.
+pub(crate) fn ground(ground: &Ground) -> Block {
+    let (shortest, longest) = ground.spacing();
+    let spacing = if longest - shortest <= 1e-6 * longest {
+        format!(
+            "{} samples, one every {}",
+            ground.times.len(),
+            number::stated(rounded(longest), Dimension::TIME)
+        )
+    } else {
+        format!(
+            "{} samples, {} to {} apart",
+            ground.times.len(),
+            number::stated(rounded(shortest), Dimension::TIME),
+            number::stated(rounded(longest), Dimension::TIME)
+        )
+    };
+    described(vec![
+        ("file", ground.file.clone()),
+        ("record", spacing),
+        (
+            "duration",
+            number::stated(ground.duration(), Dimension::TIME),
+        ),
+        (
+            "unit of its numbers",
+            number::stated(ground.unit, Dimension::ACCELERATION),
+        ),
+        ("scale", number::stated(ground.scale, Dimension::NUMBER)),
+        (
+            "largest acceleration, scaled",
+            number::text(ground.peak(), Dimension::ACCELERATION),
+        ),
+    ])
+}
+
+/// A difference of two times has the rounding of both.
+fn rounded(spacing: f64) -> f64 {
+    format!("{spacing:.9e}").parse().unwrap_or(spacing)
+}
+
+/// What was integrated and how, the modes, the storeys, the energy.
+pub(crate) fn shaken(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    history: &ShakeHistory,
+    body: &mut Vec<Block>,
+) {
+    let Some(ProcedureKind::Shake(shake)) =
+        run.plan.procedures.get(index).map(|planned| &planned.kind)
+    else {
+        return;
+    };
+    let Some(modes) = &history.modes else { return };
+    body.push(Block::paragraph(told(run, shake, procedure, history)));
+    body.push(mode_table(modes, &history.damping_ratios));
+    if !history.steps.is_empty() {
+        let frame = frame_of(run, shake.specimen);
+        body.push(storey_table(
+            procedure,
+            &history.steps,
+            frame,
+            "max_displacement",
+        ));
+        body.extend(tracking::table(procedure));
+        body.push(energy_balance(history));
+    }
+}
+
+fn told(
+    run: &Run<'_>,
+    shake: &Shake,
+    procedure: &ProcedureRecord,
+    history: &ShakeHistory,
+) -> String {
+    let time = |value| number::text(value, Dimension::TIME);
+    let mut sentences = vec![
+        integrated(
+            frame_of(run, shake.specimen),
+            shake.stepping.integrator,
+            &shake.damping,
+            &history.damping_ratios,
+        ),
+        format!(
+            "Time step {}; a tenth of the shortest period is {}.",
+            time(history.time_step),
+            time(history.critical_time_step)
+        ),
+    ];
+    sentences.extend(method::driven(
+        shake.stepping.i_modification,
+        shake.stepping.mode,
+    ));
+    sentences.extend(tracking::sentence(procedure));
+    if let Some(ground) = run.plan.grounds.get(shake.ground) {
+        sentences.push(format!(
+            "The record is linear between its samples, and each step reads it at its end: {}.",
+            resampled(ground, history)
+        ));
+    }
+    sentences.join(" ")
+}
+
+/// The frame that a procedure tests.
+pub(crate) fn frame_of<'a>(run: &Run<'a>, specimen: usize) -> Option<&'a Frame> {
+    run.plan.specimens.get(specimen)?.frame.as_ref()
+}
+
+/// Whether the stiffness is that of one storey upon the other, each of which shows its own as it moves.
+fn of_storeys(frame: &Frame) -> bool {
+    SymmetricBand::from_dense(&frame.stiffness)
+        .is_ok_and(|stiffness| storeys_of(&stiffness).is_some())
+}
+
+/// How a frame was integrated, and how it was damped.
+pub(crate) fn integrated(
+    frame: Option<&Frame>,
+    integrator: Integrator,
+    damping: &ShakeDamping,
+    ratios: &[f64],
+) -> String {
+    let integrator = match integrator {
+        Integrator::Tangent if frame.is_some_and(|frame| !of_storeys(frame)) => {
+            "constant average acceleration with the initial stiffness matrix".to_owned()
+        }
+        Integrator::Tangent => {
+            "constant average acceleration with the measured tangent stiffness".to_owned()
+        }
+        Integrator::Explicit => "explicit Newmark".to_owned(),
+        Integrator::AlphaOs { alpha } => {
+            format!(
+                "α-operator splitting with the initial stiffness, α = {}",
+                number::stated(alpha, Dimension::NUMBER)
+            )
+        }
+    };
+    let damping = match (damping, ratios.iter().any(|ratio| *ratio != 0.0)) {
+        (_, false) => "No damping is computed.",
+        (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
+        (ShakeDamping::Modal(_), true) => "Each mode has a damping ratio of its own.",
+    };
+    format!("Integrated by {integrator}. {damping}")
+}
+
+/// Largest acceleration as applied beside that of the record over the same time and with the same factor.
+fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
+    let applied = history
+        .steps
+        .iter()
+        .map(|step| step.ground_acceleration.abs())
+        .fold(0.0, f64::max);
+    let text = |value| number::text(value, Dimension::ACCELERATION);
+    format!(
+        "largest acceleration as applied {}, of the record {} before the factor of the run",
+        text(applied),
+        text(ground.peak())
+    )
+}
+
+pub(crate) fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
+    let columns = vec![
+        Column::numbers("Mode"),
+        Column::numbers("Period"),
+        Column::numbers("Damping ratio"),
+        Column::numbers("Effective mass"),
+        Column::words("Shape, from the lowest floor up", 1),
+    ];
+    let row = |mode: usize| -> Vec<Text> {
+        let shape: Vec<String> = modes.shapes[mode]
+            .iter()
+            .map(|entry| crate::units::display::minus(&significant(*entry, 4)))
+            .collect();
+        vec![
+            (mode + 1).to_string().into(),
+            number::text(modes.periods[mode], Dimension::TIME).into(),
+            percent(ratios.get(mode).copied().unwrap_or(0.0)).into(),
+            percent(modes.effective_mass[mode]).into(),
+            shape.join("  ").into(),
+        ]
+    };
+    Block::Table(Table {
+        columns,
+        rows: (0..modes.periods.len()).map(row).collect(),
+    })
+}
+
+/// One row a storey, from the ground up; `displacement` names the result with the floors' largest.
+pub(crate) fn storey_table<S: Floors>(
+    procedure: &ProcedureRecord,
+    steps: &[S],
+    frame: Option<&Frame>,
+    displacement: &str,
+) -> Block {
+    let shear = largest(steps, S::shear);
+    let whole = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    };
+    let drift = procedure.result("max_drift").map_or(&[][..], entries);
+    let cell = |name: &str, storey: usize| {
+        procedure
+            .result(name)
+            .map_or_else(|| "—".into(), |result| entry(result, storey))
+    };
+    let with_u = |title: &str, name: &str| {
+        let known = procedure
+            .result(name)
+            .is_some_and(|result| !result.contributions.is_empty());
+        Column::numbers(if known {
+            format!("{title} (u)")
+        } else {
+            title.to_owned()
+        })
+    };
+    let columns = vec![
+        Column::words("Storey", 1),
+        with_u("Largest displacement of its floor", displacement),
+        with_u("Largest drift", "max_drift"),
+        Column::numbers("Of its height"),
+        with_u("Drift at the end", "final_drift"),
+        Column::numbers("Largest shear"),
+    ];
+    let height = |storey: usize| {
+        frame
+            .and_then(|frame| frame.storeys.get(storey))
+            .and_then(|storey| storey.height)
+    };
+    let row = |storey: usize| -> Vec<Text> {
+        let ratio = height(storey)
+            .zip(drift.get(storey))
+            .map(|(height, drift)| percent(drift / height));
+        vec![
+            (storey + 1).to_string().into(),
+            cell(displacement, storey),
+            cell("max_drift", storey),
+            ratio.unwrap_or_else(|| "—".to_owned()).into(),
+            cell("final_drift", storey),
+            number::text_beside(shear[storey], whole(&shear), Dimension::FORCE).into(),
+        ]
+    };
+    Block::Table(Table {
+        columns,
+        rows: (0..shear.len()).map(row).collect(),
+    })
+}
+
+/// The numbers of a list.
+fn entries(result: &NamedResult) -> &[f64] {
+    match &result.value {
+        ResultValue::List(values) => values,
+        ResultValue::Number { .. } => &[],
+    }
+}
+
+/// A number of a list with its standard uncertainty where it has one, marked where that is not sure; else in the unit of the
+/// largest.
+pub(crate) fn entry(result: &NamedResult, place: usize) -> Text {
+    let values = entries(result);
+    let Some(value) = values.get(place) else {
+        return "—".into();
+    };
+    if let Some(Some(u)) = result.entry_uncertainties().get(place) {
+        let mark = if budget::is_sure(result, place) {
+            ""
+        } else {
+            budget::MARK
+        };
+        return (number::with_uncertainty(*value, Some(*u), result.dimension) + mark).into();
+    }
+    let whole = values
+        .iter()
+        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    number::text_beside(*value, whole, result.dimension).into()
+}
+
+/// The same where its uncertainty is known.
+pub(crate) fn known_entry(procedure: &ProcedureRecord, name: &str, place: usize) -> Option<Text> {
+    let result = procedure.result(name)?;
+    result
+        .entry_uncertainties()
+        .get(place)
+        .copied()
+        .flatten()
+        .map(|_| entry(result, place))
+}
+
+/// Where the storeys of a frame came to rest: what stayed of it is permanent.
+pub(crate) fn unloaded(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    steps: &[UnloadStep],
+    body: &mut Vec<Block>,
+) {
+    let (Some(first), Some(last)) = (steps.first(), steps.last()) else {
+        return;
+    };
+    let specimen = run
+        .plan
+        .procedures
+        .get(index)
+        .and_then(|planned| planned.kind.specimen());
+    let frame = specimen.and_then(|specimen| frame_of(run, specimen));
+    let moves = steps.len() - 1;
+    let by = if frame.is_some_and(|frame| !of_storeys(frame)) {
+        "by the inverse of the initial stiffness matrix"
+    } else {
+        "each storey by the stiffness that its last move showed"
+    };
+    body.push(Block::paragraph(format!(
+        "All floors moved together to where their forces vanish, in {moves} {}: {by}.",
+        if moves == 1 { "move" } else { "moves" }
+    )));
+    let whole = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    };
+    let (before, drift) = (first.drift(), last.drift());
+    let (loaded, left) = (first.shear(), last.shear());
+    let travel = whole(&before).max(whole(&drift));
+    let columns = vec![
+        Column::words("Storey", 1),
+        Column::numbers("Its floor rests at"),
+        Column::numbers("Drift before"),
+        Column::numbers("Permanent drift"),
+        Column::numbers("Of its height"),
+        Column::numbers("Shear before"),
+        Column::numbers("Shear left"),
+    ];
+    let height = |storey: usize| {
+        frame
+            .and_then(|frame| frame.storeys.get(storey))
+            .and_then(|storey| storey.height)
+    };
+    let row = |storey: usize| -> Vec<Text> {
+        let length = |value, beside| number::part_of(value, beside, 4, Dimension::LENGTH);
+        let force = |value| number::part_of(value, whole(&loaded), 4, Dimension::FORCE);
+        let known = |name: &str, other: String| {
+            known_entry(procedure, name, storey).unwrap_or_else(|| other.into())
+        };
+        vec![
+            (storey + 1).to_string().into(),
+            known(
+                "floor_displacement",
+                length(
+                    last.displacement[storey],
+                    whole(&last.displacement).max(travel),
+                ),
+            ),
+            length(before[storey], travel).into(),
+            known("residual_drift", length(drift[storey], travel)),
+            height(storey)
+                .map_or_else(|| "—".to_owned(), |height| percent(drift[storey] / height))
+                .into(),
+            force(loaded[storey]).into(),
+            known("residual_shear", force(left[storey])),
+        ]
+    };
+    body.push(Block::Table(Table {
+        columns,
+        rows: (0..drift.len()).map(row).collect(),
+    }));
+}
+
+fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {
+    let mut largest: Vec<f64> = Vec::new();
+    for step in steps {
+        let values = read(step);
+        largest.resize(values.len(), 0.0);
+        for (largest, value) in largest.iter_mut().zip(values) {
+            *largest = largest.max(value.abs());
+        }
+    }
+    largest
+}
+
+/// What the motion of the ground put in, and where it was at the end.
+fn energy_balance(history: &ShakeHistory) -> Block {
+    let e = history
+        .steps
+        .last()
+        .map(|step| step.energies)
+        .unwrap_or_default();
+    let parts = [
+        ("kinetic, relative to the ground", e.kinetic),
+        ("restoring forces, ∫R dX", e.restoring),
+        ("damping, ∫CẊ dX", e.damping),
+        ("integration error", e.error),
+    ];
+    let row = |(name, energy): (&str, f64)| -> Vec<Text> {
+        let share = if e.input > 0.0 {
+            percent(energy / e.input)
+        } else {
+            "—".to_owned()
+        };
+        vec![
+            name.into(),
+            number::part_of(energy, e.input, 5, Dimension::ENERGY).into(),
+            share.into(),
+        ]
+    };
+    let input = vec![
+        "input, −∫Mι üg dX".into(),
+        number::part_of(e.input, e.input, 5, Dimension::ENERGY).into(),
+        "100\u{a0}%".into(),
+    ];
+    let columns = vec![
+        Column::words("Energy balance at the end of the run", 1),
+        Column::numbers("Energy"),
+        Column::numbers("Of the input"),
+    ];
+    Block::Table(Table {
+        columns,
+        rows: std::iter::once(input).chain(parts.map(row)).collect(),
+    })
+}

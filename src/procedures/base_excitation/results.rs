@@ -1,0 +1,125 @@
+//! What a shake leaves: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in the
+//! schema's order. It drives nothing.
+
+use crate::physics::frame::{FrameState, Modes, drifts};
+use crate::physics::statistics::noisy_largest::NoisyLargest;
+use crate::plan::formula::ResultValue;
+use crate::procedures::results::result;
+use crate::procedures::stepping::tracking_summary::Followed;
+use crate::record::NamedResult;
+use crate::units::Dimension;
+
+/// Peaks over the computed displacements and the measured forces.
+pub(crate) struct ShakeSummary {
+    max_displacement: Vec<f64>,
+    max_drift: Vec<f64>,
+    drift: Vec<f64>,
+    base_shear: NoisyLargest,
+    /// J, of the input or of what it became.
+    largest_energy: f64,
+    energy_error: f64,
+    steps: u64,
+}
+
+impl ShakeSummary {
+    /// `noise`: standard deviation of the base shear as it is read, N.
+    pub(crate) fn new(floors: usize, noise: f64) -> Self {
+        let nothing = vec![0.0; floors];
+        Self {
+            max_displacement: nothing.clone(),
+            max_drift: nothing.clone(),
+            drift: nothing,
+            base_shear: NoisyLargest::new(noise),
+            largest_energy: 0.0,
+            energy_error: 0.0,
+            steps: 0,
+        }
+    }
+
+    /// Takes the end of a step.
+    pub(crate) fn push(&mut self, state: &FrameState) {
+        drifts(&state.displacement, &mut self.drift);
+        let widen = |largest: &mut [f64], values: &[f64]| {
+            for (largest, value) in largest.iter_mut().zip(values) {
+                *largest = largest.max(value.abs());
+            }
+        };
+        widen(&mut self.max_displacement, &state.displacement);
+        widen(&mut self.max_drift, &self.drift);
+        self.base_shear
+            .push(state.restoring_force.iter().sum::<f64>().abs());
+        let e = &state.energies;
+        self.largest_energy = self.largest_energy.max(e.input.abs()).max(e.kinetic);
+        self.energy_error = if e.error == 0.0 {
+            0.0
+        } else {
+            e.error / self.largest_energy
+        };
+        self.steps = state.step;
+    }
+
+    /// What the balance misses, over the largest energy.
+    pub(crate) const fn energy_error(&self) -> f64 {
+        self.energy_error
+    }
+
+    /// J
+    pub(crate) const fn largest_energy(&self) -> f64 {
+        self.largest_energy
+    }
+}
+
+/// In the order of the reference; what was not reached is missing.
+pub(crate) fn results(
+    modes: Option<&Modes>,
+    summary: Option<&ShakeSummary>,
+    followed: &Followed,
+) -> Vec<NamedResult> {
+    let list = |name, dimension, values: Option<&Vec<f64>>| match values {
+        Some(values) => NamedResult {
+            name,
+            dimension,
+            value: ResultValue::List(values.clone()),
+            contributions: Vec::new(),
+        },
+        None => result(name, dimension, None),
+    };
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+    let steps = summary.map(|summary| summary.steps as f64);
+    let mut results = vec![
+        list(
+            "max_displacement",
+            Dimension::LENGTH,
+            summary.map(|summary| &summary.max_displacement),
+        ),
+        list(
+            "max_drift",
+            Dimension::LENGTH,
+            summary.map(|summary| &summary.max_drift),
+        ),
+        list(
+            "final_drift",
+            Dimension::LENGTH,
+            summary.map(|summary| &summary.drift),
+        ),
+        list(
+            "periods",
+            Dimension::TIME,
+            modes.map(|modes| &modes.periods),
+        ),
+        result(
+            "max_base_shear",
+            Dimension::FORCE,
+            summary.and_then(|summary| summary.base_shear.value()),
+        ),
+        result(
+            "energy_error",
+            Dimension::NUMBER,
+            summary.map(|summary| summary.energy_error),
+        ),
+        result("steps", Dimension::NUMBER, steps),
+    ];
+    results.extend(followed.of_all());
+    results.extend(followed.of_each());
+    results
+}

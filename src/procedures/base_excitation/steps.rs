@@ -1,0 +1,172 @@
+//! A frame on moving ground as it is shaken: the ground as a load, and every step kept. In: what is known before the first step.
+//! Out: the history and what it comes to. How the steps are taken on the rig is `step_loop`'s; the equations are `mechanics`'.
+
+use super::results::ShakeSummary;
+use super::run::Setting;
+use crate::physics::frame::FrameSolver;
+use crate::physics::structure::ground::acceleration_at;
+use crate::physics::tracking::monitor::Tracking;
+use crate::plan::{Ground, Shake};
+use crate::procedures::stepping::axes::AxesState;
+use crate::procedures::stepping::operator_stability_watch::StifferSprings;
+use crate::procedures::stepping::step_loop;
+use crate::procedures::stepping::step_loop::{Balance, Start, Stepped, not_stepped};
+use crate::procedures::stepping::tracking_summary::Followed;
+use crate::record::{ShakeHistory, ShakeStep};
+use crate::rig::Reading;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+
+pub(crate) struct Shaking<'a> {
+    pub(crate) setting: &'a Setting,
+    pub(crate) history: ShakeHistory,
+    pub(crate) summary: ShakeSummary,
+    pub(crate) followed: Followed,
+}
+
+impl Shaking<'_> {
+    pub(crate) fn run(
+        &mut self,
+        plan: &Shake,
+        ground: &Ground,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let Self {
+            setting,
+            history,
+            summary,
+            followed,
+        } = self;
+        let matrices = &setting.frame.properties.matrices;
+        step_loop::run(
+            setting.frame.pace(),
+            &plan.stepping,
+            followed,
+            session,
+            |start| {
+                let mut load = vec![0.0; matrices.order()];
+                let ground_acceleration = setting.ground_at(ground, 0);
+                matrices.ground_load(ground_acceleration, &mut load);
+                let input = start.input(&setting.frame, &plan.stepping, &load);
+                let mut solver = FrameSolver::new(&input)
+                    .map_err(|error| not_stepped(setting.frame.time_step, &error))?;
+                solver.measured_at_start(&start.reading.displacement);
+                let stiffer = StifferSprings::of_storeys(
+                    matrices,
+                    &plan.stepping,
+                    setting.frame.time_step,
+                    start,
+                );
+                Ok((
+                    Shaken {
+                        setting,
+                        ground,
+                        solver,
+                        load,
+                        ground_acceleration,
+                        history,
+                        summary,
+                    },
+                    stiffer,
+                ))
+            },
+        )
+    }
+}
+
+impl Setting {
+    /// Acceleration of the ground at the end of a step, as it is applied, m/s².
+    fn ground_at(&self, ground: &Ground, step: u64) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+        let time = step as f64 * self.frame.time_step;
+        self.scale * acceleration_at(&ground.times, &ground.accelerations, time)
+    }
+}
+
+/// The frame under way.
+struct Shaken<'a> {
+    setting: &'a Setting,
+    ground: &'a Ground,
+    solver: FrameSolver,
+    /// Of the step under way, N.
+    load: Vec<f64>,
+    /// m/s²
+    ground_acceleration: f64,
+    history: &'a mut ShakeHistory,
+    summary: &'a mut ShakeSummary,
+}
+
+impl Stepped for Shaken<'_> {
+    fn axes(&self) -> AxesState<'_> {
+        AxesState::of(self.solver.state())
+    }
+
+    fn predict(&mut self) -> Vec<f64> {
+        self.ground_acceleration = self
+            .setting
+            .ground_at(self.ground, self.solver.state().step + 1);
+        self.setting
+            .frame
+            .properties
+            .matrices
+            .ground_load(self.ground_acceleration, &mut self.load);
+        self.solver.predict(&self.load).to_vec()
+    }
+
+    fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {
+        self.solver.predicted_velocity(velocity);
+        false
+    }
+
+    fn taken_at_start(&self, start: &Start) -> Vec<f64> {
+        self.solver.taken_at(
+            &start.commanded,
+            &start.reading.displacement,
+            &start.reading.force,
+        )
+    }
+
+    fn taken(&self) -> Vec<f64> {
+        self.solver.taken().to_vec()
+    }
+
+    fn complete(&mut self, reading: &Reading) {
+        self.solver.complete(&reading.displacement, &reading.force);
+    }
+
+    fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance {
+        let state = self.solver.state();
+        self.history.steps.push(ShakeStep {
+            step: state.step,
+            time: state.time,
+            wall_time: session.guard.time(),
+            ground_acceleration: self.ground_acceleration,
+            command: state.target.clone(),
+            displacement: state.measured_displacement.clone(),
+            computed: state.displacement.clone(),
+            velocity: state.velocity.clone(),
+            acceleration: state.acceleration.clone(),
+            restoring_force: state.restoring_force.clone(),
+            energies: state.energies,
+            tracking: axes.to_vec(),
+        });
+        self.summary.push(state);
+        // An input that begins with nothing divides nothing: until it is larger, what the ground can put in counts.
+        let input = self
+            .summary
+            .largest_energy()
+            .max(self.setting.ground_energy);
+        Balance {
+            error: state.energies.error,
+            input,
+        }
+    }
+
+    fn is_struck(&self) -> bool {
+        false
+    }
+
+    fn over(&self) -> bool {
+        false
+    }
+}

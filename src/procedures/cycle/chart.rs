@@ -1,0 +1,48 @@
+//! The figures of a `cycle`: which there are and what each shows. In: a history. Out: [`Chart`]s in SI with their captions.
+
+use super::figures;
+use crate::plan::FigureKind;
+use crate::record::CycleHistory;
+use crate::report::figures::chart::Chart;
+
+/// In the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[
+    FigureKind::ForceDisplacement,
+    FigureKind::Backbone,
+    FigureKind::CycleEnergy,
+    FigureKind::StiffnessDegradation,
+];
+
+/// A figure and its caption; None where nothing was recorded for it, and of what it does not draw.
+pub(crate) fn chart(
+    name: &str,
+    history: &CycleHistory,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    if history.cycles.is_empty() {
+        return None;
+    }
+    Some(match kind {
+        FigureKind::ForceDisplacement => (
+            figures::loops(history),
+            format!(
+                "{name}: restoring force against displacement; the area of a loop is the energy of its cycle."
+            ),
+        ),
+        FigureKind::Backbone => (
+            figures::backbone(history),
+            format!(
+                "{name}: backbone, the force at the ends of the cycles, amplitude by amplitude."
+            ),
+        ),
+        FigureKind::CycleEnergy => (
+            figures::energy(history),
+            format!("{name}: energy of each cycle, and of all cycles so far."),
+        ),
+        FigureKind::StiffnessDegradation => (
+            figures::stiffness(history),
+            format!("{name}: secant stiffness of each cycle."),
+        ),
+        _ => return None,
+    })
+}

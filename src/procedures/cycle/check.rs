@@ -1,0 +1,229 @@
+//! `cycle NAME { … }`: amplitudes, or a protocol that gives them.
+
+use crate::language::check::checker::{Checker, Place};
+use crate::language::check::declarations::curve;
+use crate::language::check::expressions::fields::whole;
+use crate::language::check::messages::{cyclic as fault, names, values};
+use crate::plan::formula::{Formula, Operator};
+use crate::plan::{BreakCount, Cycle, CycleInspection, Level, MOST_TARGETS, ProcedureKind, Sides};
+
+pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    let head = checker.scope.blocks[block].block.head;
+    let specimen = checker.specimen_of(block);
+    let levels = levels(checker, block);
+    let sides = checker.word(block, "sides", "both");
+    let about = checker.quantity(block, "about");
+    let points = checker.count(block, "points");
+    let samples = checker.count(block, "samples");
+    let pause = checker.quantity(block, "pause");
+    let (speed, rate) = (
+        checker.optional(block, "speed"),
+        checker.optional(block, "rate"),
+    );
+    if let Some((_, rate)) = checker.given(block, "rate") {
+        if checker.given(block, "speed").is_none() && !checker.misspelt(block, &["speed"]) {
+            checker
+                .faults
+                .push(fault::rate_without_speed(rate.span, head));
+        }
+        for field in ["points", "samples"] {
+            if let Some((_, entry)) = checker.given(block, field) {
+                checker
+                    .faults
+                    .push(fault::no_use_with_rate(field, entry.span, rate.span));
+            }
+        }
+    }
+    let inspect = inspections(checker, block);
+    let fit = fit(checker, block);
+    let cycle = Cycle {
+        specimen: specimen?,
+        levels: levels?,
+        sides: match sides? {
+            "push" => Sides::Push,
+            "pull" => Sides::Pull,
+            _ => Sides::Both,
+        },
+        about: about?,
+        points: points?,
+        samples: samples?,
+        pause: pause?,
+        speed: speed?,
+        rate: rate?,
+        inspect: inspect?,
+        fit: fit?,
+        evenly: false,
+    };
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "a count far below 2^53, or far above the bound"
+    )]
+    let readings = cycle.targets() as f64 * f64::from(cycle.samples);
+    if readings > MOST_TARGETS {
+        let help = "take fewer `repeats`, `points` or `samples`";
+        return checker.fail(values::too_many(
+            "readings",
+            readings,
+            MOST_TARGETS,
+            head,
+            help,
+        ));
+    }
+    Some(ProcedureKind::Cycle(cycle))
+}
+
+/// The curve of the backbone; None where a fault was reported.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
+fn fit(checker: &mut Checker, block: usize) -> Option<Option<BreakCount>> {
+    let Some((entry, _)) = checker.given(block, "fit") else {
+        return Some(None);
+    };
+    let place = checker.place(block, entry);
+    let chosen = checker.choice(block, "fit")?;
+    curve::breaks(checker, &chosen, place).map(Some)
+}
+
+/// The amplitudes in order, each with its number of cycles; None where a fault was reported.
+fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
+    let declared = &checker.scope.blocks[block];
+    let repeats = match checker.given(block, "repeats") {
+        Some(_) => Some(checker.count(block, "repeats")?),
+        None => None,
+    };
+    match (
+        checker.given(block, "amplitudes"),
+        checker.given(block, "protocol"),
+    ) {
+        (Some((_, amplitudes)), Some((_, protocol))) => checker.fail(fault::amplitudes_twice(
+            protocol.key.span,
+            amplitudes.key.span,
+        )),
+        (None, None) if checker.misspelt(block, &["amplitudes", "protocol"]) => None,
+        (None, None) => {
+            let example = "amplitudes = [1, 2, 5] mm";
+            checker.fail(names::missing_field(
+                declared.kind,
+                declared.name,
+                declared.block.head,
+                "amplitudes",
+                example,
+            ))
+        }
+        (Some(_), None) => {
+            let cycles = repeats.unwrap_or(1);
+            let amplitudes = checker.quantities(block, "amplitudes")?;
+            Some(
+                amplitudes
+                    .into_iter()
+                    .map(|amplitude| Level { amplitude, cycles })
+                    .collect(),
+            )
+        }
+        (None, Some((entry, _))) => {
+            let place = checker.place(block, entry);
+            let (amplitudes, own) = protocol(checker, block, place)?;
+            let cycles = repeats.unwrap_or(own);
+            Some(
+                amplitudes
+                    .into_iter()
+                    .map(|amplitude| Level { amplitude, cycles })
+                    .collect(),
+            )
+        }
+    }
+}
+
+/// The ratio of one amplitude to the one before in protocols like that of FEMA 461 (2007).
+const FEMA_RATIO: f64 = 1.4;
+/// Cycles that it runs at each amplitude.
+const FEMA_CYCLES: u32 = 2;
+
+/// The amplitudes of a protocol, and the cycles it runs at each.
+fn protocol(checker: &mut Checker, block: usize, place: Place) -> Option<(Vec<Formula>, u32)> {
+    let chosen = checker.choice(block, "protocol")?;
+    let levels = checker
+        .constant_argument(&chosen, "levels", place)
+        .and_then(whole)?;
+    let times = |factor: f64, of: &Formula| product(Formula::Constant(factor), of.clone());
+    Some(match chosen.variant.name {
+        "ramped" => {
+            let (first, last) = (
+                checker.argument(&chosen, "first", place)?,
+                checker.argument(&chosen, "last", place)?,
+            );
+            if let (1, Some(span)) = (levels, chosen.span("last")) {
+                let message = "a ramp of one level has its first amplitude alone".to_owned();
+                checker.faults.push(values::no_effect(
+                    message,
+                    span,
+                    "is never reached",
+                    "take `levels` of 2 or more",
+                ));
+            }
+            let amplitude = |level: u32| {
+                // The ends are what was written, with no rounding.
+                match (level, levels - 1) {
+                    (0, _) => first.clone(),
+                    (level, steps) if level == steps => last.clone(),
+                    (level, steps) => {
+                        let share = f64::from(level) / f64::from(steps);
+                        Formula::Binary(
+                            Operator::Add,
+                            Box::new(times(1.0 - share, &first)),
+                            Box::new(times(share, &last)),
+                        )
+                    }
+                }
+            };
+            ((0..levels).map(amplitude).collect(), 1)
+        }
+        "geometric" => {
+            let (first, ratio) = (
+                checker.argument(&chosen, "first", place)?,
+                checker.argument(&chosen, "ratio", place)?,
+            );
+            let amplitude = |level: u32| {
+                let power = Formula::Constant(f64::from(level));
+                product(
+                    Formula::Binary(Operator::Power, Box::new(ratio.clone()), Box::new(power)),
+                    first.clone(),
+                )
+            };
+            ((0..levels).map(amplitude).collect(), 1)
+        }
+        _ => {
+            let largest = checker.argument(&chosen, "largest", place)?;
+            let amplitude =
+                |level: u32| times(FEMA_RATIO.powf(-f64::from(levels - 1 - level)), &largest);
+            ((0..levels).map(amplitude).collect(), FEMA_CYCLES)
+        }
+    })
+}
+
+fn product(one: Formula, other: Formula) -> Formula {
+    let formula = Formula::Binary(Operator::Multiply, Box::new(one), Box::new(other));
+    formula.constant().map_or(formula, Formula::Constant)
+}
+
+fn inspections(checker: &mut Checker, block: usize) -> Option<Vec<CycleInspection>> {
+    let Some((entry, _)) = checker.given(block, "inspect") else {
+        return Some(Vec::new());
+    };
+    let place = checker.place(block, entry);
+    let chosen = checker.choices(block, "inspect")?;
+    let each = chosen.iter().map(|chosen| {
+        Some(match chosen.variant.name {
+            "every" => CycleInspection::Every(
+                checker
+                    .constant_argument(chosen, "amplitudes", place)
+                    .and_then(whole)?,
+            ),
+            _ => CycleInspection::ForceDrop(checker.constant_argument(chosen, "fraction", place)?),
+        })
+    });
+    let each: Vec<Option<CycleInspection>> = each.collect();
+    each.into_iter().collect()
+}

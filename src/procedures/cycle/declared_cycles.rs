@@ -1,0 +1,85 @@
+//! What the plan says of the cycles of a `cycle` beforehand: entries that are read of them, and their ends against the limits. In:
+//! procedures. Out: E401 where an entry is read past the last cycle; an error where a cycle leaves the limits.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::declarations::limits::CheckedLimits;
+use crate::language::check::messages::{values as fault, whole};
+use crate::plan::{Procedure, ProcedureKind};
+use crate::schema::procedures::cycle as schema;
+use crate::units::Dimension;
+
+/// Lists of a `cycle`, all of one entry for each of its cycles.
+const BY_CYCLE: [&str; 4] = [
+    schema::AMPLITUDES.name,
+    "energies",
+    schema::DAMPING_RATIOS.name,
+    schema::STIFFNESSES.name,
+];
+
+/// An entry past the last cycle, which would never come; asked for only where no error stands.
+pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    for (reference, place, span) in std::mem::take(&mut checker.taken) {
+        let Some((_, Some(procedure))) = procedures.get(reference.procedure.0) else {
+            continue;
+        };
+        let ProcedureKind::Cycle(cycle) = &procedure.kind else {
+            continue;
+        };
+        let cycles = cycle.levels.iter().map(|level| level.cycles as usize).sum();
+        if BY_CYCLE.contains(&reference.name) && place >= cycles {
+            checker
+                .faults
+                .push(fault::no_such_entry(span, place, cycles));
+        }
+    }
+}
+
+/// Ends of cycles (m), known before the run, against the limits.
+pub fn hold_cycles(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    limits: &CheckedLimits,
+) {
+    let (Some(at), interval) = (limits.displacement_at, limits.limits.displacement) else {
+        return;
+    };
+    for (block, procedure) in procedures {
+        let Some(Procedure {
+            kind: ProcedureKind::Cycle(cycle),
+            ..
+        }) = procedure
+        else {
+            continue;
+        };
+        let Some(about) = cycle.about.constant() else {
+            continue;
+        };
+        let amplitudes = cycle
+            .levels
+            .iter()
+            .filter_map(|level| level.amplitude.constant());
+        let mut ends = amplitudes.flat_map(|amplitude| {
+            cycle
+                .sides
+                .ends()
+                .iter()
+                .map(move |end| about + end * amplitude)
+        });
+        let Some(beyond) = ends.find(|end| !interval.contains(*end)) else {
+            continue;
+        };
+        let given = checker
+            .given(*block, "amplitudes")
+            .or_else(|| checker.given(*block, "protocol"));
+        let Some((_, entry)) = given else { continue };
+        let (field, span) = (entry.key.node.as_str(), entry.value.span);
+        checker.faults.push(whole::beyond_limits(
+            field,
+            beyond,
+            Dimension::LENGTH,
+            span,
+            interval,
+            at,
+        ));
+    }
+}

@@ -1,0 +1,20 @@
+//! What the drivers of check and report must know of a `cycle` without carrying it out. In: it. Out: facts.
+
+use super::{chart, report};
+use crate::procedures::facts::{Facts, Recorded};
+
+pub(crate) fn facts() -> Facts<'static> {
+    Facts {
+        figures: chart::FIGURES,
+        ..Facts::default()
+    }
+}
+
+pub(crate) fn recorded() -> Recorded {
+    Recorded {
+        lists_are_tabled: true,
+        entries: "cycle",
+        uncertainty: report::UNCERTAINTY,
+        ..Recorded::default()
+    }
+}

@@ -1,0 +1,203 @@
+//! Charts of cycles: loops, backbone, energy and stiffness cycle by cycle. In: the history. Out: [`Chart`]s in SI.
+
+use crate::record::{CycleHistory, MultilinearFit, WholeCycle};
+use crate::report::figures::chart::{
+    Chart, DASHED, LONG, Marker, Quantity, SOLID, Series, Style, palette,
+};
+use crate::report::figures::points::Points;
+use crate::units::Dimension;
+
+/// Every loop, the last one on top.
+pub(crate) fn loops(history: &CycleHistory) -> Chart {
+    let point = |step: &crate::record::CycleStep| (step.displacement, step.restoring_force);
+    let last = history.cycles.last().map_or(u64::MAX, |cycle| cycle.cycle);
+    let all = history.steps.iter().map(point).collect();
+    // Its own readings, and the one that it begins at.
+    let before = history.steps.iter().rposition(|step| step.cycle < last);
+    let of_last = before.map_or_else(Points::default, |from| {
+        history.steps[from..].iter().map(point).collect()
+    });
+    let mut series = vec![Series {
+        label: match history.cycles.len() {
+            1 => "1 cycle".to_owned(),
+            count => format!("{count} cycles"),
+        },
+        points: all,
+        style: Style::line(palette::BLUE, 1.3, SOLID),
+    }];
+    if history.cycles.len() > 1 {
+        series.push(Series {
+            label: "the last".to_owned(),
+            points: of_last,
+            style: Style::line(palette::VERMILION, 2.0, SOLID),
+        });
+    }
+    chart(
+        Quantity::along("Displacement X", Dimension::LENGTH),
+        Quantity::of("Restoring force R", Dimension::FORCE),
+        series,
+    )
+}
+
+/// The ends of the first cycle at each amplitude, and of the last one where there are more.
+pub(crate) fn backbone(history: &CycleHistory) -> Chart {
+    let mut first: Vec<&WholeCycle> = history
+        .cycles
+        .iter()
+        .filter(|cycle| cycle.repeat == 1)
+        .collect();
+    let mut last: Vec<&WholeCycle> = history
+        .cycles
+        .chunk_by(|a, b| b.repeat > a.repeat)
+        .filter_map(|level| level.last())
+        .collect();
+    let repeated = last.iter().any(|cycle| cycle.repeat > 1);
+    let envelope = |cycles: &mut Vec<&WholeCycle>| {
+        let mut points: Vec<(f64, f64)> =
+            cycles.iter().flat_map(|cycle| cycle.found.ends).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Points::from(points)
+    };
+    let mut series = vec![Series {
+        label: "first cycle of each amplitude".to_owned(),
+        points: envelope(&mut first),
+        // A fitted curve is the line through them.
+        style: match history.backbone {
+            Some(_) => Style::marker(palette::BLUE, Marker::Disc(3.6)),
+            None => Style {
+                marker: Some(Marker::Disc(3.6)),
+                ..Style::line(palette::BLUE, 1.8, SOLID)
+            },
+        },
+    }];
+    if repeated {
+        series.push(Series {
+            label: "last cycle of each amplitude".to_owned(),
+            points: envelope(&mut last),
+            style: Style {
+                marker: Some(Marker::Ring(4.2)),
+                ..Style::line(palette::VERMILION, 1.4, DASHED)
+            },
+        });
+    }
+    if let Some(fit) = &history.backbone {
+        series.extend(sides(fit, history));
+    }
+    chart(
+        Quantity::along("Displacement X", Dimension::LENGTH),
+        Quantity::of("Restoring force R", Dimension::FORCE),
+        series,
+    )
+}
+
+/// The curve on either side that the cycles went to; one name for both.
+fn sides(fit: &MultilinearFit, history: &CycleHistory) -> Vec<Series> {
+    let middle = history.middle();
+    let reach = history
+        .backbone_points()
+        .iter()
+        .map(|(x, _)| *x)
+        .fold(0.0, f64::max);
+    let places: Vec<f64> = [0.0]
+        .into_iter()
+        .chain(fit.breaks.iter().map(|(place, _)| *place))
+        .chain([reach])
+        .collect();
+    let went = |way: f64| {
+        history
+            .cycles
+            .iter()
+            .flat_map(|cycle| cycle.found.ends)
+            .any(|(x, _)| way * (x - middle) > 0.5 * reach)
+    };
+    let mut label = format!("fit of {} stretches", fit.stiffnesses.len());
+    let side = |way: f64| Series {
+        label: std::mem::take(&mut label),
+        points: places
+            .iter()
+            .map(|x| (middle + way * x, way * fit.force(*x)))
+            .collect(),
+        style: Style::line(palette::GREEN, 1.6, LONG),
+    };
+    [1.0, -1.0]
+        .into_iter()
+        .filter(|way| went(*way))
+        .map(side)
+        .collect()
+}
+
+/// What each cycle took, and all so far.
+pub(crate) fn energy(history: &CycleHistory) -> Chart {
+    let mut sum = 0.0;
+    let cumulated = history
+        .cycles
+        .iter()
+        .map(|cycle| {
+            sum += cycle.found.energy;
+            (number(cycle), sum)
+        })
+        .collect();
+    let each = history
+        .cycles
+        .iter()
+        .map(|cycle| (number(cycle), cycle.found.energy))
+        .collect();
+    let series = vec![
+        Series {
+            label: "all cycles so far".to_owned(),
+            points: cumulated,
+            style: Style::line(palette::SKY, 1.8, DASHED),
+        },
+        Series {
+            label: "each cycle".to_owned(),
+            points: each,
+            style: Style {
+                marker: Some(Marker::Disc(3.6)),
+                ..Style::line(palette::BLUE, 1.4, SOLID)
+            },
+        },
+    ];
+    chart(
+        Quantity::along("Cycle", Dimension::NUMBER),
+        Quantity::of("Energy", Dimension::ENERGY),
+        series,
+    )
+}
+
+/// Secant stiffness cycle by cycle.
+pub(crate) fn stiffness(history: &CycleHistory) -> Chart {
+    let points = history
+        .cycles
+        .iter()
+        .filter_map(|cycle| Some((number(cycle), cycle.found.stiffness?)))
+        .collect();
+    let style = Style {
+        marker: Some(Marker::Disc(3.6)),
+        ..Style::line(palette::BLUE, 1.4, SOLID)
+    };
+    let series = vec![Series {
+        label: "secant stiffness".to_owned(),
+        points,
+        style,
+    }];
+    chart(
+        Quantity::along("Cycle", Dimension::NUMBER),
+        Quantity::of("Secant stiffness", Dimension::STIFFNESS),
+        series,
+    )
+}
+
+#[expect(clippy::cast_precision_loss, reason = "far fewer cycles than 2^53")]
+fn number(cycle: &WholeCycle) -> f64 {
+    cycle.cycle as f64
+}
+
+fn chart(x: Quantity, y: Quantity, series: Vec<Series>) -> Chart {
+    Chart {
+        x,
+        y,
+        bands: Vec::new(),
+        series,
+        references: Vec::new(),
+    }
+}

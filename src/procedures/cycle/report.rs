@@ -1,0 +1,97 @@
+//! The cycles of a `cycle`, one row each, and what the numbers mean. In: the history. Out: a table.
+
+use crate::procedures::stiffness_ramp::curve_report;
+use crate::record::{CycleHistory, WholeCycle};
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number;
+use crate::units::Dimension;
+
+/// How the contributions to its uncertainty were found.
+pub(crate) const UNCERTAINTY: &str = "each input in turn was moved by its standard uncertainty, and the loops were reckoned again from their readings";
+
+/// Cycles printed; the tables hold every one.
+const PRINTED: usize = 40;
+
+pub(crate) fn table(history: &CycleHistory, body: &mut Vec<Block>) {
+    let cycles = &history.cycles;
+    if !cycles.is_empty() {
+        body.push(rows(cycles));
+    }
+    if cycles.len() > PRINTED {
+        body.push(Block::note(format!(
+            "{} more cycles are in the table of this procedure.",
+            cycles.len() - PRINTED
+        )));
+    }
+    if let Some(fit) = &history.backbone {
+        let reach = history
+            .backbone_points()
+            .iter()
+            .map(|(x, _)| *x)
+            .fold(0.0, f64::max);
+        body.push(Block::note(
+            "Backbone, from the middle of the cycles on, both sides on one:",
+        ));
+        curve_report::table(fit, reach, body);
+    }
+    body.push(Block::note(
+        "Energy is ∫R dX over the cycle by the trapezoid through the readings. Secant stiffness is from the leftmost to the rightmost \
+         point of the loop. ζ = E/(4π E₀) with E₀ = ½ K a², K that stiffness and a half the width of the loop. The first cycle at an \
+         amplitude begins where the one before ended: it also holds what loading further took.",
+    ));
+}
+
+/// Every number of a column in the unit of its largest.
+fn rows(cycles: &[WholeCycle]) -> Block {
+    let most = |read: fn(&WholeCycle) -> f64| {
+        cycles
+            .iter()
+            .map(|cycle| read(cycle).abs())
+            .fold(0.0, f64::max)
+    };
+    let (amplitude, energy) = (
+        most(|cycle| cycle.amplitude),
+        most(|cycle| cycle.found.energy),
+    );
+    let stiffness = most(|cycle| cycle.found.stiffness.unwrap_or(0.0));
+    let force = most(|cycle| cycle.found.max_force).max(most(|cycle| cycle.found.min_force));
+    let optional = |value: Option<f64>, largest: f64, dimension| {
+        value.map_or_else(
+            || Text::from("—"),
+            |value| number::text_beside(value, largest, dimension).into(),
+        )
+    };
+    let ratio = |ratio: f64| {
+        Text::from(number::text_beside(100.0 * ratio, 100.0, Dimension::NUMBER) + "\u{a0}%")
+    };
+    let row = |cycle: &WholeCycle| {
+        let found = &cycle.found;
+        let name = Text::from(cycle.cycle.to_string());
+        vec![
+            if cycle.repeat > 1 {
+                name.soft(" (again)")
+            } else {
+                name
+            },
+            number::text_beside(cycle.amplitude, amplitude, Dimension::LENGTH).into(),
+            number::text_beside(found.energy, energy, Dimension::ENERGY).into(),
+            found.damping_ratio.map_or_else(|| "—".into(), ratio),
+            optional(found.stiffness, stiffness, Dimension::STIFFNESS),
+            number::text_beside(found.max_force, force, Dimension::FORCE).into(),
+            number::text_beside(found.min_force, force, Dimension::FORCE).into(),
+        ]
+    };
+    let columns = vec![
+        Column::words("Cycle", 1),
+        Column::numbers("Amplitude"),
+        Column::numbers("Energy"),
+        Column::numbers("ζ"),
+        Column::numbers("Secant stiffness"),
+        Column::numbers("Largest force"),
+        Column::numbers("Smallest force"),
+    ];
+    Block::Table(Table {
+        columns,
+        rows: cycles.iter().take(PRINTED).map(row).collect(),
+    })
+}

@@ -1,0 +1,478 @@
+//! `cycle`: cycles of displacement about one place, amplitude by amplitude. In: amplitudes, sides, how they are read. Out:
+//! every reading, and energy, stiffness and damping of each whole cycle. Step and pause by default; with a rate the
+//! actuator goes from end to end without stopping.
+
+use crate::physics::identification::cyclic::{LoopPoint, loop_of, work};
+use crate::physics::identification::loop_sampling::spaced;
+use crate::physics::statistics::noisy_largest::NoisyLargest;
+use crate::plan::formula::ResultValue;
+use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
+use crate::procedures::inputs::Inputs;
+use crate::procedures::samples::{mean, scatter};
+use crate::procedures::stiffness_ramp::curve;
+use crate::record::{CycleHistory, CycleStep, EventKind, History, NamedResult, WholeCycle};
+use crate::run::Performed;
+use crate::run::session::{Session, first};
+use crate::run::stop::Stop;
+use crate::schema::ResultKind;
+use crate::schema::procedures::cycle as schema;
+use crate::uncertainty::InstrumentUncertainty;
+use crate::uncertainty::cycle;
+use crate::uncertainty::cycle::RecordedLoops;
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+pub(crate) fn perform(
+    plan: &Cycle,
+    whole: &Plan,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+) -> Performed {
+    let mut cycling = Cycling {
+        history: CycleHistory::default(),
+        amplitude: 0.0,
+        cycle: 0,
+    };
+    let stop = cycling.run(plan, inputs, session).err();
+    // Means of the samples at a target; on the way every reading stands alone.
+    let samples = if plan.rate.is_some() {
+        1
+    } else {
+        plan.samples.max(1)
+    };
+    let declared = session.guard.declared_noise();
+    let instruments = InstrumentUncertainty::of(whole, declared, 1);
+    if let Some(count) = plan.fit {
+        let stated = instruments.stated_variance(0, samples);
+        let (backbone, remarks) = curve::fitted(
+            &cycling.history.backbone_points(),
+            count,
+            "ends of first cycles",
+            stated,
+        );
+        cycling.history.backbone = backbone;
+        for text in remarks.into_iter().filter(|_| stop.is_none()) {
+            session.event(EventKind::Remark, text);
+        }
+    }
+    let noise = declared.force / f64::from(samples).sqrt();
+    let mut results = results(&cycling.history, noise);
+    let left_open = cycle::left_open_by_points(&cycling.history, samples, instruments.errors(0));
+    if session.settings.uncertainty {
+        let loops = RecordedLoops {
+            history: &cycling.history,
+            samples,
+            noise: declared.force,
+            left_open: &left_open,
+        };
+        cycle::propagate(&loops, &instruments, inputs.procedure(), &mut results);
+    }
+    if let Some(text) = few_points(&cycling.history, &left_open).filter(|_| stop.is_none()) {
+        session.event(EventKind::Remark, text);
+    }
+    Performed {
+        history: History::Cycle(cycling.history),
+        results,
+        stop,
+    }
+}
+
+/// Of the energy of a cycle: more of it, left open between the points of its loop, is worth a word.
+const OPEN: f64 = 0.05;
+/// A loop with less energy than this share of its height times its width has none to speak of.
+const THIN: f64 = 1e-3;
+
+/// What a person should know of loops whose area their points leave open, by so many joules each.
+fn few_points(history: &CycleHistory, left_open: &[f64]) -> Option<String> {
+    let loops = history.cycles.iter().zip(left_open);
+    let share = |(cycle, open): (&WholeCycle, &f64)| {
+        let found = &cycle.found;
+        let thin = THIN * (found.max_force - found.min_force) * 2.0 * found.amplitude;
+        (
+            cycle.cycle,
+            if *open > thin {
+                open / found.energy.abs()
+            } else {
+                0.0
+            },
+        )
+    };
+    let (cycle, worst) = loops
+        .map(share)
+        .max_by(|one, other| one.1.total_cmp(&other.1))?;
+    (worst > OPEN).then(|| {
+        let percent = 100.0 * worst;
+        format!(
+            "few points: between them cycle {cycle} may have {percent:.0} % more energy or less than its trapezia, and its damping ratio \
+             with it: more `points`, or a higher `rate`, tell more"
+        )
+    })
+}
+
+/// How one way is gone.
+#[derive(Clone, Copy)]
+struct Manner {
+    /// Readings at each target.
+    samples: u32,
+    /// s
+    pause: f64,
+    /// m/s
+    speed: Option<f64>,
+    /// Hz, and the speed (m/s) it is read at.
+    moving: Option<(f64, f64)>,
+    /// m from the middle to the end of a quarter has so many targets.
+    points: u32,
+    /// They stand evenly.
+    evenly: bool,
+}
+
+struct Cycling {
+    history: CycleHistory,
+    /// Asked for, m.
+    amplitude: f64,
+    cycle: u64,
+}
+
+impl Cycling {
+    fn run(
+        &mut self,
+        plan: &Cycle,
+        inputs: &mut Inputs<'_>,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let amplitudes = plan
+            .levels
+            .iter()
+            .map(|level| level.amplitude.clone())
+            .collect::<Vec<_>>();
+        let amplitudes = inputs.list("amplitudes", &amplitudes)?;
+        if let Some(value) = amplitudes
+            .iter()
+            .copied()
+            .find(|amplitude| !(*amplitude > 0.0 && amplitude.is_finite()))
+        {
+            return Err(Stop::BadInput {
+                field: "amplitudes",
+                value,
+                dimension: Dimension::LENGTH,
+                wanted: "greater than 0".into(),
+            });
+        }
+        let about = inputs.number("about", &plan.about, Dimension::LENGTH)?;
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let speed = inputs.speed(plan.speed.as_ref())?;
+        let rate = plan
+            .rate
+            .as_ref()
+            .map(|rate| inputs.positive("rate", rate, Dimension::FREQUENCY))
+            .transpose()?;
+        let (samples, points, evenly) = (plan.samples.max(1), plan.points.max(1), plan.evenly);
+        let manner = Manner {
+            samples,
+            pause,
+            speed,
+            moving: rate.zip(speed),
+            points,
+            evenly,
+        };
+        session.go_to(about, speed)?;
+        self.target(about, manner, session)?;
+        let mut looks = Looks::default();
+        for (level, amplitude) in plan.levels.iter().zip(amplitudes) {
+            self.amplitude = amplitude;
+            for repeat in 1..=level.cycles {
+                self.cycle += 1;
+                let from = self.history.steps.len() - 1;
+                for (end, stretch) in plan.sides.ends().iter().zip(plan.sides.stretches()) {
+                    self.way(about + end * amplitude, *stretch, manner, session)?;
+                }
+                self.whole(from, repeat);
+            }
+            let of_level = self
+                .history
+                .cycles
+                .iter()
+                .rev()
+                .take_while(|cycle| cycle.amplitude == amplitude);
+            let largest = of_level
+                .map(|cycle| cycle.found.max_force.max(-cycle.found.min_force))
+                .fold(0.0, f64::max);
+            // After the last amplitude nothing follows that a look could stop.
+            let more = self.history.cycles.len() as u64 != plan.cycles();
+            if let Some(reason) = looks
+                .after(&plan.inspect, amplitude, largest)
+                .filter(|_| more)
+            {
+                session.inspect(&reason)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// From where the piston is to `to` (m): on this part of the stretch from one turn to the next.
+    fn way(
+        &mut self,
+        to: f64,
+        [begin, end]: [f64; 2],
+        manner: Manner,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let from = session.commanded();
+        if let Some((rate, speed)) = manner.moving {
+            self.moving(from, to, rate, speed, session)?;
+            session.guard.pause(manner.pause)?;
+            return Ok(());
+        }
+        // Quarters of the way from the middle to an end; half a billionth for the rounding of the amplitude.
+        let quarters = ((to - from).abs() / self.amplitude - 5e-10).ceil().max(1.0);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "one or two"
+        )]
+        let targets = quarters as u32 * manner.points;
+        let (first, last) = (spaced(begin), spaced(end));
+        for target in 1..=targets {
+            let even = f64::from(target) / f64::from(targets);
+            let share = if manner.evenly {
+                even
+            } else {
+                (spaced(begin + (end - begin) * even) - first) / (last - first)
+            };
+            let place = if target == targets {
+                to
+            } else {
+                from + (to - from) * share
+            };
+            session.go_to(place, manner.speed)?;
+            self.target(place, manner, session)?;
+        }
+        Ok(())
+    }
+
+    /// Reads where the piston stands: once for the relaxation, then the samples after the pause.
+    fn target(
+        &mut self,
+        command: f64,
+        manner: Manner,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let (settled, mut broken) = session.read_kept()?;
+        let (_, settled_force) = first(&settled);
+        let mut readings = Vec::new();
+        if broken.is_some() {
+            readings.push(first(&settled));
+        } else {
+            session.guard.pause(manner.pause)?;
+        }
+        for _ in 0..manner.samples {
+            if broken.is_none() {
+                let (reading, stop) = session.read_kept()?;
+                readings.push(first(&reading));
+                broken = stop;
+            }
+        }
+        let displacement = mean(readings.iter().map(|(x, _)| *x));
+        let restoring_force = mean(readings.iter().map(|(_, r)| *r));
+        let force_scatter = scatter(readings.iter().map(|(_, r)| *r), restoring_force);
+        let relaxation = settled_force - restoring_force;
+        let (time, point) = (session.guard.time(), (displacement, restoring_force));
+        if let Some(stop) = broken {
+            self.keep(command, point, force_scatter, relaxation, time);
+            return Err(stop);
+        }
+        self.take(command, point, force_scatter, relaxation, time, session)
+    }
+
+    /// To `to` without a stop, read on the way.
+    fn moving(
+        &mut self,
+        from: f64,
+        to: f64,
+        rate: f64,
+        speed: f64,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let wanted = ((to - from).abs() / speed * rate).round().max(1.0);
+        if wanted > MOST_TARGETS {
+            let wanted_words = format!("at most {MOST_TARGETS} readings a way").into();
+            return Err(Stop::BadInput {
+                field: "rate",
+                value: wanted,
+                dimension: Dimension::NUMBER,
+                wanted: wanted_words,
+            });
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 1 and MOST_TARGETS"
+        )]
+        let samples = wanted as usize;
+        let traversed = session
+            .guard
+            .traverse(&[to], speed.copysign(to - from), samples);
+        let broken = session.guard.take_broken();
+        let whole = traversed.readings.len() - usize::from(broken.is_some());
+        for (sample, reading) in (1_u32..).zip(&traversed.readings) {
+            #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
+            let command = from + (to - from) * (f64::from(sample) / samples as f64);
+            if sample as usize > whole {
+                self.keep(command, first(reading), 0.0, 0.0, reading.time);
+            } else {
+                self.take(command, first(reading), 0.0, 0.0, reading.time, session)?;
+            }
+        }
+        traversed.fault.map_or(Ok(()), |fault| Err(fault.into()))
+    }
+
+    fn take(
+        &mut self,
+        command: f64,
+        (displacement, restoring_force): (f64, f64),
+        force_scatter: f64,
+        relaxation: f64,
+        wall_time: f64,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let step = self.keep(
+            command,
+            (displacement, restoring_force),
+            force_scatter,
+            relaxation,
+            wall_time,
+        );
+        session.measured(step, wall_time, displacement, restoring_force)
+    }
+
+    /// Keeps a step; its number.
+    fn keep(
+        &mut self,
+        command: f64,
+        (displacement, restoring_force): (f64, f64),
+        force_scatter: f64,
+        relaxation: f64,
+        wall_time: f64,
+    ) -> u64 {
+        let steps = &mut self.history.steps;
+        let energy = steps.last().map_or(0.0, |before| {
+            before.energy
+                + work(
+                    (before.displacement, before.restoring_force),
+                    (displacement, restoring_force),
+                )
+        });
+        let step = steps.len() as u64 + 1;
+        steps.push(CycleStep {
+            step,
+            wall_time,
+            cycle: self.cycle,
+            amplitude: self.amplitude,
+            command,
+            displacement,
+            restoring_force,
+            force_scatter,
+            relaxation,
+            energy,
+        });
+        step
+    }
+
+    /// The cycle whose first point is step `from`, now that it is whole.
+    fn whole(&mut self, from: usize, repeat: u32) {
+        let points: Vec<LoopPoint> = self.history.steps[from..]
+            .iter()
+            .map(CycleStep::point)
+            .collect();
+        let Some(found) = loop_of(&points) else {
+            return;
+        };
+        self.history.cycles.push(WholeCycle {
+            cycle: self.cycle,
+            amplitude: self.amplitude,
+            repeat,
+            found,
+        });
+    }
+}
+
+/// When a person is to look.
+#[derive(Default)]
+struct Looks {
+    levels: u32,
+    /// N, since the last look that a fall called for.
+    largest: f64,
+}
+
+impl Looks {
+    fn after(&mut self, inspect: &[CycleInspection], amplitude: f64, force: f64) -> Option<String> {
+        self.levels += 1;
+        let shown = readable(amplitude, Dimension::LENGTH);
+        let mut reason = None;
+        for trigger in inspect {
+            let due = match *trigger {
+                CycleInspection::Every(levels) => (levels > 0
+                    && self.levels.is_multiple_of(levels))
+                .then(|| format!("inspection after the cycles to {shown}")),
+                CycleInspection::ForceDrop(fraction) => {
+                    let dropped = force < (1.0 - fraction) * self.largest;
+                    self.largest = if dropped {
+                        force
+                    } else {
+                        self.largest.max(force)
+                    };
+                    dropped.then(|| {
+                        format!(
+                            "the largest force of the cycles to {shown} fell by {} % or more",
+                            fraction * 100.0
+                        )
+                    })
+                }
+            };
+            reason = reason.or(due);
+        }
+        reason
+    }
+}
+
+/// In the order of the reference; `noise` is the standard deviation of a force at its place, N.
+pub(crate) fn results(history: &CycleHistory, noise: f64) -> Vec<NamedResult> {
+    let cycles = &history.cycles;
+    let largest = |sign: f64| {
+        NoisyLargest::of(
+            noise,
+            history.steps.iter().map(|step| sign * step.restoring_force),
+        )
+        .value()
+    };
+    let list = |kind: ResultKind, read: fn(&WholeCycle) -> f64| NamedResult {
+        name: kind.name,
+        value: ResultValue::List(cycles.iter().map(read).collect()),
+        dimension: kind.dimension,
+        contributions: Vec::new(),
+    };
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
+    let count = cycles.len() as f64;
+    let total = (!cycles.is_empty()).then(|| cycles.iter().map(|cycle| cycle.found.energy).sum());
+    let mut results = vec![
+        schema::DISSIPATED_ENERGY.found(total),
+        schema::MAX_FORCE.found(largest(1.0)),
+        schema::MIN_FORCE.found(largest(-1.0).map(|pull| -pull)),
+        schema::EQUIVALENT_DAMPING_RATIO
+            .found(cycles.last().and_then(|cycle| cycle.found.damping_ratio)),
+        schema::STIFFNESS.found(cycles.first().and_then(|cycle| cycle.found.stiffness)),
+        schema::LAST_STIFFNESS.found(cycles.last().and_then(|cycle| cycle.found.stiffness)),
+        schema::CYCLES.found(Some(count)),
+        list(schema::AMPLITUDES, |cycle| cycle.found.amplitude),
+        list(schema::ENERGIES, |cycle| cycle.found.energy),
+        list(schema::DAMPING_RATIOS, |cycle| {
+            cycle.found.damping_ratio.unwrap_or(f64::NAN)
+        }),
+        list(schema::STIFFNESSES, |cycle| {
+            cycle.found.stiffness.unwrap_or(f64::NAN)
+        }),
+    ];
+    results.extend(curve::yielding(history.backbone.as_ref()));
+    results.extend(curve::lists(history.backbone.as_ref()));
+    results
+}

@@ -1,0 +1,26 @@
+//! The figure of a damping sweep and what it shows. In: a history. Out: a [`Chart`] in SI with its caption.
+
+use crate::plan::FigureKind;
+use crate::procedures::stiffness_ramp;
+use crate::record::SweepHistory;
+use crate::report::figures::chart::Chart;
+
+/// In the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::DampingFit];
+
+/// A figure and its caption; None where nothing was recorded for it, and of what it does not draw.
+pub(crate) fn chart(
+    name: &str,
+    history: &SweepHistory,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    Some(match kind {
+        FigureKind::DampingFit if history.steps.iter().any(|step| step.steady) => (
+            stiffness_ramp::figures::damping_fit(history),
+            format!(
+                "{name}: damping force along the motion against velocity: steady readings of both ways, half the difference of out and back at one place with its standard error, and the line fitted to it."
+            ),
+        ),
+        _ => return None,
+    })
+}

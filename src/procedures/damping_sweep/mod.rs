@@ -1,0 +1,12 @@
+//! `damping sweep`: constant-velocity strokes that give the damping. In: its block, a rig behind
+//! the guard. Out: parameters, history, the damping with its standard uncertainty.
+
+pub(crate) mod chart;
+pub(crate) mod check;
+pub(crate) mod facts;
+pub(crate) mod rate_separated_stiffness;
+pub(crate) mod report;
+pub(crate) mod run;
+pub(crate) mod tables;
+
+pub use run::MOST_SAMPLES;

@@ -1,0 +1,18 @@
+//! A damping sweep as a report gives it: the line through its pairs. In: a history. Out: a block.
+
+use crate::record::SweepHistory;
+use crate::report::content::line_fit::fitted;
+use crate::report::document::Block;
+use crate::units::Dimension;
+
+/// The block below its results.
+pub(crate) fn report(history: &SweepHistory, body: &mut Vec<Block>) {
+    if let Some(fit) = history.fit {
+        body.push(fitted(
+            "F = c·v + F₀·sign v",
+            ("c", Dimension::DAMPING),
+            ("F₀", Dimension::FORCE),
+            fit,
+        ));
+    }
+}

@@ -1,0 +1,61 @@
+//! Whether a striker arrives at all: its gap against the time an impact has. In: striker and duration, SI. Out: a fault where the
+//! blow is over before it begins. It knows neither specimen nor contact.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::whole as fault;
+use crate::plan::Striker;
+use crate::schema::Kind;
+
+/// The time in which a striker crosses its gap, s: t of gap = v t + g t²/2.
+fn time_to_arrive(striker: &Striker) -> f64 {
+    let reached =
+        (striker.velocity * striker.velocity + 2.0 * striker.gravity * striker.gap).sqrt();
+    2.0 * striker.gap / (striker.velocity + reached)
+}
+
+/// Holds the gap of a striker against the `duration` (s) of the impact `block`.
+pub fn hold(checker: &mut Checker, block: usize, striker: &Striker, duration: Option<f64>) {
+    let arrives = time_to_arrive(striker);
+    let Some(duration) = duration.filter(|duration| arrives >= *duration) else {
+        return;
+    };
+    let Some((_, at)) = checker.given(block, "duration") else {
+        return;
+    };
+    let declared = checker
+        .scope
+        .of_kind(Kind::Striker)
+        .find(|(_, it)| it.name.is_some_and(|name| name.node == striker.name));
+    let gap = declared.and_then(|(declared, _)| checker.given(declared, "gap"));
+    let Some((_, gap)) = gap else { return };
+    checker.faults.push(fault::never_arrives(
+        &striker.name,
+        striker.gap,
+        arrives,
+        duration,
+        gap.span,
+        at.span,
+    ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_takes_the_time_of_its_way() {
+        let striker = |velocity, gap, gravity| Striker {
+            name: String::new(),
+            mass: 1.0,
+            mass_uncertainty: 0.0,
+            velocity,
+            velocity_uncertainty: 0.0,
+            gap,
+            gravity,
+        };
+        assert_eq!(time_to_arrive(&striker(2.0, 3.0, 0.0)), 1.5);
+        assert_eq!(time_to_arrive(&striker(2.0, 0.0, 9.81)), 0.0);
+        // 1 m/s and 10 m/s²: after 1 s it has gone 1 m + 5 m.
+        assert!((time_to_arrive(&striker(1.0, 6.0, 10.0)) - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,185 @@
+//! The figures of an impact: which there are, what each shows, and its curve on a chart of several impacts. In: a history. Out:
+//! [`Chart`]s in SI with their captions.
+
+use super::{figures, storey_figures};
+use crate::plan::{Figure, FigureKind};
+use crate::record::ImpactHistory;
+use crate::report::Run;
+use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
+use crate::report::figures::points::Points;
+use crate::units::Dimension;
+
+/// Those of an impact on one degree of freedom, in the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[
+    FigureKind::Displacement,
+    FigureKind::Velocity,
+    FigureKind::StrikerVelocity,
+    FigureKind::ContactForce,
+    FigureKind::ForceDisplacement,
+    FigureKind::Energy,
+    FigureKind::Tracking,
+];
+
+/// Those of an impact on a storey.
+pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
+    FigureKind::Modes,
+    FigureKind::Displacement,
+    FigureKind::Drift,
+    FigureKind::Hysteresis,
+    FigureKind::BaseShear,
+    FigureKind::Velocity,
+    FigureKind::StrikerVelocity,
+    FigureKind::ContactForce,
+    FigureKind::Energy,
+    FigureKind::Tracking,
+];
+
+/// Those that several impacts on one degree of freedom share: one curve of each.
+pub(crate) const SHARED: &[FigureKind] = &[
+    FigureKind::Displacement,
+    FigureKind::Velocity,
+    FigureKind::StrikerVelocity,
+    FigureKind::ContactForce,
+    FigureKind::ForceDisplacement,
+];
+
+/// A figure of an impact and its caption; None before the first step, and of what it does not draw.
+pub(crate) fn chart(
+    run: &Run<'_>,
+    name: &str,
+    history: &ImpactHistory,
+    figure: &Figure,
+) -> Option<(Chart, String)> {
+    if let Some(struck) = &history.frame {
+        return storey_figures::chart(run, name, history, struck, figure, figure.kind);
+    }
+    if history.steps.is_empty() {
+        return None;
+    }
+    Some(match figure.kind {
+        FigureKind::Displacement => (
+            figures::displacement(
+                history,
+                &figures::limits_on(run, figure.procedure, "max_displacement"),
+            ),
+            format!(
+                "{name}: displacement of the structure and of the striker against virtual time."
+            ),
+        ),
+        FigureKind::Velocity => (
+            figures::velocity(history),
+            format!("{name}: velocity of the structure and of the striker against virtual time."),
+        ),
+        FigureKind::StrikerVelocity => (
+            figures::striker_velocity(history),
+            format!("{name}: velocity of the striker against virtual time; each fall is a blow."),
+        ),
+        FigureKind::ContactForce => (
+            figures::contact_force(
+                history,
+                &figures::limits_on(run, figure.procedure, "max_contact_force"),
+            ),
+            format!("{name}: contact force, mean over each step, against virtual time."),
+        ),
+        FigureKind::ForceDisplacement => (
+            figures::force_displacement(history),
+            format!(
+                "{name}: restoring force against computed displacement; the area below is the absorbed energy."
+            ),
+        ),
+        FigureKind::Energy => (
+            figures::energy(history, figures::taken_by_contact(run, figure.procedure)),
+            format!(
+                "{name}: where the energy of the striker went; the total of the parts stays level where the balance closes."
+            ),
+        ),
+        FigureKind::Tracking => (
+            figures::tracking(history),
+            if history
+                .steps
+                .iter()
+                .all(|step| step.displacement == step.command)
+            {
+                format!("{name}: what the actuator missed of its commands: nothing.")
+            } else {
+                format!(
+                    "{name}: what the actuator missed of its commands, and the tracking indicator over the largest command; an indicator that falls says that the lag feeds energy into the test."
+                )
+            },
+        ),
+        _ => return None,
+    })
+}
+
+/// The curve that stands for this history on a chart of several; None of a figure that is not shared.
+pub(crate) fn shared(kind: FigureKind, history: &ImpactHistory) -> Option<SharedCurve> {
+    if history.frame.is_some() {
+        return None;
+    }
+    let points = points(kind, history)?;
+    let over_time = |name, dimension| (Quantity::time(), Quantity::of(name, dimension));
+    let (length, force, velocity) = (Dimension::LENGTH, Dimension::FORCE, Dimension::VELOCITY);
+    let ((x, y), words) = match kind {
+        FigureKind::Displacement => (
+            over_time("Displacement X", length),
+            "displacement of the structure against virtual time",
+        ),
+        FigureKind::Velocity => (
+            over_time("Velocity of the structure", velocity),
+            "velocity of the structure against virtual time",
+        ),
+        FigureKind::StrikerVelocity => (
+            over_time("Striker velocity", velocity),
+            "velocity of the striker against virtual time",
+        ),
+        FigureKind::ContactForce => (
+            over_time("Contact force", force),
+            "contact force, mean over each step, against virtual time",
+        ),
+        FigureKind::ForceDisplacement => (
+            (
+                Quantity::along("Displacement X", length),
+                Quantity::of("Restoring force R", force),
+            ),
+            "measured restoring force against displacement",
+        ),
+        _ => return None,
+    };
+    Some(SharedCurve {
+        x,
+        y,
+        words,
+        points,
+    })
+}
+
+fn points(kind: FigureKind, ImpactHistory { steps, .. }: &ImpactHistory) -> Option<Points> {
+    Some(match kind {
+        FigureKind::Displacement => steps
+            .iter()
+            .map(|step| (step.time, step.computed))
+            .collect(),
+        FigureKind::Velocity => steps
+            .iter()
+            .map(|step| (step.time, step.velocity))
+            .collect(),
+        FigureKind::StrikerVelocity => steps
+            .iter()
+            .map(|step| (step.time, step.striker_velocity))
+            .collect(),
+        FigureKind::ContactForce => steps
+            .windows(2)
+            .flat_map(|pair| {
+                [
+                    (pair[0].time, pair[1].contact_force),
+                    (pair[1].time, pair[1].contact_force),
+                ]
+            })
+            .collect(),
+        FigureKind::ForceDisplacement => steps
+            .iter()
+            .map(|step| (step.command, step.restoring_force))
+            .collect(),
+        _ => return None,
+    })
+}

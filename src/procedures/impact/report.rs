@@ -1,0 +1,248 @@
+//! An impact on one degree of freedom as a report gives it: what a reader of its peak force must know, how it was integrated, the
+//! energy balance, the contact log. In: a plan and a record. Out: blocks.
+
+use super::contact_log;
+use crate::plan::{Contact, Impact, Integrator, ProcedureKind};
+use crate::procedures;
+use crate::record::{ImpactHistory, ProcedureRecord};
+use crate::report::content::method;
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number::percent;
+use crate::report::{Run, number};
+use crate::units::Dimension;
+
+/// Results that are worth a budget where no requirement reads any.
+pub(crate) const BUDGET: &[&str] = &["max_displacement", "absorbed_energy"];
+
+/// The blocks below its results.
+pub(crate) fn report(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    history: &ImpactHistory,
+    body: &mut Vec<Block>,
+) {
+    force_note(run, index, procedure, history, body);
+    method_note(run, index, history, body);
+    energy_balance(contact_work(run, index), history, body);
+    contact_log::table(history, body);
+}
+
+/// What a reader of a peak contact force must know: the impulse, the step, and what the law makes of them.
+fn force_note(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    history: &ImpactHistory,
+    body: &mut Vec<Block>,
+) {
+    let Some(ProcedureKind::Impact(impact)) =
+        run.plan.procedures.get(index).map(|planned| &planned.kind)
+    else {
+        return;
+    };
+    let step = number::text(history.time_step, Dimension::TIME);
+    let critical = number::text(history.critical_time_step, Dimension::TIME);
+    let forces = match (
+        procedure.number("max_contact_force"),
+        procedure.number("impulse"),
+    ) {
+        (Some(peak), Some(impulse)) => format!(
+            "Peak contact force {} with an impulse of {} at a time step of {step}.",
+            number::text(peak, Dimension::FORCE),
+            number::text(impulse, Dimension::IMPULSE)
+        ),
+        _ => format!("Time step {step}."),
+    };
+    let mut sentences = vec![
+        format!("Contact law: {}.", contact_law(&impact.contact)),
+        forces,
+        format!("Critical time step (Melo et al. 2006, eq. 7) {critical}."),
+    ];
+    if matches!(impact.contact, Contact::Rigid) {
+        sentences.push(
+            "Under the rigid law the contact force grows as the inverse of the time step: only the impulse is a property of the \
+             blow, the peak is not."
+                .to_owned(),
+        );
+        sentences.extend(implied_restitution(run, procedure, impact));
+    }
+    sentences.extend(damping_range(run, procedure, impact));
+    body.push(Block::paragraph(sentences.join(" ")));
+}
+
+/// How far the damping of a sweep is carried beyond the velocities it was measured at: an extrapolation.
+fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) -> Vec<String> {
+    let mut references = Vec::new();
+    impact.damping.collect_references(&mut references);
+    let swept = references
+        .iter()
+        .filter_map(|reference| run.record.procedures.get(reference.procedure.0));
+    let ranges = swept.filter_map(|sweep| {
+        Some((
+            &sweep.name,
+            sweep.number("max_velocity")?,
+            procedure.number("max_velocity")?,
+        ))
+    });
+    let told = ranges.filter(|(_, _, used)| *used > 0.0).map(|(name, measured, used)| {
+        format!(
+            "The damping of {name} was measured up to {}, {}\u{a0}% of the largest velocity of the structure here ({}){}",
+            number::text(measured, Dimension::VELOCITY),
+            number::text(100.0 * measured / used, Dimension::NUMBER),
+            number::text(used, Dimension::VELOCITY),
+            if used > measured { ": it is an extrapolation." } else { "." }
+        )
+    });
+    told.collect()
+}
+
+/// The law of contact as the plan chose it, in words.
+pub(crate) fn contact_law(contact: &Contact) -> &'static str {
+    match contact {
+        Contact::Rigid => "rigid",
+        Contact::Limit { .. } => "rigid up to a limit force",
+        Contact::Restitution { .. } => "restitution",
+        Contact::Hertz { .. } => "Hertz",
+    }
+}
+
+/// e = Ms/(Ms + 2M): what the rigid law is as the time step goes to zero.
+fn implied_restitution(
+    run: &Run<'_>,
+    procedure: &ProcedureRecord,
+    impact: &Impact,
+) -> Option<String> {
+    let mass = procedure
+        .inputs
+        .iter()
+        .find(|(name, ..)| *name == "mass")
+        .map(|(_, estimate, _)| estimate.value);
+    let striker = run
+        .plan
+        .strikers
+        .get(impact.striker)
+        .map(|striker| striker.mass);
+    let (mass, striker) = (mass.or_else(|| impact.mass.constant())?, striker?);
+    let restitution = striker / (striker + 2.0 * mass);
+    Some(format!(
+        "It implies a coefficient of restitution e = Ms/(Ms + 2M) = {} (Ms striker mass, M equivalent mass of the structure).",
+        number::text(restitution, Dimension::NUMBER)
+    ))
+}
+
+/// How it was integrated and followed.
+fn method_note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut Vec<Block>) {
+    let Some(ProcedureKind::Impact(impact)) =
+        run.plan.procedures.get(index).map(|planned| &planned.kind)
+    else {
+        return;
+    };
+    let mut sentences = vec![integrator(impact)];
+    sentences.extend(method::driven(
+        impact.stepping.i_modification,
+        impact.stepping.mode,
+    ));
+    sentences.extend(tracking(history));
+    body.push(Block::paragraph(sentences.join(" ")));
+}
+
+fn integrator(impact: &Impact) -> String {
+    let unstable = if impact.stepping.allow_unstable {
+        " The plan allows a time step beyond its stability limit."
+    } else {
+        ""
+    };
+    let named = match impact.stepping.integrator {
+        Integrator::Tangent => {
+            "constant average acceleration with the measured tangent stiffness (Melo et al. 2006, eqs. 2 to 6)"
+        }
+        Integrator::Explicit => "explicit Newmark, stable up to the period over π",
+        Integrator::AlphaOs { alpha } => {
+            let alpha = number::stated(alpha, Dimension::NUMBER);
+            return format!(
+                "Integrator: α-operator splitting, α = {alpha}, with the initial stiffness at the high end of its interval.{unstable}"
+            );
+        }
+    };
+    format!("Integrator: {named}.{unstable}")
+}
+
+fn tracking(history: &ImpactHistory) -> Option<String> {
+    let (first, last) = (history.steps.first()?, history.steps.last()?);
+    Some(method::followed(
+        last.tracking,
+        last.tracking.share_of(first.energies.striker),
+        "The actuator",
+    ))
+}
+
+/// What the contact took, as it is summed over the steps: from the forces at their ends, or within them.
+pub(crate) fn contact_work(run: &Run<'_>, index: usize) -> &'static str {
+    let planned = run.plan.procedures.get(index);
+    match planned.and_then(|planned| procedures::facts_of(&planned.kind).contact) {
+        Some(Contact::Rigid | Contact::Limit { .. }) => {
+            "contact, Σ F₁ΔXs − ½(F₀ + F₁)ΔX of each step"
+        }
+        _ => "contact, ∫F d(Xs − X) within each step",
+    }
+}
+
+/// Where the striker's energy was at the end of the run.
+pub(crate) fn energy_balance(
+    contact_work: &'static str,
+    history: &ImpactHistory,
+    body: &mut Vec<Block>,
+) {
+    let (Some(first), Some(last)) = (history.steps.first(), history.steps.last()) else {
+        return;
+    };
+    let e = last.energies;
+    let input = first.energies.striker + e.weight;
+    let parts = [
+        ("striker, kinetic", e.striker),
+        ("structure, kinetic", e.structure),
+        ("restoring force, ∫R dX", e.restoring),
+        ("damping, ∫CẊ dX", e.damping),
+        (contact_work, e.contact_loss),
+        ("integration error", e.error),
+    ];
+    let row = |(name, energy): (&str, f64)| -> Vec<Text> {
+        let share = if input > 0.0 {
+            percent(energy / input)
+        } else {
+            "—".to_owned()
+        };
+        vec![
+            name.into(),
+            number::part_of(energy, input, 5, Dimension::ENERGY).into(),
+            share.into(),
+        ]
+    };
+    let given = if e.weight == 0.0 {
+        "input, ½MsV₀²"
+    } else {
+        "input, ½MsV₀² and the work of the weight"
+    };
+    let input_row = vec![
+        given.into(),
+        number::part_of(input, input, 5, Dimension::ENERGY).into(),
+        "100\u{a0}%".into(),
+    ];
+    let columns = vec![
+        Column::words("Energy balance at the end of the run", 1),
+        Column::numbers("Energy"),
+        Column::numbers("Of the input"),
+    ];
+    body.push(Block::Table(Table {
+        columns,
+        rows: std::iter::once(input_row).chain(parts.map(row)).collect(),
+    }));
+    if e.indentation > 0.0 {
+        body.push(Block::note(format!(
+            "Indentation energy F·Δδp, an indicator and no part of the balance: {}. It equals the work lost in the contact only as the time \
+             step goes to zero.",
+            number::text(e.indentation, Dimension::ENERGY)
+        )));
+    }
+}

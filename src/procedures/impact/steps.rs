@@ -1,0 +1,189 @@
+//! The steps of an impact, on one degree of freedom or on one floor of a frame: the striker beside the structure, and every step
+//! kept. In: a solver from where the rig stands. Out: the history and its summary. How the steps are taken on the rig is
+//! `step_loop`'s; the equations are `mechanics`'.
+
+use super::summary::StruckSummary;
+use crate::physics::impact::ImpactSolver;
+use crate::physics::matrix::Vector;
+use crate::physics::tracking::monitor::Tracking;
+use crate::plan::{Stepping, Until};
+use crate::procedures::stepping::axes::AxesState;
+use crate::procedures::stepping::operator_stability_watch::StifferSprings;
+use crate::procedures::stepping::step_loop;
+use crate::procedures::stepping::step_loop::{Balance, Pace, Start, Stepped};
+use crate::procedures::stepping::tracking_summary::Followed;
+use crate::record::{FloorStep, ImpactStep};
+use crate::rig::Reading;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+
+/// How an impact is stepped.
+pub(crate) struct ImpactSteps<'a> {
+    pub stepping: &'a Stepping,
+    pub pace: Pace,
+    pub until: Until,
+    /// Steps of the procedure done before these.
+    pub before: u64,
+}
+
+/// What is kept of an impact.
+pub(crate) struct Kept {
+    /// The struck degree of freedom and the striker.
+    pub steps: Vec<ImpactStep>,
+    /// Every floor of a frame.
+    pub floors: Vec<FloorStep>,
+    pub summary: StruckSummary,
+    pub followed: Followed,
+}
+
+impl Kept {
+    /// Before the first of `steps` steps: room for those to come, as far as it is cheap, for `duration` is often far beyond the end.
+    pub(crate) fn new(summary: StruckSummary, steps: u64) -> Self {
+        let room = usize::try_from(steps + 1)
+            .unwrap_or(usize::MAX)
+            .min(100_000);
+        Self {
+            steps: Vec::with_capacity(room),
+            floors: Vec::new(),
+            summary,
+            followed: Followed::default(),
+        }
+    }
+}
+
+impl ImpactSteps<'_> {
+    /// All steps, with the solver that `begin` makes of where the rig stands.
+    pub(crate) fn run<V: Vector>(
+        &self,
+        kept: &mut Kept,
+        session: &mut Session<'_>,
+        begin: impl FnOnce(&Start) -> Result<(ImpactSolver<V>, StifferSprings), Stop>,
+    ) -> Result<(), Stop> {
+        let Kept {
+            steps,
+            floors,
+            summary,
+            followed,
+        } = kept;
+        let (until, before) = (self.until, self.before);
+        step_loop::run(self.pace, self.stepping, followed, session, |start| {
+            let (mut solver, stiffer) = begin(start)?;
+            solver.measured_at_start(V::view_of(&start.reading.displacement));
+            Ok((
+                Struck {
+                    solver,
+                    until,
+                    before,
+                    steps,
+                    floors,
+                    summary,
+                },
+                stiffer,
+            ))
+        })
+    }
+}
+
+/// The structure under way, with its striker.
+struct Struck<'a, V: Vector> {
+    solver: ImpactSolver<V>,
+    until: Until,
+    before: u64,
+    steps: &'a mut Vec<ImpactStep>,
+    floors: &'a mut Vec<FloorStep>,
+    summary: &'a mut StruckSummary,
+}
+
+impl<V: Vector> Stepped for Struck<'_, V> {
+    fn axes(&self) -> AxesState<'_> {
+        AxesState::of(self.solver.structure())
+    }
+
+    fn predict(&mut self) -> Vec<f64> {
+        V::slice_of(&self.solver.predict()).to_vec()
+    }
+
+    fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {
+        self.solver.predicted_velocity(velocity)
+    }
+
+    fn taken_at_start(&self, start: &Start) -> Vec<f64> {
+        let Reading {
+            displacement,
+            force,
+            ..
+        } = &start.reading;
+        let taken = self.solver.taken_at(
+            V::view_of(&start.commanded),
+            V::view_of(displacement),
+            V::view_of(force),
+        );
+        taken.as_slice().to_vec()
+    }
+
+    fn taken(&self) -> Vec<f64> {
+        V::slice_of(&self.solver.taken()).to_vec()
+    }
+
+    fn complete(&mut self, reading: &Reading) {
+        self.solver.complete(
+            V::view_of(&reading.displacement),
+            V::view_of(&reading.force),
+        );
+    }
+
+    fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance {
+        let state = self.solver.state();
+        self.summary.push(self.solver.structure(), state);
+        self.steps.push(ImpactStep {
+            step: state.step,
+            time: state.time,
+            wall_time: session.guard.time(),
+            state: state.state,
+            command: state.target,
+            computed: state.displacement,
+            displacement: state.measured_displacement,
+            velocity: state.velocity,
+            acceleration: state.acceleration,
+            restoring_force: state.restoring_force,
+            contact_force: state.contact_force,
+            striker_displacement: state.striker_displacement,
+            striker_velocity: state.striker_velocity,
+            tangent_stiffness: state.tangent_stiffness,
+            indentation: state.indentation,
+            energies: state.energies,
+            tracking: Tracking::together(axes),
+        });
+        if let Some(floors) = self.summary.floors() {
+            let structure = self.solver.structure();
+            let of = |vector: &V| vector.as_slice().to_vec();
+            self.floors.push(FloorStep {
+                time: structure.time,
+                command: of(&structure.target),
+                displacement: of(&structure.measured_displacement),
+                computed: of(&structure.displacement),
+                velocity: of(&structure.velocity),
+                acceleration: of(&structure.acceleration),
+                restoring_force: of(&structure.restoring_force),
+                storey_energy: floors.storey_energy().to_vec(),
+                tracking: axes.to_vec(),
+            });
+        }
+        Balance {
+            error: state.energies.error,
+            input: state.input,
+        }
+    }
+
+    fn is_struck(&self) -> bool {
+        self.solver.state().contact_force > 0.0
+    }
+
+    fn before(&self) -> u64 {
+        self.before
+    }
+
+    fn over(&self) -> bool {
+        self.solver.over(self.until)
+    }
+}

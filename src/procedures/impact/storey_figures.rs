@@ -1,0 +1,134 @@
+//! Charts of an impact on one storey of a frame: those of an impact for striker and contact, those of a frame for floors and
+//! storeys, with the contact shaded in all that run over time. In: a history. Out: [`Chart`]s in SI with their captions.
+
+use crate::plan::{Figure, FigureKind};
+use crate::procedures::{base_excitation, impact};
+use crate::record::{ImpactHistory, StruckFrame};
+use crate::report::Run;
+use crate::report::figures::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
+use crate::units::Dimension;
+
+/// None before the first step, and of what this procedure does not draw.
+pub(crate) fn chart(
+    run: &Run<'_>,
+    name: &str,
+    history: &ImpactHistory,
+    frame: &StruckFrame,
+    figure: &Figure,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    if frame.floors.is_empty() {
+        return None;
+    }
+    let limits = |result| impact::figures::limits_on(run, figure.procedure, result);
+    let chosen = if base_excitation::figures::is_chosen(&frame.floors) {
+        "; not every one is drawn"
+    } else {
+        ""
+    };
+    let struck = frame.struck + 1;
+    Some(match kind {
+        FigureKind::Modes => (
+            base_excitation::figures::modes(frame.modes.as_ref()?),
+            format!(
+                "{name}: shapes of the natural modes and their periods, floor by floor from the ground up."
+            ),
+        ),
+        FigureKind::Displacement => {
+            let mut chart = shaded(
+                history,
+                base_excitation::figures::displacement(&frame.floors),
+            );
+            chart.series.push(striker(history, frame));
+            chart.references = limits("max_displacement");
+            let caption = format!(
+                "{name}: displacement of each floor, and of the striker on floor {struck} while it is near, against virtual \
+                 time{chosen}."
+            );
+            (chart, caption)
+        }
+        FigureKind::Drift => (
+            shaded(
+                history,
+                base_excitation::figures::drift(&frame.floors, &limits("max_drift")),
+            ),
+            format!("{name}: drift of each storey against virtual time{chosen}."),
+        ),
+        FigureKind::Hysteresis => (
+            base_excitation::figures::hysteresis(&frame.floors),
+            format!(
+                "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
+            ),
+        ),
+        FigureKind::BaseShear => (
+            shaded(
+                history,
+                base_excitation::figures::base_shear(&frame.floors, &limits("max_base_shear")),
+            ),
+            format!(
+                "{name}: base shear, the sum of the measured restoring forces, against virtual time."
+            ),
+        ),
+        FigureKind::Velocity => {
+            let mut chart = impact::figures::against_time(
+                history,
+                Quantity::of("Velocity", Dimension::VELOCITY),
+            );
+            let floor = Style::line(palette::BLUE, 1.6, SOLID);
+            let striker = Style::line(palette::VERMILION, 2.0, DASHED);
+            chart.series = vec![
+                impact::figures::series(
+                    history,
+                    &format!("floor {struck}"),
+                    |step| step.velocity,
+                    floor,
+                ),
+                impact::figures::series(history, "striker", |step| step.striker_velocity, striker),
+            ];
+            (
+                chart,
+                format!(
+                    "{name}: velocity of the struck floor and of the striker against virtual time."
+                ),
+            )
+        }
+        FigureKind::StrikerVelocity => (
+            impact::figures::striker_velocity(history),
+            format!("{name}: velocity of the striker against virtual time; each fall is a blow."),
+        ),
+        FigureKind::ContactForce => (
+            impact::figures::contact_force(history, &limits("max_contact_force")),
+            format!("{name}: contact force, mean over each step, against virtual time."),
+        ),
+        FigureKind::Energy => (
+            impact::figures::energy(
+                history,
+                impact::figures::taken_by_contact(run, figure.procedure),
+            ),
+            format!(
+                "{name}: where the energy of the striker went, all storeys together; the total of the parts stays level where \
+                 the balance closes."
+            ),
+        ),
+        FigureKind::Tracking => (
+            shaded(history, base_excitation::figures::tracking(&frame.floors)),
+            base_excitation::chart::followed(name, chosen),
+        ),
+        _ => return None,
+    })
+}
+
+/// Where the striker is, as long as it is near the floors.
+fn striker(history: &ImpactHistory, frame: &StruckFrame) -> Series {
+    let places = frame
+        .floors
+        .iter()
+        .flat_map(|floors| floors.computed.iter().copied());
+    impact::figures::striker_near(history, places, Style::line(palette::BLACK, 1.4, DASHED))
+}
+
+/// The contact behind a chart over virtual time.
+fn shaded(history: &ImpactHistory, chart: Chart) -> Chart {
+    let bands = impact::figures::against_time(history, Quantity::time()).bands;
+    Chart { bands, ..chart }
+}

@@ -1,0 +1,98 @@
+//! Warnings of one blow: its step against eq. 7 and against what the limit force needs, its force against the mechanism of a portal.
+//! In: a blow, its striker and specimen. Out: warnings with the numbers.
+
+use super::check::{critical_foreseen, time_step_before_the_run};
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::{specimens, whole as fault};
+use crate::physics::structure::portal_limit::mechanism_limit;
+use crate::plan::formula::NoResults;
+use crate::plan::{Behaviour, Contact, Impact, Specimen, Striker};
+use crate::text::source::Span;
+
+/// Warnings of one impact: its step against eq. 7, unless more was said of it, and against what the limit force needs.
+pub fn impact(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    striker: &Striker,
+    specimen: Option<&Specimen>,
+    allowed_beyond_stability: bool,
+) {
+    let head = checker.scope.blocks[block].block.head;
+    let at = checker
+        .given(block, "time_step")
+        .map_or(head, |(_, entry)| entry.value.span);
+    let critical = critical_foreseen(checker, impact, striker, specimen);
+    if let Some((critical, foreseen)) = critical
+        && let Ok(step) = impact
+            .stepping
+            .time_step
+            .evaluate(&NoResults, Some(critical))
+        && step.value > critical
+        && !allowed_beyond_stability
+    {
+        let fault = if foreseen {
+            fault::step_above_foreseen
+        } else {
+            fault::step_above_critical
+        };
+        checker.faults.push(fault(at, step.value, critical));
+    }
+    let Some(step) = time_step_before_the_run(impact, striker) else {
+        return;
+    };
+    if let (Contact::Limit { force }, Some(mass)) = (&impact.contact, impact.mass.constant())
+        && let Some(force) = force.constant()
+    {
+        limit_force(checker, at, step, (mass, force), striker);
+    }
+}
+
+/// A contact force that may grow beyond what the mechanism of a portal follows.
+pub fn mechanism(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    specimen: Option<&Specimen>,
+) {
+    let bound = match &impact.contact {
+        Contact::Limit { force }
+        | Contact::Hertz {
+            force_limit: Some(force),
+            ..
+        } => force.constant(),
+        _ => None,
+    };
+    let portal = specimen
+        .and_then(|specimen| specimen.behaviour.as_ref())
+        .and_then(Behaviour::portal);
+    if let (Some(force), Some(portal), Some((_, entry))) =
+        (bound, portal, checker.given(block, "contact"))
+        && let Some(most) = mechanism_limit(portal).filter(|most| force > *most)
+    {
+        checker.faults.push(specimens::beyond_mechanism(
+            portal.mechanism(),
+            (force, most),
+            entry.value.span,
+        ));
+    }
+}
+
+/// What a limit force (N) needs of the time step, on a structure of `mass` (kg): Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and
+/// Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
+pub fn limit_force(
+    checker: &mut Checker,
+    at: Span,
+    step: f64,
+    (mass, force): (f64, f64),
+    striker: &Striker,
+) {
+    let first =
+        2.0 * mass * striker.mass * striker.velocity / ((2.0 * mass + striker.mass) * force);
+    let resolved = mass * striker.mass / (mass + striker.mass) * striker.velocity / (5.0 * force);
+    if step > resolved {
+        checker
+            .faults
+            .push(fault::limit_force_not_resolved(at, step, first, resolved));
+    }
+}

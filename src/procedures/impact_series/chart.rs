@@ -1,0 +1,81 @@
+//! The figures of a row of blows: which there are and what each shows. In: a history. Out: [`Chart`]s in SI with their captions.
+
+use super::figures;
+use crate::plan::FigureKind;
+use crate::procedures::base_excitation;
+use crate::record::{Blow, EscalateHistory, FloorStep};
+use crate::report::figures::chart::Chart;
+
+/// Those of blows on one degree of freedom, in the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[
+    FigureKind::Blows,
+    FigureKind::ForceDisplacement,
+    FigureKind::Displacement,
+];
+
+/// Those of blows on a storey.
+pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
+    FigureKind::Blows,
+    FigureKind::Drift,
+    FigureKind::Hysteresis,
+    FigureKind::Displacement,
+];
+
+/// A figure and its caption; None where nothing was recorded for it, and of what it does not draw.
+pub(crate) fn chart(
+    name: &str,
+    history: &EscalateHistory,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    let struck = |blow: &Blow| !blow.impact().steps.is_empty();
+    if !history.blows.iter().any(struck) {
+        return None;
+    }
+    Some(match kind {
+        FigureKind::ForceDisplacement => (
+            figures::force_displacement(history),
+            format!(
+                "{name}: restoring force against computed displacement, blow over blow; lighter lines are earlier blows."
+            ),
+        ),
+        FigureKind::Displacement => (
+            figures::displacement(history),
+            match history.storeys().next() {
+                None => format!(
+                    "{name}: displacement against the virtual time of each blow; lighter lines are earlier blows."
+                ),
+                Some(blow) => format!(
+                    "{name}: displacement of floor {} against the virtual time of each blow; lighter lines are earlier blows.",
+                    blow.struck + 1
+                ),
+            },
+        ),
+        FigureKind::Blows => (
+            figures::blows(history),
+            match history.storeys().next() {
+                None => format!(
+                    "{name}: largest displacement of each blow, and where the specimen rested after it, against its energy."
+                ),
+                Some(blow) => format!(
+                    "{name}: largest displacement of floor {} in each blow, and where it rested after it, against its energy.",
+                    blow.struck + 1
+                ),
+            },
+        ),
+        FigureKind::Drift => (
+            figures::drift(history),
+            format!(
+                "{name}: largest drift of each storey in each blow, and the drift that stayed after it, against its energy."
+            ),
+        ),
+        FigureKind::Hysteresis => {
+            let steps: Vec<&FloorStep> = history.storeys().flat_map(|blow| &blow.floors).collect();
+            let caption = format!(
+                "{name}: measured storey shear against drift, blow after blow; between two blows the straight way from the end of \
+                 the one to the start of the next."
+            );
+            (base_excitation::figures::hysteresis(&steps), caption)
+        }
+        _ => return None,
+    })
+}

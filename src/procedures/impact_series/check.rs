@@ -1,0 +1,156 @@
+//! `escalate NAME { … }`: the fields of an impact, its levels, and the condition that lets the next blow follow.
+
+use crate::language::check::checker::{Checker, Place, Reads};
+use crate::language::check::declarations::striker::STANDARD_GRAVITY;
+use crate::language::check::messages::{cyclic as fault, names, values};
+use crate::plan::formula::{Formula, Function, Operator};
+use crate::plan::{Between, BlowOn, Condition, Escalate, MOST_BLOWS, ProcedureKind};
+use crate::procedures::impact;
+use crate::procedures::impact::storey_check;
+use crate::schema::Kind;
+use crate::text::source::Span;
+
+/// The fields each of which gives the levels.
+const LEVELS: [&str; 3] = ["speeds", "drop_heights", "energies"];
+
+pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    let own = checker.scope.blocks[block].procedure?;
+    let levels = levels(checker, block);
+    let condition = condition(checker, block);
+    let between = checker.word(block, "between", "unload");
+    let inspect_between = checker
+        .word(block, "inspect_between", "false")
+        .map(|word| word == "true");
+    let blow = match storey_check::struck_frame(checker, block) {
+        Some((specimen, frame)) => {
+            storey_check::storey_impact(checker, block, specimen, frame.as_ref())
+                .map(BlowOn::Storey)
+        }
+        None => impact::check::blow(checker, block).map(BlowOn::Specimen),
+    };
+    let (velocities, energies) = levels?;
+    Some(ProcedureKind::Escalate(Escalate {
+        own,
+        blow: blow?,
+        velocities,
+        energies,
+        condition: condition?,
+        between: match between? {
+            "home" => Between::Home,
+            "stay" => Between::Stay,
+            _ => Between::Unload,
+        },
+        inspect_between: inspect_between?,
+    }))
+}
+
+/// The striker's velocity of each blow: v, √(2·gn·h) or √(2E/Ms), and its energy where that is what the plan gives.
+fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<Vec<Formula>>)> {
+    let declared = &checker.scope.blocks[block];
+    let (kind, name, head) = (declared.kind, declared.name, declared.block.head);
+    let given: Vec<(&str, Span, Span)> = LEVELS
+        .into_iter()
+        .filter_map(|field| {
+            checker
+                .given(block, field)
+                .map(|(_, entry)| (field, entry.key.span, entry.value.span))
+        })
+        .collect();
+    let (field, span) = match given.as_slice() {
+        [(field, _, span)] => (*field, *span),
+        [] => {
+            if !checker.misspelt(block, &LEVELS) {
+                checker.faults.push(names::missing_field(
+                    kind,
+                    name,
+                    head,
+                    "speeds",
+                    "speeds = [0.5, 1, 1.5] m/s",
+                ));
+            }
+            return None;
+        }
+        [(first, at, _), rest @ ..] => {
+            for (again, span, _) in rest {
+                checker
+                    .faults
+                    .push(fault::levels_twice(again, *span, first, *at));
+            }
+            return None;
+        }
+    };
+    let levels = checker.quantities(block, field)?;
+    if levels.len() > MOST_BLOWS {
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "a list has at most 100,000 entries"
+        )]
+        let (found, most) = (levels.len() as f64, MOST_BLOWS as f64);
+        return checker.fail(values::too_many(
+            "blows",
+            found,
+            most,
+            span,
+            "take fewer levels",
+        ));
+    }
+    let known: Vec<f64> = levels.iter().filter_map(Formula::constant).collect();
+    if known.windows(2).any(|pair| pair[1] <= pair[0]) {
+        checker.faults.push(fault::levels_do_not_rise(field, span));
+    }
+    let root = |twice: f64, of: Formula| {
+        let product = Formula::Binary(
+            Operator::Multiply,
+            Box::new(Formula::Constant(twice)),
+            Box::new(of),
+        );
+        let root = Formula::Call(Function::Sqrt, vec![product]);
+        root.constant().map_or(root, Formula::Constant)
+    };
+    Some(match field {
+        "speeds" => (levels, None),
+        "drop_heights" => (
+            levels
+                .into_iter()
+                .map(|height| root(2.0 * STANDARD_GRAVITY, height))
+                .collect(),
+            None,
+        ),
+        _ => {
+            let hammer = checker.reference(block, "striker", Kind::Striker)?;
+            let mass = checker.constant(hammer, "mass")?;
+            (
+                levels
+                    .iter()
+                    .cloned()
+                    .map(|energy| root(2.0 / mass, energy))
+                    .collect(),
+                Some(levels),
+            )
+        }
+    })
+}
+
+/// `while`: conditions on the results of a blow, by their own names.
+fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
+    let own = checker.scope.blocks[block].procedure?;
+    let (entry, written) = checker.given(block, "while")?;
+    let place = Place {
+        entry: Some((block, entry)),
+        reads: Reads::Blow(own),
+        critical: false,
+    };
+    let conditions = checker.conditions_at(&written.value, place)?;
+    let mut references = Vec::new();
+    for condition in &conditions {
+        condition.collect_references(&mut references);
+    }
+    if !references
+        .iter()
+        .any(|reference| reference.procedure == own)
+    {
+        let text = checker.text(written.value.span);
+        return checker.fail(fault::condition_without_blow(text, written.value.span));
+    }
+    Some(conditions)
+}

@@ -1,0 +1,222 @@
+//! Charts of blows of rising energy: each blow's path and motion over each other, and what came of each against its
+//! energy. In: the history. Out: [`Chart`]s in SI.
+
+use std::borrow::Cow;
+
+use crate::procedures::base_excitation;
+use crate::record::{Blow, EscalateHistory, ImpactStep};
+use crate::report::figures::chart::{
+    Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
+};
+use crate::report::figures::points::Points;
+use crate::units::Dimension;
+use crate::units::display::stated;
+
+/// Restoring force against displacement, blow over blow.
+pub(crate) fn force_displacement(history: &EscalateHistory) -> Chart {
+    over_each_other(
+        history,
+        Quantity {
+            name: displaced(history),
+            ..Quantity::along("", Dimension::LENGTH)
+        },
+        Quantity::of("Restoring force R", Dimension::FORCE),
+        |step| (step.command, step.restoring_force),
+    )
+}
+
+/// Displacement against the time of each blow.
+pub(crate) fn displacement(history: &EscalateHistory) -> Chart {
+    let of = |step: &ImpactStep| (step.time, step.command);
+    let displaced = Quantity {
+        name: displaced(history),
+        ..Quantity::of("", Dimension::LENGTH)
+    };
+    over_each_other(history, Quantity::time(), displaced, of)
+}
+
+/// Largest displacement, and where the specimen then rested, against the energy of the blow.
+pub(crate) fn blows(history: &EscalateHistory) -> Chart {
+    let largest = |blow: &Blow| blow.number("max_displacement");
+    let peaks = history
+        .blows
+        .iter()
+        .filter_map(|blow| Some((blow.energy, largest(blow)?)))
+        .collect();
+    let rests = history
+        .blows
+        .iter()
+        .filter_map(|blow| Some((blow.energy, blow.rest_of_struck()?.0)))
+        .collect();
+    let failed = history.blows.iter().filter(|blow| blow.held == Some(false));
+    let failed: Points = failed
+        .filter_map(|blow| Some((blow.energy, largest(blow)?)))
+        .collect();
+    let mut series = vec![
+        Series {
+            label: "largest displacement".to_owned(),
+            points: peaks,
+            style: Style {
+                marker: Some(Marker::Disc(3.6)),
+                ..Style::line(palette::BLUE, 1.6, SOLID)
+            },
+        },
+        Series {
+            label: "at rest after it".to_owned(),
+            points: rests,
+            style: Style {
+                marker: Some(Marker::Ring(4.0)),
+                ..Style::line(palette::GREEN, 1.4, DASHED)
+            },
+        },
+    ];
+    if !failed.is_empty() {
+        series.push(Series {
+            label: "condition no longer held".to_owned(),
+            points: failed,
+            style: Style::marker(palette::VERMILION, Marker::Ring(7.0)),
+        });
+    }
+    Chart {
+        x: Quantity::along("Energy of the blow", Dimension::ENERGY),
+        y: Quantity {
+            name: displaced(history),
+            ..Quantity::of("", Dimension::LENGTH)
+        },
+        bands: Vec::new(),
+        series,
+        references: Vec::new(),
+    }
+}
+
+/// Largest drift of each storey, and what stayed of it, against the energy of the blow.
+pub(crate) fn drift(history: &EscalateHistory) -> Chart {
+    let storeys = history
+        .storeys()
+        .next()
+        .and_then(|blow| blow.floors.first())
+        .map_or(0, |floors| floors.computed.len());
+    let largest = |blow: &Blow, storey: usize| blow.list("max_drift")?.get(storey).copied();
+    let stayed = |blow: &Blow, storey: usize| blow.rest.as_ref()?.drift().get(storey).copied();
+    let points = |of: &dyn Fn(&Blow, usize) -> Option<f64>, storey: usize| -> Points {
+        history
+            .blows
+            .iter()
+            .filter_map(|blow| Some((blow.energy, of(blow, storey)?)))
+            .collect()
+    };
+    let series = base_excitation::figures::shown(storeys)
+        .into_iter()
+        .enumerate()
+        .flat_map(|(curve, storey)| {
+            let colour = base_excitation::figures::style(curve, 1.6).colour;
+            let peak = Style {
+                marker: Some(Marker::Disc(3.2)),
+                ..Style::line(colour, 1.6, SOLID)
+            };
+            let rest = Style {
+                marker: Some(Marker::Ring(3.6)),
+                ..Style::line(colour, 1.4, DASHED)
+            };
+            [
+                Series {
+                    label: format!("storey {}, largest", storey + 1),
+                    points: points(&largest, storey),
+                    style: peak,
+                },
+                Series {
+                    label: format!("storey {}, stayed", storey + 1),
+                    points: points(&stayed, storey),
+                    style: rest,
+                },
+            ]
+        });
+    Chart {
+        x: Quantity::along("Energy of the blow", Dimension::ENERGY),
+        y: Quantity::of("Drift", Dimension::LENGTH),
+        bands: Vec::new(),
+        series: series.collect(),
+        references: Vec::new(),
+    }
+}
+
+/// What moves: the specimen, or the floor that is struck.
+fn displaced(history: &EscalateHistory) -> Cow<'static, str> {
+    match history.storeys().next() {
+        None => "Displacement X".into(),
+        Some(blow) => format!("Displacement of floor {}", blow.struck + 1).into(),
+    }
+}
+
+/// Labels of blows, at most: more of them hide what they are to tell.
+const MOST_LABELS: usize = 7;
+
+/// Earlier blows lighter, the last one in a colour of its own. All bear their energies, of many blows every so many and the last.
+fn over_each_other(
+    history: &EscalateHistory,
+    x: Quantity,
+    y: Quantity,
+    of: impl Fn(&ImpactStep) -> (f64, f64),
+) -> Chart {
+    let last = history.blows.len().saturating_sub(1);
+    let every = history.blows.len().div_ceil(MOST_LABELS).max(1);
+    // One just before the last would stand in its way.
+    let labelled = |index: usize| {
+        index == last || (index.is_multiple_of(every) && last - index >= every.div_ceil(2))
+    };
+    let series = history
+        .blows
+        .iter()
+        .enumerate()
+        .map(|(index, blow)| Series {
+            label: if labelled(index) {
+                format!("blow {}, {}", index + 1, energy(blow))
+            } else {
+                String::new()
+            },
+            points: blow.impact().steps.iter().map(&of).collect(),
+            style: if index == last {
+                Style::line(palette::VERMILION, 2.0, SOLID)
+            } else {
+                Style::line(shade(index, last), 1.5, SOLID)
+            },
+        });
+    Chart {
+        x,
+        y,
+        bands: Vec::new(),
+        series: series.collect(),
+        references: Vec::new(),
+    }
+}
+
+fn energy(blow: &Blow) -> String {
+    stated(blow.energy, Dimension::ENERGY)
+}
+
+/// From the light blue of the first to the dark one of the last but one.
+fn shade(index: usize, last: usize) -> Colour {
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
+    let share = if last > 1 {
+        index as f64 / (last - 1) as f64
+    } else {
+        1.0
+    };
+    let mix = |from: u8, to: u8| {
+        let value = f64::from(from) + share * (f64::from(to) - f64::from(from));
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between two bytes"
+        )]
+        let byte = value.round() as u8;
+        byte
+    };
+    // Paler than sky and darker than blue, so that neighbours are told apart.
+    let (light, dark) = ((150, 206, 242), (0, 66, 120));
+    (
+        mix(light.0, dark.0),
+        mix(light.1, dark.1),
+        mix(light.2, dark.2),
+    )
+}

@@ -1,0 +1,238 @@
+//! Inputs of a procedure: formulas of the plan, evaluated once every result before it is known. In: formulas. Out:
+//! numbers in SI, inside their domain, and the list of them for the record.
+
+use crate::plan::formula::{Estimate, Formula, ProcedureId, Results};
+use crate::run::stop::Stop;
+use crate::uncertainty::engine::Shifts;
+use crate::uncertainty::{Moved, known};
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+/// Calls with results that have sources perturbed.
+pub(crate) fn with_shifts<T>(
+    results: &dyn Results,
+    shifts: Shifts<'_>,
+    then: &mut dyn FnMut(&dyn Results) -> T,
+) -> T {
+    match shifts.split_first() {
+        None => then(results),
+        Some(((source, by), rest)) => with_shifts(
+            &Moved {
+                results,
+                source: *source,
+                by: *by,
+            },
+            rest,
+            then,
+        ),
+    }
+}
+
+/// Evaluates, and remembers what came out.
+pub(crate) struct Inputs<'record> {
+    results: &'record dyn Results,
+    procedure: ProcedureId,
+    recorded: Vec<(&'static str, Estimate, Dimension)>,
+    /// Whether a source is moved: then nothing is raised to its bound by itself.
+    moved: bool,
+    /// By how much the damping was raised to none, in its own unit.
+    lift: f64,
+    /// What a reader must know of how an input was taken.
+    observations: Vec<String>,
+}
+
+impl<'record> Inputs<'record> {
+    /// Of the procedure at this place of the plan.
+    pub(crate) fn new(results: &'record dyn Results, procedure: ProcedureId) -> Self {
+        Self {
+            results,
+            procedure,
+            recorded: Vec::new(),
+            moved: false,
+            lift: 0.0,
+            observations: Vec::new(),
+        }
+    }
+
+    /// The same with a source moved, of a run whose damping was raised by so much.
+    pub(crate) fn moved(results: &'record dyn Results, procedure: ProcedureId, lift: f64) -> Self {
+        Self {
+            moved: true,
+            lift,
+            ..Self::new(results, procedure)
+        }
+    }
+
+    /// By how much the damping was raised to none.
+    pub(crate) const fn lift(&self) -> f64 {
+        self.lift
+    }
+
+    /// What a reader must know of how inputs were taken.
+    pub(crate) fn take_observations(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.observations)
+    }
+
+    /// Whose inputs they are.
+    pub(crate) const fn procedure(&self) -> ProcedureId {
+        self.procedure
+    }
+
+    /// A stated uncertainty, of the field evaluated last, beside what its formula brings.
+    pub(crate) fn also_uncertain(&mut self, stated: f64) {
+        if let Some((_, estimate, _)) = self.recorded.last_mut().filter(|_| stated > 0.0) {
+            estimate.uncertainty = Some(estimate.uncertainty.unwrap_or(0.0).hypot(stated));
+        }
+    }
+
+    /// Where its formulas find results.
+    pub(crate) fn results(&self) -> &'record dyn Results {
+        self.results
+    }
+
+    pub(crate) fn into_recorded(self) -> Vec<(&'static str, Estimate, Dimension)> {
+        self.recorded
+    }
+
+    /// Any number.
+    pub(crate) fn number(
+        &mut self,
+        field: &'static str,
+        formula: &Formula,
+        dimension: Dimension,
+    ) -> Result<f64, Stop> {
+        self.estimate(field, formula, dimension, None)
+            .map(|estimate| estimate.value)
+    }
+
+    /// A number above 0.
+    pub(crate) fn positive(
+        &mut self,
+        field: &'static str,
+        formula: &Formula,
+        dimension: Dimension,
+    ) -> Result<f64, Stop> {
+        self.positive_estimate(field, formula, dimension, None)
+            .map(|estimate| estimate.value)
+    }
+
+    /// A number of at least 0.
+    pub(crate) fn not_negative(
+        &mut self,
+        field: &'static str,
+        formula: &Formula,
+        dimension: Dimension,
+    ) -> Result<f64, Stop> {
+        match self.number(field, formula, dimension)? {
+            value if value >= 0.0 => Ok(value),
+            value => Err(Stop::BadInput {
+                field,
+                value,
+                dimension,
+                wanted: "at least 0".into(),
+            }),
+        }
+    }
+
+    /// Damping, or its ratio: at least 0. What was measured below 0 by no more than its expanded uncertainty is taken as 0, with the
+    /// uncertainty that it has.
+    pub(crate) fn damping(
+        &mut self,
+        field: &'static str,
+        formula: &Formula,
+        dimension: Dimension,
+    ) -> Result<f64, Stop> {
+        let value = self.number(field, formula, dimension)? + self.lift;
+        if value >= 0.0 {
+            return Ok(value);
+        }
+        let bad = |wanted: &'static str| Stop::BadInput {
+            field,
+            value,
+            dimension,
+            wanted: wanted.into(),
+        };
+        let parts = formula
+            .contributions(self.results, None)
+            .map_err(|error| Stop::NoInput { field, error })?;
+        let Some(known) =
+            known(&parts, self.results).filter(|known| !self.moved && known.standard > 0.0)
+        else {
+            return Err(bad("at least 0"));
+        };
+        if -value > known.expanded() {
+            return Err(bad(
+                "at least 0, and is below 0 by more than its expanded uncertainty",
+            ));
+        }
+        self.lift = -value;
+        if let Some((_, estimate, _)) = self.recorded.last_mut() {
+            estimate.value = 0.0;
+        }
+        let (value, expanded) = (
+            readable(value, dimension),
+            readable(known.expanded(), dimension),
+        );
+        let text = format!(
+            "`{field}` was measured as {value}, U = {expanded}, which is not significantly below 0: it is taken as 0"
+        );
+        self.observations.push(text);
+        Ok(0.0)
+    }
+
+    /// A number above 0 with its uncertainty; `critical` (s) is for `time_step`.
+    pub(crate) fn positive_estimate(
+        &mut self,
+        field: &'static str,
+        formula: &Formula,
+        dimension: Dimension,
+        critical: Option<f64>,
+    ) -> Result<Estimate, Stop> {
+        let estimate = self.estimate(field, formula, dimension, critical)?;
+        if estimate.value > 0.0 {
+            Ok(estimate)
+        } else {
+            Err(Stop::BadInput {
+                field,
+                value: estimate.value,
+                dimension,
+                wanted: "greater than 0".into(),
+            })
+        }
+    }
+
+    /// Actuator speed where one is asked for, above 0.
+    pub(crate) fn speed(&mut self, formula: Option<&Formula>) -> Result<Option<f64>, Stop> {
+        formula
+            .map(|formula| self.positive("speed", formula, Dimension::VELOCITY))
+            .transpose()
+    }
+
+    /// Every entry of a list. The record has them as the commands of its steps.
+    pub(crate) fn list(&self, field: &'static str, formulas: &[Formula]) -> Result<Vec<f64>, Stop> {
+        let value = |formula: &Formula| {
+            formula
+                .evaluate(self.results, None)
+                .map(|estimate| estimate.value)
+        };
+        formulas
+            .iter()
+            .map(value)
+            .collect::<Result<_, _>>()
+            .map_err(|error| Stop::NoInput { field, error })
+    }
+
+    fn estimate(
+        &mut self,
+        field: &'static str,
+        formula: &Formula,
+        dimension: Dimension,
+        critical: Option<f64>,
+    ) -> Result<Estimate, Stop> {
+        let estimate = formula
+            .evaluate(self.results, critical)
+            .map_err(|error| Stop::NoInput { field, error })?;
+        self.recorded.push((field, estimate, dimension));
+        Ok(estimate)
+    }
+}

@@ -1,0 +1,459 @@
+//! The procedures, one folder each: check, run, tables, figures and report of one procedure together. In: a block of the plan, then a
+//! rig behind the guard. Out: histories and results. This file alone knows which procedures there are: one function for each stage,
+//! each with one exhaustive match. A new procedure is a folder, a variant, and what the compiler then asks for here.
+
+pub mod base_excitation;
+pub mod cycle;
+pub mod damping_sweep;
+pub(crate) mod facts;
+pub mod impact;
+pub mod impact_series;
+pub(crate) mod inputs;
+pub mod inspect;
+pub mod move_to;
+pub(crate) mod reached;
+pub(crate) mod results;
+pub(crate) mod samples;
+pub mod stepping;
+pub mod stiffness_ramp;
+pub mod unload;
+
+use crate::language::check::checker::Checker;
+use crate::language::check::declarations::limits::CheckedLimits;
+use crate::language::check::declared::Declared;
+use crate::physics::self_test::Part;
+use crate::plan::{
+    BlowOn, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureKind, RampFit,
+};
+use crate::record::{BroughtTogether, History, ProcedureRecord, RampHistory};
+use crate::report::Run;
+use crate::report::document::Block;
+use crate::report::figures::chart::{Chart, SharedCurve};
+use crate::report::tables::Table;
+use crate::run::Performed;
+use crate::run::session::Session;
+use crate::schema::{Column, Kind};
+use crate::uncertainty::Source;
+use facts::{Facts, Leaves, Recorded, Tests};
+use impact::judge::Strikers;
+use inputs::Inputs;
+
+/// Check: what a block asks for; None with a fault, and of a block that is no procedure.
+pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    match checker.scope.blocks[block].kind.kind {
+        Kind::StiffnessRamp => stiffness_ramp::check::stiffness_ramp(checker, block),
+        Kind::DampingSweep => damping_sweep::check::damping_sweep(checker, block),
+        Kind::Impact => impact::check::impact(checker, block),
+        Kind::Shake => base_excitation::check::shake(checker, block),
+        Kind::Cycle => cycle::check::cycle(checker, block),
+        Kind::Escalate => impact_series::check::escalate(checker, block),
+        Kind::Unload => unload::check::unload(checker, block),
+        Kind::Move => move_to::check::move_block(checker, block),
+        Kind::Inspect => inspect::check::inspect(checker, block),
+        Kind::Plan
+        | Kind::Specimen
+        | Kind::Striker
+        | Kind::Limits
+        | Kind::Rig
+        | Kind::Ground
+        | Kind::Report
+        | Kind::Golden
+        | Kind::Later => None,
+    }
+}
+
+/// Check: judges a procedure by what the plan declares beside it.
+pub(crate) fn judge(
+    checker: &mut Checker,
+    block: usize,
+    kind: &ProcedureKind,
+    declared: &Declared<'_>,
+) {
+    match kind {
+        ProcedureKind::Impact(blow) => {
+            if let Some(striker) = declared.striker(blow.striker) {
+                let strikers = Strikers {
+                    slowest: striker,
+                    fastest: striker,
+                };
+                impact::judge::on_specimen(checker, block, blow, &strikers, declared);
+            }
+        }
+        ProcedureKind::StoreyImpact(blow) => {
+            if let Some(striker) = declared.striker(blow.striker) {
+                let strikers = Strikers {
+                    slowest: striker,
+                    fastest: striker,
+                };
+                impact::judge::on_storey(checker, block, blow, &strikers, declared);
+            }
+        }
+        ProcedureKind::Escalate(escalate) => {
+            impact_series::judge::judge(checker, block, escalate, declared);
+        }
+        ProcedureKind::Shake(shake) => {
+            if let Some(frame) = declared.frame(shake.specimen)
+                && let Some(ground) = declared.ground(shake.ground)
+            {
+                base_excitation::check::judge(checker, block, shake, frame, ground);
+            }
+        }
+        ProcedureKind::StiffnessRamp(_)
+        | ProcedureKind::DampingSweep(_)
+        | ProcedureKind::Cycle(_)
+        | ProcedureKind::Unload(_)
+        | ProcedureKind::FrameUnload(_)
+        | ProcedureKind::Move(_)
+        | ProcedureKind::Inspect { .. } => {}
+    }
+}
+
+/// Check: judges what some text reads of the procedures; asked for only where no error stands.
+pub(crate) fn hold_reads(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    stiffness_ramp::read_results::hold(checker, procedures);
+    cycle::declared_cycles::hold_entries(checker, procedures);
+}
+
+/// Check: holds what procedures say beforehand of where they go against the limits.
+pub(crate) fn hold_limits(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    limits: &CheckedLimits,
+) {
+    cycle::declared_cycles::hold_cycles(checker, procedures, limits);
+}
+
+/// Check: how a procedure leaves the specimen.
+pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves<'static> {
+    match kind {
+        ProcedureKind::Impact(_) => Leaves::Moving(impact::left::on_specimen()),
+        ProcedureKind::StoreyImpact(blow) => Leaves::Moving(impact::left::on_storey(blow)),
+        ProcedureKind::Shake(shake) => Leaves::Moving(base_excitation::left::left(shake, grounds)),
+        ProcedureKind::Escalate(row) => Leaves::Moving(impact_series::judge::left(row)),
+        ProcedureKind::Inspect { .. } => Leaves::AsFound,
+        ProcedureKind::StiffnessRamp(_)
+        | ProcedureKind::DampingSweep(_)
+        | ProcedureKind::Cycle(_)
+        | ProcedureKind::Unload(_)
+        | ProcedureKind::FrameUnload(_)
+        | ProcedureKind::Move(_) => Leaves::AtRest,
+    }
+}
+
+/// Check: the specimen whose mass and its uncertainty a procedure uses, where it does, after collecting what its own mass states.
+pub(crate) fn uses_mass(kind: &ProcedureKind, stated: &mut Vec<Source>) -> Option<usize> {
+    let mut blow = |blow: &Impact| {
+        blow.mass.collect_stated(stated);
+        (blow.mass_uncertainty > 0.0).then_some(blow.specimen)
+    };
+    match kind {
+        ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
+        ProcedureKind::Impact(impact) => blow(impact),
+        ProcedureKind::Escalate(row) => match &row.blow {
+            BlowOn::Specimen(impact) => blow(impact),
+            BlowOn::Storey(_) => None,
+        },
+        ProcedureKind::StiffnessRamp(_)
+        | ProcedureKind::StoreyImpact(_)
+        | ProcedureKind::Shake(_)
+        | ProcedureKind::Cycle(_)
+        | ProcedureKind::Unload(_)
+        | ProcedureKind::FrameUnload(_)
+        | ProcedureKind::Move(_)
+        | ProcedureKind::Inspect { .. } => None,
+    }
+}
+
+/// Check and report: what is to be known of a procedure of the plan.
+pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
+    match kind {
+        ProcedureKind::StiffnessRamp(_) => stiffness_ramp::facts::facts(),
+        ProcedureKind::DampingSweep(_) => damping_sweep::facts::facts(),
+        ProcedureKind::Impact(blow) => impact::facts::on_specimen(blow),
+        ProcedureKind::StoreyImpact(blow) => impact::facts::on_storey(blow),
+        ProcedureKind::Shake(shake) => base_excitation::facts::facts(shake),
+        ProcedureKind::Cycle(_) => cycle::facts::facts(),
+        ProcedureKind::Unload(_) => unload::facts::of_specimen(),
+        ProcedureKind::FrameUnload(_) => unload::facts::of_frame(),
+        ProcedureKind::Escalate(row) => impact_series::facts::facts(row),
+        ProcedureKind::Move(_) => Facts::default(),
+        ProcedureKind::Inspect { .. } => Facts {
+            tests: Tests::Nothing,
+            ..Facts::default()
+        },
+    }
+}
+
+/// Report: what is to be known of what a procedure recorded.
+pub(crate) fn recorded(history: &History) -> Recorded {
+    match history {
+        History::Ramp(history) => stiffness_ramp::facts::recorded(history),
+        History::Sweep(_) => damping_sweep::facts::recorded(),
+        History::Impact(history) => impact::facts::recorded(history),
+        History::Shake(history) => base_excitation::facts::recorded(history),
+        History::Cycle(_) => cycle::facts::recorded(),
+        History::Escalate(_) => impact_series::facts::recorded(),
+        History::FrameUnload(_) => unload::facts::recorded_frame(),
+        History::Move(_) | History::Inspect => Recorded::default(),
+    }
+}
+
+/// Run: carries a procedure out.
+pub(crate) fn run(
+    kind: &ProcedureKind,
+    plan: &Plan,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+) -> Performed {
+    match kind {
+        ProcedureKind::StiffnessRamp(ramp) => {
+            stiffness_ramp::run::perform(ramp, plan, inputs, session)
+        }
+        ProcedureKind::DampingSweep(sweep) => {
+            damping_sweep::run::perform(sweep, plan, inputs, session)
+        }
+        ProcedureKind::Impact(blow) => impact::run::perform(blow, plan, inputs, session),
+        ProcedureKind::StoreyImpact(blow) => impact::storey::perform(blow, plan, inputs, session),
+        ProcedureKind::Shake(shake) => base_excitation::run::perform(shake, plan, inputs, session),
+        ProcedureKind::Cycle(cycles) => cycle::run::perform(cycles, plan, inputs, session),
+        ProcedureKind::Escalate(row) => impact_series::run::perform(row, plan, inputs, session),
+        ProcedureKind::Unload(way) => unload::run::perform(way, plan, inputs, session),
+        ProcedureKind::FrameUnload(way) => unload::run::perform_frame(way, plan, inputs, session),
+        ProcedureKind::Move(to) => move_to::run::perform(to, inputs, session),
+        ProcedureKind::Inspect { note } => inspect::run::perform(note, session),
+    }
+}
+
+/// Run: an upper bound of a procedure's steps, where the plan alone gives one.
+pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
+    let striker = |place: usize| plan.strikers.get(place);
+    match kind {
+        ProcedureKind::StiffnessRamp(ramp) => {
+            let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
+            Some(once * u64::from(ramp.repeats))
+        }
+        ProcedureKind::Impact(impact) => impact.known_steps(striker(impact.striker)?),
+        ProcedureKind::StoreyImpact(impact) => impact.known_steps(plan, striker(impact.striker)?),
+        ProcedureKind::Shake(shake) => shake.known_steps(plan),
+        ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
+        ProcedureKind::Escalate(row) => {
+            let blow = row.known_steps_of_a_blow(plan)?;
+            let blow = blow.saturating_add(impact_series::run::most_moves(row.between));
+            Some(blow.saturating_mul(row.velocities.len() as u64))
+        }
+        ProcedureKind::Move(_) => Some(1),
+        ProcedureKind::Inspect { .. } => Some(0),
+        ProcedureKind::DampingSweep(_)
+        | ProcedureKind::Unload(_)
+        | ProcedureKind::FrameUnload(_) => None,
+    }
+}
+
+/// Check and run: how many steps of virtual time a procedure that integrates takes, where the plan alone tells; None of any other.
+pub(crate) fn known_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
+    let striker = |place: usize| plan.strikers.get(place);
+    match kind {
+        ProcedureKind::Impact(impact) => impact.known_steps(striker(impact.striker)?),
+        ProcedureKind::StoreyImpact(impact) => impact.known_steps(plan, striker(impact.striker)?),
+        ProcedureKind::Shake(shake) => shake.known_steps(plan),
+        ProcedureKind::Escalate(row) => {
+            let blow = row.known_steps_of_a_blow(plan)?;
+            Some(blow.saturating_mul(row.velocities.len() as u64))
+        }
+        ProcedureKind::StiffnessRamp(_)
+        | ProcedureKind::DampingSweep(_)
+        | ProcedureKind::Cycle(_)
+        | ProcedureKind::Unload(_)
+        | ProcedureKind::FrameUnload(_)
+        | ProcedureKind::Move(_)
+        | ProcedureKind::Inspect { .. } => None,
+    }
+}
+
+/// Report: a figure and its caption; None where the record has nothing for it.
+pub(crate) fn chart(
+    run: &Run<'_>,
+    procedure: &ProcedureRecord,
+    figure: &Figure,
+) -> Option<(Chart, String)> {
+    let name = &procedure.name;
+    let kind = figure.kind;
+    match &procedure.history {
+        History::Ramp(history) => stiffness_ramp::chart::chart(name, history, kind),
+        History::Sweep(history) => damping_sweep::chart::chart(name, history, kind),
+        History::Impact(history) => impact::chart::chart(run, name, history, figure),
+        History::Shake(history) => base_excitation::chart::chart(run, name, history, figure),
+        History::Cycle(history) => cycle::chart::chart(name, history, kind),
+        History::Escalate(history) => impact_series::chart::chart(name, history, kind),
+        History::FrameUnload(steps) => base_excitation::chart::unloading_chart(name, steps, kind),
+        History::Move(_) | History::Inspect => None,
+    }
+}
+
+/// Report: the curve of a procedure on a chart of several.
+pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<SharedCurve> {
+    match history {
+        History::Impact(history) => impact::chart::shared(kind, history),
+        History::Shake(history) => base_excitation::chart::shared(kind, history),
+        History::Ramp(_)
+        | History::Sweep(_)
+        | History::Cycle(_)
+        | History::Escalate(_)
+        | History::Move(_)
+        | History::FrameUnload(_)
+        | History::Inspect => None,
+    }
+}
+
+/// Report: the table of a procedure's steps, and those beside it; none where it records no steps.
+pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
+    let name = procedure.name.clone();
+    match &procedure.history {
+        History::Ramp(history) => stiffness_ramp::tables::tables(name, history),
+        History::Sweep(history) => {
+            vec![Table::of(
+                name,
+                &history.steps,
+                damping_sweep::tables::steps,
+            )]
+        }
+        History::Impact(history) => vec![impact::tables::table(name, history)],
+        History::Shake(history) => vec![base_excitation::tables::table(name, history)],
+        History::Cycle(history) => cycle::tables::tables(name, history),
+        History::Escalate(history) => impact_series::tables::tables(name, history),
+        History::Move(steps) => vec![Table::of(name, steps, stiffness_ramp::tables::steps)],
+        History::FrameUnload(steps) => {
+            vec![Table::of(name, steps, base_excitation::tables::unloading)]
+        }
+        History::Inspect => Vec::new(),
+    }
+}
+
+/// Check and accepted results: the numeric columns of the tables of a block; none where it has none.
+pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
+    let tables: &[&[Column]] = match kind {
+        Kind::StiffnessRamp | Kind::Move => &[stiffness_ramp::tables::COLUMNS],
+        Kind::Unload => &[
+            stiffness_ramp::tables::COLUMNS,
+            impact::tables::STOREY_COLUMNS,
+        ],
+        Kind::DampingSweep => &[damping_sweep::tables::COLUMNS],
+        Kind::Impact => &[impact::tables::COLUMNS, impact::tables::STOREY_COLUMNS],
+        Kind::Cycle => &[cycle::tables::COLUMNS],
+        Kind::Shake => &[base_excitation::tables::COLUMNS],
+        Kind::Escalate => &[
+            impact_series::tables::COLUMNS,
+            impact::tables::COLUMNS,
+            impact::tables::STOREY_COLUMNS,
+            impact_series::tables::STOREY_COLUMNS,
+        ],
+        Kind::Inspect
+        | Kind::Plan
+        | Kind::Specimen
+        | Kind::Striker
+        | Kind::Limits
+        | Kind::Rig
+        | Kind::Ground
+        | Kind::Report
+        | Kind::Golden
+        | Kind::Later => &[],
+    };
+    tables.iter().copied().flatten()
+}
+
+/// Report: the blocks below the results of a procedure.
+pub(crate) fn report(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    body: &mut Vec<Block>,
+) {
+    match &procedure.history {
+        History::Ramp(history) => stiffness_ramp::report::report(history, body),
+        History::Sweep(history) => damping_sweep::report::report(history, body),
+        History::Impact(history) => match &history.frame {
+            Some(struck) => {
+                impact::storey_report::struck(run, index, procedure, history, struck, body);
+            }
+            None => impact::report::report(run, index, procedure, history, body),
+        },
+        History::Cycle(history) => cycle::report::table(history, body),
+        History::Shake(history) => {
+            base_excitation::report::shaken(run, index, procedure, history, body);
+        }
+        History::Escalate(history) => {
+            impact_series::report::table(run, index, procedure, history, body);
+        }
+        History::FrameUnload(steps) => {
+            base_excitation::report::unloaded(run, index, procedure, steps, body);
+        }
+        History::Move(_) | History::Inspect => {}
+    }
+}
+
+/// Report: the parts of the program that a procedure goes through, each with those it goes together with.
+pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
+    match kind {
+        ProcedureKind::StiffnessRamp(ramp) => match ramp.fit {
+            RampFit::Linear => vec![vec![Part::LineFit]],
+            RampFit::Bilinear | RampFit::Multilinear(_) => vec![vec![Part::CurveFit]],
+        },
+        ProcedureKind::DampingSweep(_) => vec![vec![Part::DampingFit]],
+        ProcedureKind::Impact(blow) => impact::self_tested::struck(blow),
+        ProcedureKind::StoreyImpact(blow) => impact::self_tested::struck_storey(blow),
+        ProcedureKind::Escalate(row) => match &row.blow {
+            BlowOn::Specimen(blow) => impact::self_tested::struck(blow),
+            BlowOn::Storey(blow) => impact::self_tested::struck_storey(blow),
+        },
+        ProcedureKind::Shake(shake) => stepping::self_tested::stepped(&shake.stepping, true, None),
+        ProcedureKind::Cycle(_) => vec![vec![Part::Loops]],
+        ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => vec![vec![Part::Unloading]],
+        ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => Vec::new(),
+    }
+}
+
+/// Report: gives displacement (m) and force (N) of every axis, row by row of a procedure's table.
+pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
+    let mut one = |displacement: f64, force: f64| give(&[displacement], &[force]);
+    match history {
+        History::Ramp(RampHistory { steps, .. }) | History::Move(steps) => steps
+            .iter()
+            .for_each(|step| one(step.displacement, step.restoring_force)),
+        History::Sweep(sweep) => sweep
+            .steps
+            .iter()
+            .for_each(|step| one(step.displacement, step.restoring_force)),
+        History::Cycle(cycle) => cycle
+            .steps
+            .iter()
+            .for_each(|step| one(step.displacement, step.restoring_force)),
+        History::Impact(history) => reached::of_impact(history, give),
+        History::Escalate(row) => row
+            .blows
+            .iter()
+            .for_each(|blow| reached::of_impact(&blow.history, give)),
+        History::Shake(shake) => shake
+            .steps
+            .iter()
+            .for_each(|step| give(&step.displacement, &step.restoring_force)),
+        History::FrameUnload(steps) => steps
+            .iter()
+            .for_each(|step| give(&step.displacement, &step.restoring_force)),
+        History::Inspect => {}
+    }
+}
+
+/// Report: how the readings of a sweep's strokes were brought to one place; None of another procedure.
+pub(crate) const fn strokes(history: &History) -> Option<BroughtTogether> {
+    match history {
+        History::Sweep(sweep) => Some(sweep.together),
+        History::Ramp(_)
+        | History::Impact(_)
+        | History::Shake(_)
+        | History::Cycle(_)
+        | History::Escalate(_)
+        | History::Move(_)
+        | History::FrameUnload(_)
+        | History::Inspect => None,
+    }
+}

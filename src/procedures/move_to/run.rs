@@ -1,0 +1,64 @@
+//! `move`: to an absolute displacement. A limited increment makes it several equal ones, each a step of the record.
+
+use crate::plan::Move;
+use crate::procedures::inputs::Inputs;
+use crate::procedures::stiffness_ramp::run::secant;
+use crate::record::{History, RampStep};
+use crate::run::Performed;
+use crate::run::session::{Session, first};
+use crate::run::stop::Stop;
+use crate::units::Dimension;
+
+pub(crate) fn perform(
+    plan: &Move,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+) -> Performed {
+    let mut steps = Vec::new();
+    let stop = go(plan, inputs, session, &mut steps).err();
+    Performed {
+        history: History::Move(steps),
+        results: Vec::new(),
+        stop,
+    }
+}
+
+fn go(
+    plan: &Move,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+    steps: &mut Vec<RampStep>,
+) -> Result<(), Stop> {
+    let to = inputs.number("to", &plan.to, Dimension::LENGTH)?;
+    let speed = inputs.speed(plan.speed.as_ref())?;
+    for (step, target) in (1..).zip(session.guard.way_to(&[to])) {
+        session.guard.move_to(&target, speed)?;
+        let (reading, broken) = session.read_kept()?;
+        let (displacement, restoring_force) = first(&reading);
+        let wall_time = session.guard.time();
+        steps.push(RampStep {
+            step,
+            wall_time,
+            command: target[0],
+            displacement,
+            restoring_force,
+            force_scatter: 0.0,
+            relaxation: 0.0,
+            tangent_stiffness: tangent(steps.last(), displacement, restoring_force),
+            returning: false,
+        });
+        if let Some(stop) = broken {
+            return Err(stop);
+        }
+        session.measured(step, wall_time, displacement, restoring_force)?;
+    }
+    Ok(())
+}
+
+fn tangent(before: Option<&RampStep>, displacement: f64, restoring_force: f64) -> Option<f64> {
+    let before = before?;
+    secant(
+        (before.displacement, before.restoring_force),
+        (displacement, restoring_force),
+    )
+}

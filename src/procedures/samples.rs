@@ -1,0 +1,19 @@
+//! Mean and scatter of the readings at one place. It knows no rig.
+
+/// NaN of nothing.
+#[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
+pub(crate) fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len();
+    values.sum::<f64>() / count as f64
+}
+
+/// Standard deviation of the samples; 0 for one.
+#[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
+pub(crate) fn scatter(values: impl ExactSizeIterator<Item = f64>, mean: f64) -> f64 {
+    match values.len() {
+        0 | 1 => 0.0,
+        count => {
+            (values.map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1) as f64).sqrt()
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Several axes in one step: how each was followed, and how they are reported to whoever watches. In: targets, readings, the
+//! end of a step. Out: numbers of each axis. It drives nothing.
+
+use crate::physics::integrator::solver::State;
+use crate::physics::matrix::Vector;
+use crate::physics::tracking::monitor::{Monitor, Tracking};
+use crate::rig::Reading;
+use crate::run::{AxisReport, StepReport};
+
+/// The end of a step, an entry an axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AxesState<'a> {
+    pub step: u64,
+    /// s
+    pub time: f64,
+    /// m
+    pub target: &'a [f64],
+    /// Measured, m.
+    pub displacement: &'a [f64],
+    /// m/s
+    pub velocity: &'a [f64],
+    /// m/s²
+    pub acceleration: &'a [f64],
+    /// Measured, N.
+    pub force: &'a [f64],
+}
+
+impl<'a> AxesState<'a> {
+    pub(crate) fn of<V: Vector>(state: &'a State<V>) -> Self {
+        Self {
+            step: state.step,
+            time: state.time,
+            target: state.target.as_slice(),
+            displacement: state.measured_displacement.as_slice(),
+            velocity: state.velocity.as_slice(),
+            acceleration: state.acceleration.as_slice(),
+            force: state.restoring_force.as_slice(),
+        }
+    }
+}
+
+/// A monitor of tracking for every axis.
+pub(crate) struct Monitors(Vec<Monitor>);
+
+impl Monitors {
+    /// `taken` is what the recursion would take for the forces at the commands, N.
+    pub(crate) fn new(commanded: &[f64], reading: &Reading, taken: &[f64]) -> Self {
+        let axes = commanded.iter().zip(
+            reading
+                .displacement
+                .iter()
+                .zip(reading.force.iter().zip(taken)),
+        );
+        let monitor = |(commanded, (measured, (force, taken))): (&f64, (&f64, (&f64, &f64)))| {
+            Monitor::new_as(*commanded, *measured, *force, *taken)
+        };
+        Self(axes.map(monitor).collect())
+    }
+
+    /// What each axis has come to so far.
+    pub(crate) fn tracking(&self) -> Vec<Tracking> {
+        self.0.iter().map(Monitor::tracking).collect()
+    }
+
+    /// What each axis has come to; `taken` is what the recursion takes for the forces at the commands, N.
+    pub(crate) fn take(
+        &mut self,
+        commanded: &[f64],
+        reading: &Reading,
+        taken: &[f64],
+    ) -> Vec<Tracking> {
+        let read = reading.displacement.iter().zip(&reading.force).zip(taken);
+        let axes = self.0.iter_mut().zip(commanded).zip(read);
+        axes.map(|((monitor, to), ((measured, force), taken))| {
+            monitor.take_as(*to, *measured, *force, *taken)
+        })
+        .collect()
+    }
+}
+
+/// The errors of a step.
+pub(crate) struct Errors {
+    pub energy_error: f64,
+    pub tracking: Tracking,
+    pub tracking_energy_error: Option<f64>,
+}
+
+/// A step of all axes, the first one first.
+pub(crate) fn report(state: &AxesState<'_>, errors: &Errors) -> StepReport {
+    let axis = |axis: usize| AxisReport {
+        command: state.target[axis],
+        displacement: state.displacement[axis],
+        velocity: state.velocity[axis],
+        acceleration: state.acceleration[axis],
+        force: state.force[axis],
+    };
+    let first = axis(0);
+    StepReport {
+        step: state.step,
+        time: state.time,
+        command: first.command,
+        displacement: first.displacement,
+        velocity: Some(first.velocity),
+        acceleration: Some(first.acceleration),
+        force: first.force,
+        speed: None,
+        energy_error: Some(errors.energy_error),
+        tracking: Some(errors.tracking),
+        tracking_energy_error: errors.tracking_energy_error,
+        others: (1..state.target.len()).map(axis).collect(),
+    }
+}

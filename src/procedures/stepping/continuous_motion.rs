@@ -1,0 +1,148 @@
+//! Actuators that do not stop at the steps: they follow smooth paths together, and are read as they pass their targets. In: step
+//! by step the places to pass and the velocities to pass them with. Out: the reading there. It knows no equation of motion.
+//!
+//! A step of Δt takes `time_scale`·Δt of rig time. While its reading is made durable and its targets are computed the
+//! actuators move on along parabolas, with the place and velocity that they have and the mean acceleration of the step before:
+//! nothing in it knows the reading. Where a blow has its share in that acceleration it is no trend, and they go on as fast as they are.
+//! For the rest of the step each follows the cubic from there to its target, which it passes with the velocity that the
+//! integrator foretells there, over the time scale. Place and velocity are continuous everywhere (the guard refuses a path that
+//! does not join), and the path is of third order. The last reading is made at the target.
+
+use crate::physics::tracking::trajectory::Path;
+use crate::rig::{Reading, RigFault};
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+
+/// Readings while they are not, and on the way to them: each is held against the limits.
+const READINGS: (usize, usize) = (1, 4);
+/// Share of a step in which its target is not known yet.
+const AHEAD: f64 = 0.2;
+/// Steps' time in which the actuators come to rest at the end.
+const BRAKING: f64 = 5.0;
+
+/// Where an actuator is to pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Passing {
+    /// m
+    pub place: f64,
+    /// m/s, of virtual time.
+    pub velocity: f64,
+    /// Whether a blow has its share in the velocity.
+    pub struck: bool,
+}
+
+/// An actuator as the last path left it.
+#[derive(Clone, Copy)]
+struct Motion {
+    /// m
+    place: f64,
+    /// m/s, of rig time.
+    velocity: f64,
+    /// To go on with, m/s²: the mean over the last step.
+    acceleration: f64,
+}
+
+/// All actuators of a rig, under way.
+pub(crate) struct Gliding {
+    axes: Vec<Motion>,
+    time_scale: f64,
+    /// Rig time of a step, s.
+    step_time: f64,
+}
+
+impl Gliding {
+    /// From rest at these places (m); `time_step` of virtual time, s.
+    pub(crate) fn from_rest(places: &[f64], time_scale: f64, time_step: f64) -> Self {
+        let axes = places
+            .iter()
+            .map(|place| Motion {
+                place: *place,
+                velocity: 0.0,
+                acceleration: 0.0,
+            })
+            .collect();
+        Self {
+            axes,
+            time_scale,
+            step_time: time_scale * time_step,
+        }
+    }
+
+    /// One step: the reading at its end, or where it broke a limit, and what ends the run then. `foretell` is asked while the actuators
+    /// are on their way.
+    pub(crate) fn step(
+        &mut self,
+        foretell: impl FnOnce() -> Vec<Passing>,
+        session: &mut Session<'_>,
+    ) -> Result<(Reading, Option<Stop>), Stop> {
+        let seconds = AHEAD * self.step_time;
+        let ahead = self
+            .axes
+            .iter()
+            .map(|axis| Path::accelerated(axis.place, axis.velocity, axis.acceleration, seconds));
+        let ahead: Vec<Path> = ahead.collect();
+        let (reading, broken) = follow(&ahead, READINGS.0, session)?;
+        if broken.is_some() {
+            return Ok((reading, broken));
+        }
+        let seconds = (1.0 - AHEAD) * self.step_time;
+        let on = |(axis, (ahead, passing)): (&mut Motion, (&Path, Passing))| {
+            let velocity = passing.velocity / self.time_scale;
+            let gained = (velocity - axis.velocity) / self.step_time;
+            *axis = Motion {
+                place: passing.place,
+                velocity,
+                acceleration: if passing.struck { 0.0 } else { gained },
+            };
+            Path {
+                from: ahead.to,
+                to: passing.place,
+                start_velocity: ahead.end_velocity,
+                end_velocity: velocity,
+                seconds,
+            }
+        };
+        let paths: Vec<Path> = self
+            .axes
+            .iter_mut()
+            .zip(ahead.iter().zip(foretell()))
+            .map(on)
+            .collect();
+        follow(&paths, READINGS.1, session)
+    }
+
+    /// Comes to rest at constant deceleration.
+    pub(crate) fn brake(&self, session: &mut Session<'_>) -> Result<(), Stop> {
+        let seconds = BRAKING * self.step_time;
+        let brake = |axis: &Motion| {
+            Path::accelerated(axis.place, axis.velocity, -axis.velocity / seconds, seconds)
+        };
+        let (_, broken) = follow(
+            &self.axes.iter().map(brake).collect::<Vec<Path>>(),
+            READINGS.1,
+            session,
+        )?;
+        broken.map_or(Ok(()), Err)
+    }
+}
+
+/// Follows paths; the reading at their end, or the one that broke a limit with what ends the run then.
+fn follow(
+    paths: &[Path],
+    readings: usize,
+    session: &mut Session<'_>,
+) -> Result<(Reading, Option<Stop>), Stop> {
+    let mut followed = session.guard.glide(paths, readings);
+    let broken = session.guard.take_broken();
+    match (followed.fault, broken) {
+        (Some(fault), Some(reading)) => Ok((reading, Some(fault.into()))),
+        (Some(fault), None) => Err(fault.into()),
+        (None, _) => {
+            let last = followed
+                .readings
+                .pop()
+                .ok_or_else(|| RigFault::Device("nothing was read on the way".to_owned()))?;
+            Ok((last, None))
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! `integrator = …` of a procedure that integrates, and whether its time step is stable. In: a block. Out: the
+//! integrator, or why it cannot be.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::{frames, methods as fault};
+use crate::physics::integrator::stability::{Met, longest_stable_step};
+use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, Specimen, Striker};
+use crate::procedures::impact::check::time_step_before_the_run;
+
+/// The integrator a block names. Else the tangent form; in continuous mode, where the secant of two readings would take
+/// what a damper does for stiffness, explicit Newmark, as far as the contact law can do without the tangent.
+pub fn integrator(
+    checker: &mut Checker,
+    block: usize,
+    mode: Option<Mode>,
+    contact: Option<&Contact>,
+) -> Option<Integrator> {
+    let Some((entry, _)) = checker.given(block, "integrator") else {
+        let continuous = matches!(mode, Some(Mode::Continuous { .. }));
+        let whole_steps = matches!(contact, Some(Contact::Rigid | Contact::Limit { .. }));
+        return Some(if continuous && whole_steps {
+            Integrator::Explicit
+        } else {
+            Integrator::Tangent
+        });
+    };
+    let place = checker.place(block, entry);
+    let chosen = checker.choice(block, "integrator")?;
+    Some(match chosen.variant.name {
+        "explicit" => Integrator::Explicit,
+        "alpha_os" => Integrator::AlphaOs {
+            alpha: checker.constant_argument(&chosen, "alpha", place)?,
+        },
+        _ => Integrator::Tangent,
+    })
+}
+
+/// Laws that find the instant of a blow inside a step go by the tangent's prediction of the force there: an integrator
+/// that imposes before it solves has none.
+pub fn meets_the_contact(
+    checker: &mut Checker,
+    block: usize,
+    integrator: Integrator,
+    contact: &Contact,
+) -> Option<()> {
+    let law = match contact {
+        Contact::Restitution { .. } => "restitution",
+        Contact::Hertz { .. } => "hertz",
+        Contact::Rigid | Contact::Limit { .. } => return Some(()),
+    };
+    if integrator == Integrator::Tangent {
+        return Some(());
+    }
+    let head = checker.scope.blocks[block].block.head;
+    let at = |field| {
+        checker
+            .given(block, field)
+            .map_or(head, |(_, entry)| entry.value.span)
+    };
+    let (named, struck) = (at("integrator"), at("contact"));
+    checker.fail(fault::law_needs_the_tangent(
+        integrator.name(),
+        named,
+        law,
+        struck,
+    ))
+}
+
+/// The longest stable step against the plan's, as far as both are known before the run: of the stiffness the procedure
+/// starts from, and of what a virtual specimen is.
+pub fn stable(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    striker: &Striker,
+    specimen: Option<&Specimen>,
+) {
+    let (Some(step), Some(mass)) = (
+        time_step_before_the_run(impact, striker),
+        impact.mass.constant(),
+    ) else {
+        return;
+    };
+    let virtual_rig = checker.real_rig.is_none();
+    let specimen = specimen
+        .filter(|_| virtual_rig)
+        .and_then(|specimen| specimen.behaviour.as_ref());
+    let behaves = specimen.map_or(0.0, Behaviour::largest_stiffness);
+    let assumed = impact.stiffness.constant();
+    let stiffest = assumed.unwrap_or(0.0).max(behaves);
+    let met = Met::one(
+        mass,
+        impact.damping.constant().unwrap_or(0.0),
+        stiffest,
+        assumed.unwrap_or(stiffest),
+    );
+    let limit = longest_stable_step(impact.stepping.integrator, &met);
+    if let (Integrator::AlphaOs { .. }, Some(assumed)) = (impact.stepping.integrator, assumed)
+        && behaves > assumed * (1.0 + 1e-9)
+        && step <= limit
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker
+            .given(block, "stiffness")
+            .map_or(head, |(_, entry)| entry.value.span);
+        checker
+            .faults
+            .push(fault::stiffer_than_operator(at, behaves, assumed, limit));
+    }
+    if let (Integrator::Tangent, Some(assumed), Some(ratio)) = (
+        impact.stepping.integrator,
+        assumed,
+        impact.stepping.max_tangent_ratio.constant(),
+    ) && behaves > assumed * ratio * (1.0 + 1e-9)
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker
+            .given(block, "stiffness")
+            .map_or(head, |(_, entry)| entry.value.span);
+        checker
+            .faults
+            .push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
+    }
+    if step <= limit {
+        return;
+    }
+    let head = checker.scope.blocks[block].block.head;
+    let at = checker
+        .given(block, "time_step")
+        .map_or(head, |(_, entry)| entry.value.span);
+    checker.faults.push(if impact.stepping.allow_unstable {
+        frames::unstable_though(at, step, limit)
+    } else {
+        fault::unstable(at, impact.stepping.integrator, step, limit)
+    });
+}

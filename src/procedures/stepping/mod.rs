@@ -1,0 +1,16 @@
+//! Time stepping, shared by the procedures that integrate: its check, the step loop, continuous
+//! motion, tracking. In: who computes the steps, and a rig behind the guard. Out: completed steps.
+//! It knows no striker and no ground motion.
+
+pub(crate) mod axes;
+pub(crate) mod check;
+pub(crate) mod continuous_motion;
+pub(crate) mod integrator_check;
+pub(crate) mod mode_check;
+pub(crate) mod operator_stability_watch;
+pub(crate) mod report;
+pub(crate) mod run;
+pub(crate) mod self_tested;
+pub(crate) mod step_loop;
+pub(crate) mod tracking_remarks;
+pub(crate) mod tracking_summary;

@@ -1,0 +1,114 @@
+//! `mode = …` of a procedure that integrates: whether the actuator stops at every target. In: a block. Out: the mode, or
+//! why it cannot be, and a warning where damping would count twice.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::methods as fault;
+use crate::language::syntax::ast::{Argument, ExprKind};
+use crate::plan::{Dialect, Frame, Impact, Mode, ShakeDamping, Specimen};
+use crate::schema::Kind;
+
+/// The mode a block names, else step and pause.
+pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
+    let Some((entry, written)) = checker.given(block, "mode") else {
+        return Some(Mode::StepAndPause);
+    };
+    let (place, at) = (checker.place(block, entry), written.value.span);
+    let chosen = checker.choice(block, "mode")?;
+    if chosen.variant.name == "step_and_pause" {
+        return Some(Mode::StepAndPause);
+    }
+    let time_scale = checker.constant_argument(&chosen, "time_scale", place)?;
+    if let Some(dialect) = checker
+        .real_rig
+        .and_then(|rig| stops_at_targets(checker, rig))
+    {
+        return checker.fail(fault::continuous_on_a_real_rig(dialect, at));
+    }
+    let stops = ["pause", "inspect"]
+        .into_iter()
+        .find_map(|field| checker.given(block, field).map(|(_, entry)| (field, entry)));
+    if let Some((field, entry)) = stops {
+        return checker.fail(fault::stops_on_the_way(field, entry.span, at));
+    }
+    Some(Mode::Continuous { time_scale })
+}
+
+/// The dialect of a real rig that follows no path, and gives no displacement and force of one instant: any but `native`. What is no
+/// dialect is another fault.
+pub fn stops_at_targets<'a>(checker: &Checker<'a>, rig: usize) -> Option<&'a str> {
+    let (_, written) = checker
+        .given(rig, "link")
+        .or_else(|| checker.given(rig, "actuator"))?;
+    let ExprKind::Call { arguments, .. } = &written.value.kind else {
+        return None;
+    };
+    let is_dialect = |(place, argument): &(usize, &Argument)| match &argument.name {
+        Some(name) => name.node == "dialect",
+        None => *place == 1,
+    };
+    let (_, dialect) = arguments.iter().enumerate().find(is_dialect)?;
+    let word = match &dialect.value.kind {
+        ExprKind::Name(name) => name.as_str(),
+        ExprKind::Call { name, .. } => name.node.as_str(),
+        _ => return None,
+    };
+    (word != Dialect::Native.name()).then_some(word)
+}
+
+/// The material's damping is in the force of a continuous run already.
+pub fn damping_twice(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    specimen: Option<&Specimen>,
+) {
+    let computed = impact
+        .damping
+        .constant()
+        .is_none_or(|damping| damping > 0.0);
+    let felt = specimen.is_some_and(|specimen| specimen.damping > 0.0);
+    if !(computed && felt && matches!(impact.stepping.mode, Mode::Continuous { .. })) {
+        return;
+    }
+    let of_specimen = checker
+        .scope
+        .of_kind(Kind::Specimen)
+        .nth(impact.specimen)
+        .map(|(index, _)| index);
+    let at = |block, field| checker.given(block, field).map(|(_, entry)| entry.span);
+    if let (Some(computed), Some(felt)) = (
+        at(block, "damping"),
+        of_specimen.and_then(|index| at(index, "damping")),
+    ) {
+        checker.faults.push(fault::damping_twice(computed, felt));
+    }
+}
+
+/// The same of a frame, whose damping is that of its storeys.
+pub fn storeys_damped_twice(
+    checker: &mut Checker,
+    block: usize,
+    (specimen, mode, damping): (usize, Mode, &ShakeDamping),
+    frame: &Frame,
+) {
+    let computed = match damping {
+        ShakeDamping::Rayleigh(ratio) => ratio.constant().is_none_or(|ratio| ratio > 0.0),
+        ShakeDamping::Modal(ratios) => ratios
+            .iter()
+            .any(|ratio| ratio.constant().is_none_or(|ratio| ratio > 0.0)),
+    };
+    let felt = frame.storeys.iter().any(|storey| storey.damping > 0.0);
+    if !(computed && felt && matches!(mode, Mode::Continuous { .. })) {
+        return;
+    }
+    let of_specimen = checker
+        .scope
+        .of_kind(Kind::Specimen)
+        .nth(specimen)
+        .map(|(index, _)| index);
+    let at = |block, field| checker.given(block, field).map(|(_, entry)| entry.span);
+    let felt = of_specimen.and_then(|index| at(index, "storeys"));
+    if let (Some(computed), Some(felt)) = (at(block, "damping_ratio"), felt) {
+        checker.faults.push(fault::damping_twice(computed, felt));
+    }
+}

@@ -1,0 +1,451 @@
+//! Whether a specimen is stiffer than its integrator takes it for (physics, section 11): α-OS is stable for every step only while
+//! the specimen is not stiffer than its `K_I`, and explicit Newmark up to 2/ω of what it is at its stiffest. In: what is imposed and
+//! read, step by step. Out: one remark. It stops nothing.
+
+use super::step_loop::Start;
+use crate::physics::frame::{FrameMatrices, drifts, shears, storeys_of};
+use crate::physics::impact::ImpactInput;
+use crate::physics::integrator::stability::{Met, longest_stable_step};
+use crate::plan::{Integrator, Mode, Stepping};
+use crate::procedures::damping_sweep::rate_separated_stiffness::OnTheWay;
+use crate::record::EventKind;
+use crate::rig::Reading;
+use crate::run::session::{Session, first};
+use crate::text::diagnostic::Code;
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+/// A secant tells where its change of displacement is this many times what noise and quanta make of it, and is believed beyond
+/// `K_I` by so many of its standard deviations: fewer, and the noise of many steps becomes a stiffness.
+const SURE: f64 = 5.0;
+
+/// A response that alternates is judged where every other place is farther out by more than this share of a step: less, and what
+/// a specimen creeps or relaxes by at one place becomes a stiffness. Past its limit by a hundredth, explicit Newmark grows by more.
+const GROWN: f64 = 0.05;
+
+/// What a step of one spring, or of one storey, is judged by.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Judged {
+    pub integrator: Integrator,
+    /// `K_I`, N/m
+    pub operator_stiffness: f64,
+    /// 1/M of one degree of freedom; of a storey the sum of 1/M of the floors it joins, 1/kg.
+    pub mobility: f64,
+    /// s
+    pub time_step: f64,
+    /// Standard deviation of a force, N, and of a displacement, m.
+    pub noise: (f64, f64),
+    /// Whether it is read on the way: dampers are in the force then.
+    pub moving: bool,
+}
+
+/// Of a reading: what is lost of it to rounding, in the numerics as on the way to them.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+#[derive(Debug)]
+pub(crate) struct Stiffer {
+    judged: Judged,
+    last: (f64, f64),
+    /// The reading before it.
+    before: (f64, f64),
+    /// m, the last step's; 0 before the first.
+    moved: f64,
+    /// Whether the last step turned.
+    turned: bool,
+    way: OnTheWay,
+    said: bool,
+}
+
+impl Stiffer {
+    /// `first` is what was read before the first step, m and N.
+    pub(crate) fn new(judged: Judged, first: (f64, f64)) -> Self {
+        Self {
+            judged,
+            last: first,
+            before: first,
+            moved: 0.0,
+            turned: false,
+            way: OnTheWay::default(),
+            said: false,
+        }
+    }
+
+    /// Takes a reading, m and N; says once that the specimen is stiffer than the step is stable for. `what` names it.
+    /// Where a blow fell in the step (`struck`) the velocity is none that readings tell.
+    pub(crate) fn take(
+        &mut self,
+        reading: (f64, f64),
+        struck: bool,
+        what: &str,
+        session: &mut Session<'_>,
+    ) {
+        if struck {
+            self.way.struck();
+        }
+        let text = self.judge(reading, what);
+        if let Some(text) = text {
+            session.event(EventKind::Remark, text);
+        }
+    }
+
+    fn judge(&mut self, reading: (f64, f64), what: &str) -> Option<String> {
+        let Judged {
+            integrator,
+            operator_stiffness,
+            mobility,
+            time_step,
+            ..
+        } = self.judged;
+        if integrator == Integrator::Tangent || self.said {
+            return None;
+        }
+        let (measured, spread) = if self.judged.moving {
+            self.way.take(reading, self.judged.noise)
+        } else {
+            self.secant(reading)
+        }?;
+        // Rounding makes a secant of a move too small to tell; on the way velocities are differences too.
+        let rounding = if self.judged.moving { 1e-4 } else { 1e-9 } * operator_stiffness;
+        let stiffness = |value| readable(value, Dimension::STIFFNESS);
+        let time = |value| readable(value, Dimension::TIME);
+        let limit = |stiffness: f64| {
+            longest_stable_step(
+                integrator,
+                &Met::one(1.0 / mobility, 0.0, stiffness, operator_stiffness),
+            )
+        };
+        // Explicit Newmark is bound by what the specimen is, not by what it was taken for.
+        if integrator == Integrator::Explicit {
+            let sure = measured - SURE * spread - rounding;
+            if sure <= 0.0 || time_step <= limit(sure) {
+                return None;
+            }
+            self.said = true;
+            let limit = time(limit(measured));
+            return Some(format!(
+                "{}: {what} reached {}: explicit Newmark is stable up to {limit} there, and the time step is {}",
+                Code::StifferThanOperator,
+                stiffness(measured),
+                time(time_step),
+            ));
+        }
+        if measured - operator_stiffness <= SURE * spread + rounding {
+            return None;
+        }
+        let limit = limit(measured);
+        // One that takes it up with damping of its own is stable all the same.
+        if limit == f64::INFINITY {
+            return None;
+        }
+        self.said = true;
+        let so = if time_step > limit {
+            "which it is beyond"
+        } else {
+            "which it is within"
+        };
+        Some(format!(
+            "{}: {what} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",
+            Code::StifferThanOperator,
+            stiffness(measured),
+            stiffness(operator_stiffness),
+            time(limit),
+            time(time_step),
+        ))
+    }
+}
+
+impl Stiffer {
+    /// Stiffness of the last step with its standard deviation, N/m; None where it moved too little to tell, or turned: friction
+    /// turns with it. Of a response that turns at every step, as an unstable one does, the last reading but one is as far from
+    /// friction: both came the same way, if what is between them has grown enough to tell.
+    fn secant(&mut self, reading: (f64, f64)) -> Option<(f64, f64)> {
+        let noise = self.judged.noise;
+        let moved = reading.0 - self.last.0;
+        let first = self.moved == 0.0;
+        let turned = moved * self.moved <= 0.0;
+        let alternates = turned && self.turned && !first;
+        let from = if alternates { self.before } else { self.last };
+        let way = reading.0 - from.0;
+        // It goes on beyond where it turned last but one: both turned, and each step is longer than the one before.
+        let tells = if alternates {
+            way * moved > 0.0 && way.abs() > GROWN * moved.abs()
+        } else {
+            !turned
+        };
+        let measured = (reading.1 - from.1) / way;
+        (self.before, self.last, self.moved, self.turned) =
+            (self.last, reading, moved, turned && !first);
+        // A reading is no better than its last digits.
+        let rounded =
+            |noise: f64, read: f64, other: f64| noise.max(ROUNDING * read.abs().max(other.abs()));
+        let force = rounded(noise.0, reading.1, from.1);
+        let spread = std::f64::consts::SQRT_2
+            * force.hypot(measured * rounded(noise.1, reading.0, from.0))
+            / way.abs();
+        (tells && measured.is_finite() && way.abs() > SURE * noise.1).then_some((measured, spread))
+    }
+}
+
+/// Every spring of a structure: the specimen of one degree of freedom, or every storey of a frame by its shear and drift; none of a
+/// frame that has no storeys. A storey alone that is stiffer by ΔK makes M⁻¹(K − `K_I`) a matrix of rank one, whose frequency is ΔK
+/// over the masses it joins.
+pub(crate) struct StifferSprings(Vec<(String, Stiffer)>);
+
+impl StifferSprings {
+    /// Of one degree of freedom.
+    pub(crate) fn of_specimen(input: &ImpactInput, plan: &Stepping, start: &Start) -> Self {
+        let judged = Judged {
+            integrator: plan.integrator,
+            operator_stiffness: input.operator_stiffness,
+            mobility: 1.0 / input.mass,
+            time_step: input.time_step,
+            // A quantum q is spread evenly over ±q/2.
+            noise: (start.noise.force, start.noise.resolution / 12_f64.sqrt()),
+            moving: plan.mode != Mode::StepAndPause,
+        };
+        Self(vec![(
+            "the specimen".to_owned(),
+            Stiffer::new(judged, first(&start.reading)),
+        )])
+    }
+
+    /// Of a frame.
+    pub(crate) fn of_storeys(
+        matrices: &FrameMatrices,
+        plan: &Stepping,
+        time_step: f64,
+        start: &Start,
+    ) -> Self {
+        let (noise, first) = (start.noise, &start.reading);
+        let storeys = storeys_of(&matrices.stiffness).unwrap_or_default();
+        let (drift, shear) = drifts_and_shears(first);
+        let floor = |floor: usize| 1.0 / matrices.mass.entry(floor, floor);
+        let count = storeys.len();
+        let judged = |(storey, operator_stiffness): (usize, f64)| {
+            #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+            let above = (count - storey) as f64;
+            // A shear is the sum of the cells above; a drift the difference of two places. A quantum q is spread over ±q/2.
+            let place = noise.resolution / 12_f64.sqrt()
+                * if storey == 0 {
+                    1.0
+                } else {
+                    std::f64::consts::SQRT_2
+                };
+            let judged = Judged {
+                integrator: plan.integrator,
+                operator_stiffness,
+                moving: plan.mode != Mode::StepAndPause,
+                mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
+                time_step,
+                noise: (noise.force * above.sqrt(), place),
+            };
+            (
+                format!("storey {}", storey + 1),
+                Stiffer::new(judged, (drift[storey], shear[storey])),
+            )
+        };
+        Self(storeys.into_iter().enumerate().map(judged).collect())
+    }
+
+    pub(crate) fn take(&mut self, reading: &Reading, struck: bool, session: &mut Session<'_>) {
+        if self.0.is_empty() {
+            return;
+        }
+        let (drift, shear) = drifts_and_shears(reading);
+        for ((name, storey), reading) in self.0.iter_mut().zip(drift.into_iter().zip(shear)) {
+            storey.take(reading, struck, name, session);
+        }
+    }
+}
+
+fn drifts_and_shears(reading: &Reading) -> (Vec<f64>, Vec<f64>) {
+    let (mut drift, mut shear) = (
+        vec![0.0; reading.displacement.len()],
+        vec![0.0; reading.force.len()],
+    );
+    drifts(&reading.displacement, &mut drift);
+    shears(&reading.force, &mut shear);
+    (drift, shear)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn judged(noise: (f64, f64)) -> Judged {
+        let integrator = Integrator::AlphaOs { alpha: 0.0 };
+        Judged {
+            integrator,
+            operator_stiffness: 300.0,
+            mobility: 0.5,
+            time_step: 0.1,
+            noise,
+            moving: false,
+        }
+    }
+
+    /// 500 N/m on 2 kg: 2√(2/200) s = 0.2 s.
+    #[test]
+    fn a_stiffer_specimen_is_said_once_with_the_limit_that_is_left() {
+        let mut stiffer = Stiffer::new(judged((0.0, 0.0)), (0.0, 0.0));
+        assert_eq!(
+            stiffer.judge((0.000_5, 0.15), "the specimen"),
+            None,
+            "as stiff as K_I"
+        );
+        assert_eq!(
+            stiffer.judge((0.001, 0.3), "the specimen"),
+            None,
+            "as stiff as K_I"
+        );
+        assert_eq!(
+            stiffer.judge((0.000_5, 0.0), "the specimen"),
+            None,
+            "a turn, where friction turns too"
+        );
+        assert_eq!(
+            stiffer.judge((0.001, 0.3), "the specimen"),
+            None,
+            "and back"
+        );
+        let text = stiffer
+            .judge((0.002, 0.8), "the specimen")
+            .expect("a remark");
+        assert!(
+            text.contains("500.0 N/m measured against K_I = 300.0 N/m")
+                && text.contains("up to 0.2000 s"),
+            "{text}"
+        );
+        assert!(
+            text.starts_with("W718") && text.contains("within (0.1000 s)"),
+            "{text}"
+        );
+        assert_eq!(stiffer.judge((0.003, 1.5), "the specimen"), None, "once");
+        let tangent = Judged {
+            integrator: Integrator::Tangent,
+            ..judged((0.0, 0.0))
+        };
+        assert_eq!(
+            Stiffer::new(tangent, (0.0, 0.0)).judge((0.001, 9.0), "the specimen"),
+            None
+        );
+    }
+
+    /// 800 N/m on 2 kg: ω = 20 rad/s, 2/ω = 0.1 s; of 500 N/m 0.126 s.
+    #[test]
+    fn explicit_newmark_is_bound_by_the_stiffness_that_is_measured() {
+        let explicit = Judged {
+            integrator: Integrator::Explicit,
+            ..judged((0.0, 0.0))
+        };
+        let mut stiffer = Stiffer::new(explicit, (0.0, 0.0));
+        assert_eq!(
+            stiffer.judge((0.001, 0.5), "the specimen"),
+            None,
+            "beyond K_I, and stable"
+        );
+        assert_eq!(
+            stiffer.judge((0.002, 1.3), "the specimen"),
+            None,
+            "at its limit"
+        );
+        let text = stiffer
+            .judge((0.003, 2.2), "the specimen")
+            .expect("a remark");
+        assert!(
+            text.starts_with("W718")
+                && text.contains("900.0 N/m")
+                && text.contains("up to 94.28 ms"),
+            "{text}"
+        );
+        assert_eq!(stiffer.judge((0.004, 3.2), "the specimen"), None, "once");
+    }
+
+    /// It turns at every step from the first: 900 N/m and friction of 0.1 N, each place −1.3 times the one before. Friction is in
+    /// no two readings that came the same way; a response that alternates without growing tells nothing.
+    #[test]
+    fn a_response_that_turns_at_every_step_is_judged_by_every_other_reading() {
+        let of = |integrator: Integrator, growth: f64, stiffness: f64| {
+            let mut stiffer = Stiffer::new(
+                Judged {
+                    integrator,
+                    ..judged((0.0, 0.0))
+                },
+                (0.0, 0.0),
+            );
+            let mut place = 0.001;
+            let told = (0..12).filter_map(|_| {
+                let text = stiffer.judge(
+                    (place, stiffness * place + 0.1 * place.signum()),
+                    "the specimen",
+                );
+                place *= -growth;
+                text
+            });
+            told.collect::<Vec<String>>()
+        };
+        let splitting = Integrator::AlphaOs { alpha: 0.0 };
+        let told = of(splitting, 1.3, 900.0);
+        assert!(
+            told.len() == 1 && told[0].contains("900.0 N/m measured against K_I = 300.0 N/m"),
+            "{told:?}"
+        );
+        let told = of(Integrator::Explicit, 1.3, 900.0);
+        assert!(
+            told.len() == 1
+                && told[0].contains("reached 900.0 N/m")
+                && told[0].contains("94.28 ms"),
+            "{told:?}"
+        );
+        for (integrator, growth, stiffness) in [
+            (splitting, 1.3, 300.0),
+            (Integrator::Explicit, 1.3, 790.0),
+            (splitting, 1.01, 900.0),
+            (splitting, 0.9, 900.0),
+        ] {
+            assert_eq!(
+                of(integrator, growth, stiffness),
+                Vec::<String>::new(),
+                "{integrator:?}, {growth}, {stiffness} N/m"
+            );
+        }
+    }
+
+    /// Beside friction of 10 kN an increment of 0.1 µm has rounding of 10⁻¹² N/0.1 µm = 10⁻⁵ N/m in its secant, more than 10⁻⁹ of `K_I`.
+    #[test]
+    fn rounding_is_no_stiffness() {
+        for from in [0.1, 0.3, 1.7] {
+            let friction = 1e4;
+            let read = |place: f64| (place, 300.0 * place + friction);
+            let mut stiffer = Stiffer::new(judged((0.0, 0.0)), read(from));
+            for step in 1..2000 {
+                assert_eq!(
+                    stiffer.judge(read(from + 1e-7 * f64::from(step)), "the specimen"),
+                    None,
+                    "step {step} from {from} m"
+                );
+            }
+        }
+    }
+
+    /// 0.1 N and 1 µm over 1 mm: a secant of 360 N/m has a deviation of 142 N/m; five of them are not 60.
+    #[test]
+    fn noise_is_no_stiffness() {
+        let mut stiffer = Stiffer::new(judged((0.1, 1e-6)), (-0.001, -0.3));
+        assert_eq!(
+            stiffer.judge((0.0, 0.0), "the specimen"),
+            None,
+            "the first move has no direction before it"
+        );
+        assert_eq!(stiffer.judge((0.001, 0.36), "the specimen"), None);
+        assert_eq!(
+            stiffer.judge((0.001_004, 0.5), "the specimen"),
+            None,
+            "a move of four quanta tells nothing"
+        );
+        assert!(
+            stiffer.judge((0.02, 8.0), "the specimen").is_some(),
+            "395 N/m over 19 mm"
+        );
+    }
+}

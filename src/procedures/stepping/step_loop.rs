@@ -1,0 +1,216 @@
+//! The steps of a structure on a rig, whatever drives it: predict, command, settle, pause, read, feed back; or, continuous, the
+//! actuators follow smooth paths together (`gliding`) and are read as they pass their targets. In: who computes the steps and keeps
+//! them ([`Stepped`]), how they are taken, the rig behind its guard. Out: every step done, judged and reported, or why there are no
+//! more. It knows no ground, no striker and no equation.
+//!
+//! Where an actuator stood elsewhere than at its target (lag, resolution) the reading is corrected to it by the I-modification,
+//! r* = `r_m` − `K_I`(`d_m` − d̃). The force of a damper of the specimen is in the reading, at the actuator's velocity:
+//! c·v/`time_scale`.
+
+use std::fmt::Display;
+
+use super::axes::{AxesState, Errors, Monitors, report};
+use super::continuous_motion::{Gliding, Passing};
+use super::operator_stability_watch::StifferSprings;
+use super::run::FrameSteps;
+use super::tracking_summary::Followed;
+use crate::physics::frame::FrameInput;
+use crate::physics::tracking::monitor::Tracking;
+use crate::plan::{Mode, Stepping};
+use crate::procedures::impact::triggers::Triggers;
+use crate::rig::{DeclaredNoise, Reading};
+use crate::run::StepReport;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+use crate::units::Dimension;
+
+/// What is known when the first step begins.
+pub(crate) struct Start {
+    /// Where the actuators were sent to, m: X starts there.
+    pub commanded: Vec<f64>,
+    /// What was read there, once: R₀ is in it.
+    pub reading: Reading,
+    pub noise: DeclaredNoise,
+}
+
+impl Start {
+    /// What a frame is stepped from, with these loads on its floors (N).
+    pub(crate) fn input<'a>(
+        &'a self,
+        frame: &'a FrameSteps,
+        plan: &Stepping,
+        load: &'a [f64],
+    ) -> FrameInput<'a> {
+        let matrices = &frame.properties.matrices;
+        FrameInput {
+            matrices,
+            operator_stiffness: &matrices.stiffness,
+            integrator: plan.integrator,
+            i_modification: plan.i_modification,
+            tangents: frame.tangents,
+            time_step: frame.time_step,
+            initial_displacement: &self.commanded,
+            initial_restoring_force: &self.reading.force,
+            initial_load: load,
+            force_noise: self.noise.force,
+            resolution: self.noise.resolution,
+        }
+    }
+}
+
+/// How many steps there are, and how long they take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pace {
+    /// Δt, s
+    pub time_step: f64,
+    pub steps: u64,
+    /// s
+    pub pause: f64,
+}
+
+/// Why a structure that cannot be stepped by `time_step` (s) is not.
+pub(crate) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
+    let wanted = format!("one that can be stepped: {error}").into();
+    Stop::BadInput {
+        field: "time_step",
+        value: time_step,
+        dimension: Dimension::TIME,
+        wanted,
+    }
+}
+
+/// The energy of a test at the end of a step, J.
+pub(crate) struct Balance {
+    /// What the balance misses.
+    pub error: f64,
+    /// What the errors are shares of.
+    pub input: f64,
+}
+
+/// Computes the steps of a structure, and keeps them.
+pub(crate) trait Stepped {
+    /// The end of the last step.
+    fn axes(&self) -> AxesState<'_>;
+
+    /// Where each axis is to be at the end of the next step, m. Asked again in the same step, the same again.
+    fn predict(&mut self) -> Vec<f64>;
+
+    /// How fast each axis is predicted to be there, m/s; whether a contact force has its share in it.
+    fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool;
+
+    /// What the recursion takes for the forces at the start, where this is read, N.
+    fn taken_at_start(&self, start: &Start) -> Vec<f64>;
+
+    /// What the recursion took for the forces at the targets of the last step, N.
+    fn taken(&self) -> Vec<f64>;
+
+    /// Ends the step with what was read.
+    fn complete(&mut self, reading: &Reading);
+
+    /// Whether a contact force acted in the last step.
+    fn is_struck(&self) -> bool;
+
+    /// Keeps the end of a step, with how each axis was followed so far.
+    fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance;
+
+    /// Steps of the procedure done before these.
+    fn before(&self) -> u64 {
+        0
+    }
+
+    /// Whether there is nothing more to follow, before all steps are done.
+    fn over(&self) -> bool;
+}
+
+/// All steps, from where the rig stands.
+pub(crate) fn run<S: Stepped>(
+    pace: Pace,
+    plan: &Stepping,
+    followed: &mut Followed,
+    session: &mut Session<'_>,
+    begin: impl FnOnce(&Start) -> Result<(S, StifferSprings), Stop>,
+) -> Result<(), Stop> {
+    let mut triggers = Triggers::new(&plan.inspect);
+    let (commanded, reading) = (session.guard.commanded().to_vec(), session.guard.read()?);
+    let start = Start {
+        commanded,
+        reading,
+        noise: session.guard.declared_noise(),
+    };
+    let (mut stepped, mut stiffer) = begin(&start)?;
+    let mut monitors = Monitors::new(
+        &start.commanded,
+        &start.reading,
+        &stepped.taken_at_start(&start),
+    );
+    let mut gliding = match plan.mode {
+        Mode::Continuous { time_scale } => Some(Gliding::from_rest(
+            &start.commanded,
+            time_scale,
+            pace.time_step,
+        )),
+        Mode::StepAndPause => None,
+    };
+    stepped.keep(&monitors.tracking(), session);
+    let mut struck = false;
+    for _ in 0..pace.steps {
+        let (reading, broken) = if let Some(gliding) = &mut gliding {
+            gliding.step(|| passing(&mut stepped), session)?
+        } else {
+            session.guard.move_to(&stepped.predict(), None)?;
+            session.guard.pause(pace.pause)?;
+            session.read_kept()?
+        };
+        stepped.complete(&reading);
+        let axes = monitors.take(stepped.axes().target, &reading, &stepped.taken());
+        if let Some(stop) = broken {
+            stepped.keep(&axes, session);
+            return Err(stop);
+        }
+        let (before, now) = (struck, stepped.is_struck());
+        stiffer.take(&reading, before || now, session);
+        struck = now;
+        let Balance { error, input } = stepped.keep(&axes, session);
+        let (tracking, tracking_energy_error) = followed.judge(&axes, input, session);
+        let errors = Errors {
+            energy_error: if error == 0.0 { 0.0 } else { error / input },
+            tracking,
+            tracking_energy_error,
+        };
+        session.guard.check_energy_error(errors.energy_error)?;
+        session
+            .guard
+            .check_tracking(errors.tracking_energy_error, errors.tracking.nrms_error)?;
+        let reported = report(&stepped.axes(), &errors);
+        session.step_done(StepReport {
+            step: stepped.before() + reported.step,
+            ..reported
+        })?;
+        if stepped.over() {
+            break;
+        }
+        let AxesState {
+            step, time, force, ..
+        } = stepped.axes();
+        if let Some(reason) = triggers.after(step, time, force.iter().sum()) {
+            session.inspect(&reason)?;
+        }
+    }
+    gliding.map_or(Ok(()), |gliding| gliding.brake(session))
+}
+
+/// Where each axis is to pass in this step, and how fast.
+fn passing(stepped: &mut impl Stepped) -> Vec<Passing> {
+    let places = stepped.predict();
+    let mut velocities = vec![0.0; places.len()];
+    let struck = stepped.predicted_velocity(&mut velocities);
+    places
+        .into_iter()
+        .zip(velocities)
+        .map(|(place, velocity)| Passing {
+            place,
+            velocity,
+            struck,
+        })
+        .collect()
+}

@@ -1,0 +1,39 @@
+//! The figures of a stiffness ramp: which there are and what each shows. In: a history. Out: [`Chart`]s in SI with their
+//! captions.
+
+use super::{figures, relaxation_figures};
+use crate::plan::FigureKind;
+use crate::record::RampHistory;
+use crate::report::figures::chart::Chart;
+
+/// In the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::ForceDisplacement, FigureKind::Relaxation];
+
+/// A figure and its caption; None where nothing was recorded for it, and of what it does not draw.
+pub(crate) fn chart(
+    name: &str,
+    history: &RampHistory,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    Some(match (kind, &history.reached) {
+        (FigureKind::ForceDisplacement, _) if !history.steps.is_empty() => (
+            figures::force_displacement(history),
+            format!(
+                "{name}: measured restoring force against displacement, with the least-squares fit."
+            ),
+        ),
+        (FigureKind::Relaxation, Some(fit)) => (
+            relaxation_figures::lost(&history.holds, fit),
+            format!(
+                "{name}: force lost in the pauses, by the laws of relaxation, against the time held."
+            ),
+        ),
+        (FigureKind::Relaxation, None) => (
+            relaxation_figures::left(history, history.relaxation.as_ref()?),
+            format!(
+                "{name}: force still to relax, the measured less the fitted one after long, against the time held."
+            ),
+        ),
+        _ => return None,
+    })
+}

@@ -1,0 +1,128 @@
+//! The multilinear curve that a plan asks for: fitted, and what a person should know of it. In: measured points. Out: the fit,
+//! results, remarks. It moves nothing.
+
+use crate::physics::identification::StatedVariance;
+use crate::physics::identification::multilinear_fit::{
+    BreakCount, MultilinearFit, fit_multilinear, fit_multilinear_stated,
+};
+use crate::plan::formula::ResultValue;
+use crate::record::{LineFit, NamedResult};
+use crate::schema::procedures::stiffness_ramp as schema;
+use crate::schema::{ResultKind, curves};
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+/// The curve through (m, N); `what` names the points in a remark.
+pub(crate) fn fitted(
+    points: &[(f64, f64)],
+    count: BreakCount,
+    what: &str,
+    stated: StatedVariance,
+) -> (Option<MultilinearFit>, Vec<String>) {
+    let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    let fit = fit_multilinear_stated(&x, &r, count, stated);
+    let remarks = remarks(fit.as_ref(), count, points.len(), what);
+    (fit, remarks)
+}
+
+/// What a straight line misses of the fit before a remark is made of it, 1 − R².
+const MISSED: f64 = 1e-3;
+
+/// The change of stiffness past a break that a straight line hides, over the first one, before a remark is made of it.
+const HIDDEN: f64 = 0.1;
+
+/// Says of points (m, N) that a straight line does not fit them, for they bend: by BIC, plainly and by much.
+pub(crate) fn bends(points: &[(f64, f64)], line: &LineFit) -> Option<String> {
+    let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    let fit = fit_multilinear(&x, &r, BreakCount::ByCriterion { most: 1 })
+        .filter(|fit| fit.doubtful().is_empty())?;
+    let (place, _) = fit.breaks.first()?;
+    let ((first, _), (last, _)) = (fit.stiffnesses.first()?, fit.stiffnesses.last()?);
+    let hidden = (last - first).abs() > HIDDEN * first.abs();
+    (hidden && 1.0 - line.r_squared > MISSED).then(|| {
+        format!(
+            "the outward steps bend near {}: one straight line fits neither side, and its stiffness is that of none; \
+             `fit = bilinear` or `fit = multilinear` tells both",
+            readable(*place, Dimension::LENGTH)
+        )
+    })
+}
+
+fn remarks(
+    fit: Option<&MultilinearFit>,
+    count: BreakCount,
+    points: usize,
+    what: &str,
+) -> Vec<String> {
+    let Some(fit) = fit else {
+        let wanted = match count {
+            BreakCount::Exactly(1) => "with a break".to_owned(),
+            BreakCount::Exactly(breaks) => format!("with {breaks} breaks"),
+            BreakCount::ByCriterion { .. } => "of any number of breaks".to_owned(),
+        };
+        return vec![format!(
+            "no multilinear curve: {points} {what} bear none {wanted}, three points a stretch and one more"
+        )];
+    };
+    let mut told = Vec::new();
+    if fit.breaks.is_empty() {
+        told.push(format!(
+            "no break: by BIC one straight line fits the {what} best, elastic as far as they went"
+        ));
+    }
+    if matches!(count, BreakCount::ByCriterion { most } if most > 1 && fit.breaks.len() == most) {
+        told.push(format!(
+            "BIC took as many breaks as it may ({}): the curve may well bend smoothly",
+            fit.breaks.len()
+        ));
+    }
+    told.extend(fit.doubtful().into_iter().map(|at| {
+        let place = readable(fit.breaks[at].0, Dimension::LENGTH);
+        format!("the {what} hardly show the break at {place}: its change of stiffness is less than twice its standard error")
+    }));
+    told
+}
+
+/// Of a number and its standard error.
+type Part = fn(&(f64, f64)) -> f64;
+
+/// The lists of a curve, in the order of the reference; empty without one.
+pub(crate) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
+    let list =
+        |kind: ResultKind, values: fn(&MultilinearFit) -> &[(f64, f64)], part: Part| NamedResult {
+            name: kind.name,
+            value: ResultValue::List(
+                fit.map(|fit| values(fit).iter().map(part).collect())
+                    .unwrap_or_default(),
+            ),
+            dimension: kind.dimension,
+            contributions: Vec::new(),
+        };
+    let (value, error): (Part, Part) = (|pair| pair.0, |pair| pair.1);
+    vec![
+        list(curves::BREAKS, |fit| &fit.breaks, value),
+        list(curves::BREAK_UNCERTAINTIES, |fit| &fit.breaks, error),
+        list(curves::BREAK_FORCES, |fit| &fit.forces, value),
+        list(curves::BREAK_FORCE_UNCERTAINTIES, |fit| &fit.forces, error),
+        list(curves::CURVE_STIFFNESSES, |fit| &fit.stiffnesses, value),
+        list(
+            curves::CURVE_STIFFNESS_UNCERTAINTIES,
+            |fit| &fit.stiffnesses,
+            error,
+        ),
+    ]
+}
+
+/// What a curve says of yielding, in the order of the reference: force, place, last stiffness, its ratio to the first.
+pub(crate) fn yielding(fit: Option<&MultilinearFit>) -> [NamedResult; 4] {
+    let told = |pair: (f64, f64)| (pair.0, Some(pair.1));
+    let knee = fit.and_then(MultilinearFit::knee);
+    let broken = fit.filter(|fit| !fit.breaks.is_empty());
+    let last = broken.and_then(|fit| fit.stiffnesses.last()).copied();
+    [
+        schema::YIELD_FORCE.found_with(knee.map(|[_, force]| told(force))),
+        schema::YIELD_DISPLACEMENT.found_with(knee.map(|[place, _]| told(place))),
+        schema::HARDENED_STIFFNESS.found_with(last.map(told)),
+        schema::HARDENING.found_with(broken.map(|fit| told(fit.hardening))),
+    ]
+}

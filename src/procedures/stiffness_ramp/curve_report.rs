@@ -1,0 +1,77 @@
+//! A multilinear curve, stretch by stretch, with what a plan would write for a specimen of it. In: the fit. Out: blocks.
+
+use crate::record::MultilinearFit;
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number;
+use crate::units::{Dimension, display};
+
+/// `reach` (m) is where the readings end, along the way of the curve.
+pub(crate) fn table(fit: &MultilinearFit, reach: f64, body: &mut Vec<Block>) {
+    let with = |(value, error): (f64, f64), dimension| {
+        Text::from(number::with_uncertainty(value, Some(error), dimension))
+    };
+    let row = |(index, stiffness): (usize, &(f64, f64))| {
+        let end = fit.breaks.get(index).zip(fit.forces.get(index));
+        vec![
+            Text::from((index + 1).to_string()),
+            with(*stiffness, Dimension::STIFFNESS),
+            end.map_or_else(
+                || number::text(reach, Dimension::LENGTH).into(),
+                |(place, _)| with(*place, Dimension::LENGTH),
+            ),
+            end.map_or_else(
+                || number::text(fit.force(reach), Dimension::FORCE).into(),
+                |(_, force)| with(*force, Dimension::FORCE),
+            ),
+        ]
+    };
+    let columns = vec![
+        Column::words("Stretch", 1),
+        Column::numbers("Stiffness (u)"),
+        Column::numbers("Ends at (u)"),
+        Column::numbers("With the force (u)"),
+    ];
+    body.push(Block::Table(Table {
+        columns,
+        rows: fit.stiffnesses.iter().enumerate().map(row).collect(),
+    }));
+    body.push(Block::note(format!(
+        "Straight stretches that meet at breaks, by least squares over the stretches and the breaks together; in brackets the standard error of \
+         the linearised model; R² = {:.6}.{}",
+        fit.r_squared,
+        criterion(fit)
+    )));
+    if let Some(corners) = fit.corners(reach).filter(|_| !fit.breaks.is_empty()) {
+        let list = |index: usize, factor: f64| {
+            corners
+                .iter()
+                .map(|corner| display::significant(corner[index] * factor, 7))
+                .collect::<Vec<String>>()
+                .join(", ")
+        };
+        body.push(Block::note(
+            Text::from("A specimen of this curve, from no force on: ").code(format!(
+                "multilinear(displacements: [{}] mm, forces: [{}] N)",
+                list(0, 1e3),
+                list(1, 1.0)
+            )),
+        ));
+    }
+}
+
+fn criterion(fit: &MultilinearFit) -> String {
+    if fit.criterion.is_empty() {
+        return " Their number is the plan's.".to_owned();
+    }
+    let each: Vec<String> = fit
+        .criterion
+        .iter()
+        .enumerate()
+        .map(|(count, more)| format!("{count}: {more:.1}"))
+        .collect();
+    format!(
+        " Their number is that of the least BIC = N ln(SSE/N) + (2n + 2) ln N, which is above its least for n breaks by {}. That it was \
+         chosen is not in the errors.",
+        each.join(", ")
+    )
+}

@@ -1,0 +1,20 @@
+//! What the drivers of check and report must know of a stiffness ramp without carrying it out. In: it. Out: facts.
+
+use super::{chart, report};
+use crate::procedures::facts::{Facts, Recorded};
+use crate::record::RampHistory;
+
+pub(crate) fn facts() -> Facts<'static> {
+    Facts {
+        figures: chart::FIGURES,
+        ..Facts::default()
+    }
+}
+
+pub(crate) fn recorded(history: &RampHistory) -> Recorded {
+    Recorded {
+        lists_are_tabled: history.multilinear.is_some(),
+        uncertainty: report::UNCERTAINTY,
+        ..Recorded::default()
+    }
+}

@@ -1,0 +1,18 @@
+//! `stiffness ramp`: prescribed displacements with a dwell at each, from which the stiffness
+//! follows. In: its block, a rig behind the guard. Out: parameters, history, fitted results with
+//! standard uncertainties, figures, report text.
+
+pub(crate) mod chart;
+pub(crate) mod check;
+pub(crate) mod curve;
+pub(crate) mod curve_report;
+pub(crate) mod facts;
+pub(crate) mod figures;
+pub(crate) mod hold;
+pub(crate) mod read_results;
+pub(crate) mod relaxation_figures;
+pub(crate) mod report;
+pub(crate) mod run;
+pub(crate) mod tables;
+
+pub use check::MOST_READINGS;

@@ -1,0 +1,128 @@
+//! What is read of a `stiffness ramp`, against what its steps can bear. In: procedures, and every result that some text reads. Out: an
+//! error where the ramp never gives it (E655), a warning where few readings tell it (W722). It looks at no reading.
+
+use std::collections::BTreeSet;
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::values as fault;
+use crate::plan::formula::Formula;
+use crate::plan::{BreakCount, Procedure, ProcedureKind, RampFit, StiffnessRamp};
+use crate::schema::procedures::stiffness_ramp as schema;
+use crate::uncertainty::FEW;
+
+/// Results of a ramp that its fit gives.
+const FITTED: [&str; 6] = [
+    schema::STIFFNESS.name,
+    schema::INTERCEPT_FORCE.name,
+    schema::YIELD_FORCE.name,
+    schema::YIELD_DISPLACEMENT.name,
+    schema::HARDENED_STIFFNESS.name,
+    schema::HARDENING.name,
+];
+
+/// Those that one straight line does not have.
+const OF_A_KNEE: [&str; 4] = [
+    schema::YIELD_FORCE.name,
+    schema::YIELD_DISPLACEMENT.name,
+    schema::HARDENED_STIFFNESS.name,
+    schema::HARDENING.name,
+];
+
+/// Said once of each ramp; asked for only where no error stands.
+pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    let (mut never, mut few) = (BTreeSet::new(), BTreeSet::new());
+    for (reference, span) in checker.read.clone() {
+        let Some((block, Some(procedure))) = procedures.get(reference.procedure.0) else {
+            continue;
+        };
+        let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else {
+            continue;
+        };
+        let head = checker.scope.blocks[*block].block.head;
+        let displacements = checker
+            .given(*block, "displacements")
+            .map_or(head, |(_, entry)| entry.value.span);
+        if let Some((lacks, way_out)) = lacks(ramp, reference.name) {
+            if never.insert(*block) {
+                let ramp = (procedure.name.as_str(), displacements);
+                checker.faults.push(fault::never_given(
+                    reference.name,
+                    span,
+                    ramp,
+                    &lacks,
+                    way_out,
+                ));
+            }
+        } else if FITTED.contains(&reference.name)
+            && let Some((points, degrees)) = ramp
+                .degrees_of_freedom()
+                .filter(|(_, degrees)| *degrees < usize::from(FEW))
+            && few.insert(*block)
+        {
+            checker.faults.push(fault::few_degrees_of_freedom(
+                &procedure.name,
+                points,
+                degrees,
+                displacements,
+                span,
+            ));
+        }
+    }
+}
+
+/// Why a ramp never has a result, and the way out; None where it may.
+fn lacks(ramp: &StiffnessRamp, result: &str) -> Option<(String, &'static str)> {
+    let steps = ramp.displacements.len();
+    match result {
+        name if name == schema::LOOP_ENERGY.name && !ramp.return_path => {
+            Some(("it does not come back".to_owned(), "write `return = true`"))
+        }
+        name if name == schema::TANGENT_STIFFNESS.name && steps < 2 => Some((
+            "it has one step".to_owned(),
+            "take two displacements or more",
+        )),
+        name if OF_A_KNEE.contains(&name) && ramp.fit == RampFit::Linear => Some((
+            "a straight line does not yield".to_owned(),
+            "write `fit = bilinear`, or `fit = multilinear`",
+        )),
+        name if FITTED.contains(&name) || name == schema::R_SQUARED.name => fitted_to_too_few(ramp),
+        _ => None,
+    }
+}
+
+/// As `mechanics` fits: a line three readings, not all of one place, a knee six steps, a curve three a stretch and one more.
+fn fitted_to_too_few(ramp: &StiffnessRamp) -> Option<(String, &'static str)> {
+    let steps = ramp.displacements.len();
+    let (points, wanted) = match ramp.fit {
+        RampFit::Linear => (steps * ramp.repeats as usize, 3),
+        RampFit::Bilinear => (steps, 6),
+        RampFit::Multilinear(BreakCount::Exactly(breaks)) => (steps, 3 * (breaks + 1) + 1),
+        RampFit::Multilinear(BreakCount::ByCriterion { .. }) => (steps, 4),
+    };
+    let count = |points: usize| {
+        if points == 1 {
+            "1 step".to_owned()
+        } else {
+            format!("{points} steps")
+        }
+    };
+    if points < wanted {
+        let bear = if points == 1 { "bears" } else { "bear" };
+        let lacks = format!(
+            "{} {bear} no such fit, which takes {wanted} at least",
+            count(points)
+        );
+        return Some((
+            lacks,
+            "take more displacements, five or more of a straight line",
+        ));
+    }
+    let places: Option<Vec<f64>> = ramp.displacements.iter().map(Formula::constant).collect();
+    let one_place = places.is_some_and(|places| places.iter().all(|place| *place == places[0]));
+    one_place.then(|| {
+        (
+            "all its steps go to one place".to_owned(),
+            "take displacements that differ",
+        )
+    })
+}

@@ -1,0 +1,109 @@
+//! A stiffness ramp as a report gives it: its curve, what its pauses lost, the line through its readings. In: a history. Out:
+//! blocks.
+
+use super::curve_report;
+use crate::plan::{RelaxationLaw, RelaxationModel};
+use crate::record::{Hold, RampHistory, ReachedFit, RelaxationFit};
+use crate::report::content::line_fit::fitted;
+use crate::report::document::Block;
+use crate::report::number;
+use crate::units::Dimension;
+
+/// How the contributions to its uncertainty were found, as to that of every fitted line.
+pub(crate) const UNCERTAINTY: &str = "what its own readings scatter is the covariance of the fit, a calibration goes with the powers of force and displacement in the \
+    result, and rounding is told beside the scatter where it leaves more open";
+
+/// The blocks below its results.
+pub(crate) fn report(history: &RampHistory, body: &mut Vec<Block>) {
+    if let Some(fit) = &history.multilinear {
+        let reach = history.steps.iter().map(|step| step.displacement);
+        curve_report::table(
+            fit,
+            reach.fold(0.0, |most, x| {
+                if fit.way * x > fit.way * most {
+                    x
+                } else {
+                    most
+                }
+            }),
+            body,
+        );
+    }
+    if let Some(fit) = &history.relaxation {
+        body.push(relaxed(fit, &history.holds));
+    }
+    if let Some(fit) = &history.reached {
+        body.push(relaxed_by_a_law(fit, &history.holds));
+    }
+    if let Some(fit) = history.fit {
+        body.push(fitted(
+            "R = K·X + R₀",
+            ("K", Dimension::STIFFNESS),
+            ("R₀", Dimension::FORCE),
+            fit,
+        ));
+    }
+}
+
+/// The relaxation of the holds: its model, how far the readings lie from it, and what the pauses left.
+fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
+    let with = |(value, error): (f64, f64), dimension| {
+        number::with_uncertainty(value, Some(error), dimension)
+    };
+    let model = match fit.model {
+        RelaxationModel::Exponential => "R = R∞ + A e^(−t/τ) in every pause".to_owned(),
+        RelaxationModel::StandardLinearSolid => {
+            let solid = fit
+                .branch_stiffness
+                .map(|stiffness| format!(", K₁ = {}", with(stiffness, Dimension::STIFFNESS)));
+            format!(
+                "R = R₀ + K∞X + q, q' = K₁X' − q/τ through all moves and pauses{}",
+                solid.unwrap_or_default()
+            )
+        }
+    };
+    let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
+    Block::note(format!(
+        "Relaxation by least squares over {readings} readings in {} pauses: {model}, τ = {} (in brackets the standard error); the readings scatter \
+         by {} about it. The pauses left {} to relax, at most.",
+        holds.len(),
+        with(fit.time_constant, Dimension::TIME),
+        number::text(fit.scatter, Dimension::FORCE),
+        with(fit.remaining, Dimension::FORCE),
+    ))
+}
+
+/// The law by which the reached force relaxes, why that one, and how fast the pauses were still losing.
+fn relaxed_by_a_law(fit: &ReachedFit, holds: &[Hold]) -> Block {
+    let with = |(value, error): (f64, f64), dimension| {
+        number::with_uncertainty(value, Some(error), dimension)
+    };
+    let best = fit.best();
+    let (law, share) = match best.law {
+        RelaxationLaw::Exponential => ("R̂ − R grows by g (1 − e^(−t/τ))", "g"),
+        RelaxationLaw::Logarithmic => ("R̂ − R grows by a ln(1 + t/t₀)", "a"),
+    };
+    let chosen = fit.margin().map_or_else(String::new, |margin| {
+        let other = if margin > 0.0 {
+            "an exponential"
+        } else {
+            "the logarithm of time"
+        };
+        format!(
+            " BIC, corrected for few readings, prefers it to {other} by {:.1}.",
+            margin.abs()
+        )
+    });
+    let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
+    Block::note(format!(
+        "Relaxation by least squares over {readings} readings in {} pauses, each step by its own time: {law} of each increment of the \
+         reached force R̂, {share} = {}, {} = {} (in brackets the standard error); the readings scatter by {} about it.{chosen} The worst pause ended \
+         while the force fell by {}.",
+        holds.len(),
+        with(best.share, Dimension::NUMBER),
+        best.law.time_name(),
+        with(best.time, Dimension::TIME),
+        number::text(best.scatter, Dimension::FORCE),
+        with(best.rate, Dimension::FORCE_RATE),
+    ))
+}

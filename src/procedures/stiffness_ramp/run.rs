@@ -1,0 +1,403 @@
+//! `stiffness ramp` (Melo et al. 2006, sec. 5 step 1 and sec. 6 (a)): prescribed displacements, a pause at each, then
+//! the mean of some readings. In: the displacements. Out: K by least squares over the outward steps, the secant of the
+//! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
+
+use super::{curve, hold};
+use crate::physics::identification::backbone::fit_bilinear_stated;
+use crate::physics::identification::{StatedVariance, fit_line};
+use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
+use crate::procedures::inputs::Inputs;
+use crate::procedures::samples::{mean, scatter};
+use crate::record::{
+    BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampHistory,
+    RampStep,
+};
+use crate::run::Performed;
+use crate::run::session::{Session, first};
+use crate::run::stop::Stop;
+use crate::schema::procedures::stiffness_ramp as schema;
+use crate::uncertainty::InstrumentUncertainty;
+use crate::uncertainty::ramp;
+use crate::uncertainty::ramp::{DIRECT, Readings};
+use crate::units::Dimension;
+
+pub(crate) fn perform(
+    plan: &StiffnessRamp,
+    whole: &Plan,
+    inputs: &mut Inputs<'_>,
+    session: &mut Session<'_>,
+) -> Performed {
+    let mut ramp = Ramp {
+        steps: Vec::new(),
+        starts: Vec::new(),
+        before: Vec::new(),
+        holds: Vec::new(),
+        last_reading: 0.0,
+    };
+    let stop = ramp.run(plan, inputs, session).err();
+    let declared = session.guard.declared_noise();
+    let instruments = InstrumentUncertainty::of(whole, declared, 1);
+    let fits = ramp.fits(plan, instruments.stated_variance(0, plan.samples));
+    for text in fits.remarks.iter().filter(|_| stop.is_none()) {
+        session.event(EventKind::Remark, text.clone());
+    }
+    let noise = Some(instruments.errors(0).noise).filter(|noise| *noise > 0.0);
+    let asked = plan.relaxation.map(|asked| asked.model);
+    let start = ramp.starts.first().copied();
+    let told = hold::told(
+        &ramp.holds,
+        start.unwrap_or_default(),
+        asked,
+        noise,
+        instruments.stated_variance(0, 1),
+    );
+    for text in told.remarks.into_iter().filter(|_| stop.is_none()) {
+        session.event(EventKind::Remark, text);
+    }
+    let (before, readings) = (
+        ramp.before,
+        Readings {
+            starts: ramp.starts,
+            steps: ramp.steps,
+        },
+    );
+    let mut results = results(readings.direct(plan, declared.force), &fits);
+    if session.settings.uncertainty {
+        ramp::propagate(
+            &readings,
+            plan,
+            declared,
+            &instruments,
+            inputs.procedure(),
+            &mut results,
+        );
+    }
+    results.extend(told.results);
+    let Fits {
+        line: fit,
+        bilinear,
+        multilinear,
+        ..
+    } = fits;
+    let (multilinear, relaxation, reached) = (
+        multilinear.map(Box::new),
+        told.relaxation.map(Box::new),
+        told.reached.map(Box::new),
+    );
+    let history = RampHistory {
+        start,
+        before,
+        steps: readings.steps,
+        fit,
+        bilinear,
+        multilinear,
+        holds: ramp.holds,
+        relaxation,
+        reached,
+    };
+    Performed {
+        history: History::Ramp(history),
+        results,
+        stop,
+    }
+}
+
+/// What was fitted, one at most, and what to know of it.
+#[derive(Default)]
+struct Fits {
+    line: Option<LineFit>,
+    bilinear: Option<BilinearFit>,
+    multilinear: Option<MultilinearFit>,
+    remarks: Vec<String>,
+}
+
+/// A displacement (m) and the force there (N).
+pub(crate) type Point = (f64, f64);
+
+struct Ramp {
+    steps: Vec<RampStep>,
+    /// The reading before the first increment of each repeat.
+    starts: Vec<Point>,
+    /// The same as rows of the table.
+    before: Vec<RampStep>,
+    /// Pauses of the first repeat, where they are watched.
+    holds: Vec<Hold>,
+    /// Rig time of the last reading before a move, s.
+    last_reading: f64,
+}
+
+impl Ramp {
+    fn run(
+        &mut self,
+        plan: &StiffnessRamp,
+        inputs: &mut Inputs<'_>,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let displacements = inputs.list("displacements", &plan.displacements)?;
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let speed = inputs.speed(plan.speed.as_ref())?;
+        let home = session.commanded();
+        for repeat in 0..plan.repeats {
+            let start = session.read()?;
+            self.last_reading = session.guard.time();
+            let asked = plan.relaxation.filter(|_| repeat == 0);
+            self.starts.push(start);
+            self.before.push(before_moving(
+                self.steps.len() as u64,
+                home,
+                start,
+                self.last_reading,
+            ));
+            let mut before = None;
+            for command in &displacements {
+                before = Some(self.step(
+                    *command,
+                    false,
+                    before,
+                    plan.samples,
+                    (pause, asked),
+                    speed,
+                    session,
+                )?);
+            }
+            if plan.return_path {
+                let way_back = displacements
+                    .iter()
+                    .rev()
+                    .skip(1)
+                    .copied()
+                    .chain(std::iter::once(home));
+                for command in way_back {
+                    before = Some(self.step(
+                        command,
+                        true,
+                        before,
+                        plan.samples,
+                        (pause, asked),
+                        speed,
+                        session,
+                    )?);
+                }
+            } else {
+                session.go_to(home, speed)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves, settles, reads once for the relaxation, pauses, reads the samples.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one step of a ramp is what it is told"
+    )]
+    fn step(
+        &mut self,
+        command: f64,
+        returning: bool,
+        before: Option<Point>,
+        samples: u32,
+        (pause, asked): (f64, Option<WatchedHold>),
+        speed: Option<f64>,
+        session: &mut Session<'_>,
+    ) -> Result<Point, Stop> {
+        session.guard.move_to(&[command], speed)?;
+        let (settled, moved, mut broken) = match asked {
+            Some(_) => session.read_moved_kept()?,
+            None => session
+                .read_kept()
+                .map(|(reading, broken)| (reading, None, broken))?,
+        };
+        let (_, settled_force) = first(&settled);
+        let mut readings = Vec::new();
+        let watched = match asked {
+            _ if broken.is_some() => {
+                readings.push(first(&settled));
+                None
+            }
+            Some(asked) => Some(hold::watched(&settled, pause, asked.readings, session)?),
+            None => session.guard.pause(pause).map(|()| None)?,
+        };
+        for _ in 0..samples.max(1) {
+            if broken.is_none() {
+                let (reading, stop) = session.read_kept()?;
+                readings.push(first(&reading));
+                broken = stop;
+            }
+        }
+        let displacement = mean(readings.iter().map(|(x, _)| *x));
+        let restoring_force = mean(readings.iter().map(|(_, r)| *r));
+        let step = self.steps.len() as u64 + 1;
+        let wall_time = session.guard.time();
+        if let Some((readings, last)) = watched {
+            let [waited_for, moved_for, settled_for] =
+                hold::parts(self.last_reading, moved, settled.time);
+            self.holds.push(Hold {
+                step,
+                displacement,
+                waited_for,
+                moved_for,
+                settled_for,
+                readings,
+            });
+            self.last_reading = last;
+        }
+        self.steps.push(RampStep {
+            step,
+            wall_time,
+            command,
+            displacement,
+            restoring_force,
+            force_scatter: scatter(readings.iter().map(|(_, r)| *r), restoring_force),
+            relaxation: settled_force - restoring_force,
+            tangent_stiffness: before
+                .and_then(|before| secant(before, (displacement, restoring_force))),
+            returning,
+        });
+        if let Some(stop) = broken {
+            return Err(stop);
+        }
+        session.measured(step, wall_time, displacement, restoring_force)?;
+        Ok((displacement, restoring_force))
+    }
+
+    /// One line R = intercept + K·X over the outward steps of all repeats. Two or more through those of the first repeat: what
+    /// comes after yield no longer bends as it did.
+    fn fits(&self, plan: &StiffnessRamp, stated: StatedVariance) -> Fits {
+        let first = || self.steps.iter().take(plan.displacements.len()).map(point);
+        match plan.fit {
+            RampFit::Linear => {
+                let (x, r): (Vec<f64>, Vec<f64>) = self
+                    .steps
+                    .iter()
+                    .filter(|step| !step.returning)
+                    .map(point)
+                    .unzip();
+                let line = fit_line(&x, &r).map(|fit| fit.stated(&x, stated, fit.slope));
+                let remarks = line
+                    .as_ref()
+                    .and_then(|line| curve::bends(&first().collect::<Vec<Point>>(), line));
+                Fits {
+                    line,
+                    remarks: remarks.into_iter().collect(),
+                    ..Fits::default()
+                }
+            }
+            RampFit::Bilinear => {
+                let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
+                let bilinear = fit_bilinear_stated(&x, &r, stated);
+                let none = "no bilinear fit: the outward steps are fewer than six, or show no knee that softens";
+                let remarks = if bilinear.is_none() {
+                    vec![none.to_owned()]
+                } else {
+                    Vec::new()
+                };
+                Fits {
+                    bilinear,
+                    remarks,
+                    ..Fits::default()
+                }
+            }
+            RampFit::Multilinear(count) => {
+                let (multilinear, remarks) = curve::fitted(
+                    &first().collect::<Vec<Point>>(),
+                    count,
+                    "outward steps",
+                    stated,
+                );
+                Fits {
+                    multilinear,
+                    remarks,
+                    ..Fits::default()
+                }
+            }
+        }
+    }
+}
+
+/// What was read before the first increment of a repeat, after so many steps.
+const fn before_moving(
+    step: u64,
+    command: f64,
+    (displacement, restoring_force): Point,
+    wall_time: f64,
+) -> RampStep {
+    RampStep {
+        step,
+        wall_time,
+        command,
+        displacement,
+        restoring_force,
+        force_scatter: 0.0,
+        relaxation: 0.0,
+        tangent_stiffness: None,
+        returning: false,
+    }
+}
+
+/// In the order of the reference; `direct` is what was read beside the fits.
+fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult> {
+    let Fits {
+        line: fit,
+        bilinear,
+        multilinear,
+        ..
+    } = fits;
+    let (fit, bilinear, multilinear) = (fit.as_ref(), bilinear.as_ref(), multilinear.as_ref());
+    let told = |(value, error): (f64, f64)| (value, Some(error));
+    let stiffness = fit.map(|fit| (fit.slope, fit.slope_error));
+    let stiffness = stiffness.or(bilinear.map(|fit| (fit.stiffness, fit.stiffness_error)));
+    let stiffness = stiffness
+        .or(multilinear.map(|fit| fit.stiffnesses[0]))
+        .map(told);
+    let intercept = fit.map(|fit| (fit.intercept, fit.intercept_error));
+    let intercept = intercept.or(bilinear.map(|fit| (fit.intercept, fit.intercept_error)));
+    let intercept = intercept.or(multilinear.map(|fit| fit.intercept)).map(told);
+    let r_squared = fit
+        .map(|fit| fit.r_squared)
+        .or(bilinear.map(|fit| fit.r_squared));
+    let r_squared = r_squared.or(multilinear.map(|fit| fit.r_squared));
+    let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(told);
+    let [
+        first_secant,
+        max_force,
+        max_displacement,
+        loop_energy,
+        relaxation,
+        tangent_stiffness,
+    ] = direct;
+    let mut results = vec![
+        schema::STIFFNESS.found_with(stiffness),
+        schema::SECANT_STIFFNESS.found(first_secant),
+        schema::INTERCEPT_FORCE.found_with(intercept),
+        schema::R_SQUARED.found(r_squared),
+        schema::MAX_FORCE.found(max_force),
+        schema::MAX_DISPLACEMENT.found(max_displacement),
+        schema::LOOP_ENERGY.found(loop_energy),
+        schema::RELAXATION.found(relaxation),
+        schema::TANGENT_STIFFNESS.found(tangent_stiffness),
+    ];
+    if bilinear.is_some() {
+        results.extend([
+            schema::YIELD_FORCE.found_with(of(|fit| (fit.yield_force, fit.yield_force_error))),
+            schema::YIELD_DISPLACEMENT.found_with(of(|fit| {
+                (fit.yield_displacement, fit.yield_displacement_error)
+            })),
+            schema::HARDENED_STIFFNESS.found_with(of(|fit| (fit.hardened, fit.hardened_error))),
+            schema::HARDENING.found_with(of(|fit| (fit.hardening, fit.hardening_error))),
+        ]);
+    } else {
+        results.extend(curve::yielding(multilinear));
+    }
+    results.extend(curve::lists(multilinear));
+    results
+}
+
+pub(crate) const fn point(step: &RampStep) -> Point {
+    (step.displacement, step.restoring_force)
+}
+
+/// Stiffness from one point to the next, N/m; None without motion.
+pub(crate) fn secant(from: Point, to: Point) -> Option<f64> {
+    let motion = to.0 - from.0;
+    (motion != 0.0).then(|| (to.1 - from.1) / motion)
+}

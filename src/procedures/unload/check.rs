@@ -1,0 +1,63 @@
+//! `unload NAME { … }`: of one degree of freedom, or of all floors of a frame together.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::declarations::frame;
+use crate::language::check::messages::frames as fault;
+use crate::plan::formula::Formula;
+use crate::plan::{FrameUnload, ProcedureKind, Unload};
+
+pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    let tested = checker.specimen_block(block);
+    let specimen = tested.map(|tested| checker.scope.place_in_kind(tested));
+    if tested.is_some_and(|tested| frame::is_frame(checker, tested)) {
+        let (within, speed) = (
+            checker.optional(block, "within"),
+            checker.optional(block, "speed"),
+        );
+        if let Some((_, entry)) = checker.given(block, "stiffness") {
+            let help = "remove it: the storeys of the frame have stiffnesses of their own";
+            return checker.fail(fault::no_use_on_a_frame(
+                "stiffness",
+                "the unloading of a frame",
+                entry.key.span,
+                help,
+            ));
+        }
+        return Some(ProcedureKind::FrameUnload(FrameUnload {
+            specimen: specimen?,
+            within: within?,
+            speed: speed?,
+        }));
+    }
+    let stiffness = checker.stiffness_or_specimens(block, tested);
+    let (within, speed) = (
+        checker.optional(block, "within"),
+        checker.optional(block, "speed"),
+    );
+    Some(ProcedureKind::Unload(Unload {
+        specimen: specimen?,
+        stiffness: stiffness?,
+        within: within?,
+        speed: speed?,
+    }))
+}
+
+impl Checker<'_> {
+    /// `stiffness`, else on a virtual rig the initial one of the `specimen` block; on a real rig it is required, and said so
+    /// already.
+    pub fn stiffness_or_specimens(
+        &mut self,
+        block: usize,
+        specimen: Option<usize>,
+    ) -> Option<Formula> {
+        if self.given(block, "stiffness").is_some() {
+            return self.quantity(block, "stiffness");
+        }
+        if self.real_rig.is_some() {
+            return None;
+        }
+        let head = self.scope.blocks[block].block.head;
+        crate::language::check::declarations::specimen::export(self, specimen?, "stiffness", head)
+            .map(Formula::Constant)
+    }
+}

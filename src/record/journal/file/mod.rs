@@ -1,0 +1,260 @@
+//! A run log in a file: created new, locked while open, with a reserve file that is released when
+//! the disk is full. In: a path. Out: a storage. It does not know what the entries mean.
+
+mod ballast;
+mod fault;
+mod torn;
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, Read as _, Seek as _, SeekFrom, Write};
+use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _};
+use std::path::{Path, PathBuf};
+
+use rustix::fs::OFlags;
+
+use super::Storage;
+use crate::rig::safety::failpoint::{Guarding, on};
+pub use ballast::is_part_of_one as is_part_of_a_reserve;
+pub use fault::FileFault;
+
+/// The largest journal that is read back, bytes: of some five million steps. What proves it holds all of it in memory.
+pub const MOST_BYTES: u64 = crate::plan::MOST_RECORD_BYTES;
+
+/// Who may read and write what lies here: the operator.
+const MODE: u32 = 0o600;
+
+/// The file of a journal. No other psd writes it while this lives.
+#[derive(Debug)]
+pub struct FileStorage {
+    file: File,
+    path: PathBuf,
+}
+
+/// A journal that nobody writes while this lives.
+#[derive(Debug)]
+pub struct Still {
+    _file: File,
+}
+
+impl FileStorage {
+    /// A new, empty journal with its reserve beside it, both durable.
+    ///
+    /// # Errors
+    /// Something of this name exists, or the disk has no room for the reserve; nothing is left behind then.
+    pub fn create(path: &Path) -> Result<Self, FileFault> {
+        let file = new_file(path).map_err(FileFault::of("created", path))?;
+        let storage = Self::locked(file, path)?;
+        // The reserve goes with the storage.
+        storage
+            .settle()
+            .inspect_err(|_| drop(std::fs::remove_file(path)))?;
+        Ok(storage)
+    }
+
+    /// The journal of an earlier run, to be read and gone on with. It is locked before anything is read.
+    ///
+    /// # Errors
+    /// There is none, another psd has it, or the disk has no room for the reserve.
+    pub fn open_existing(path: &Path) -> Result<Self, FileFault> {
+        // Neither through a link nor waiting for the other end of a pipe.
+        let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
+        let mut options = OpenOptions::new();
+        options
+            .read(true)
+            .append(true)
+            .custom_flags(flags.cast_signed());
+        let file = options.open(path).map_err(FileFault::of("opened", path))?;
+        if !file
+            .metadata()
+            .map_err(FileFault::of("opened", path))?
+            .is_file()
+        {
+            return Err(FileFault::NotAFile {
+                path: path.to_owned(),
+            });
+        }
+        let storage = Self::locked(file, path)?;
+        storage.settle()?;
+        Ok(storage)
+    }
+
+    /// Holds the lock of a journal that is only read, so that nobody writes it meanwhile; a file that cannot be written needs no
+    /// more than to be read for it.
+    ///
+    /// # Errors
+    /// There is none, or another psd writes it.
+    pub fn keep_still(path: &Path) -> Result<Still, FileFault> {
+        let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
+        let file = OpenOptions::new()
+            .read(true)
+            .custom_flags(flags.cast_signed())
+            .open(path);
+        let file = file.map_err(FileFault::of("opened", path))?;
+        if on(Guarding::Lock) {
+            file.try_lock_shared().map_err(|refused| match refused {
+                TryLockError::WouldBlock => FileFault::InUse {
+                    path: path.to_owned(),
+                },
+                TryLockError::Error(error) => FileFault::of("locked", path)(error),
+            })?;
+        }
+        Ok(Still { _file: file })
+    }
+
+    /// All the bytes.
+    ///
+    /// # Errors
+    /// They cannot be read, or are more than any run of ours writes.
+    pub fn contents(&self) -> Result<Vec<u8>, FileFault> {
+        self.contents_up_to(MOST_BYTES)
+    }
+
+    fn contents_up_to(&self, most: u64) -> Result<Vec<u8>, FileFault> {
+        let mut bytes = Vec::new();
+        // Through the descriptor that holds the lock: a path may lead elsewhere meanwhile.
+        let mut file = &self.file;
+        let read = file
+            .seek(SeekFrom::Start(0))
+            .and_then(|_| file.take(most + 1).read_to_end(&mut bytes));
+        read.map_err(FileFault::of("read", &self.path))?;
+        if bytes.len() as u64 > most {
+            return Err(FileFault::TooLarge {
+                path: self.path.clone(),
+                most,
+            });
+        }
+        Ok(bytes)
+    }
+
+    /// Moves what lies after the first `whole` bytes, if anything, into a new file `….torn-1`, `….torn-2`, … beside the
+    /// journal, and gives its path; both are durable. The caller records it.
+    ///
+    /// # Errors
+    /// The journal is as it was, or already cut; then the file beside it is complete.
+    pub fn truncate_to(&mut self, whole: u64) -> Result<Option<PathBuf>, FileFault> {
+        torn::put_aside(&self.file, &self.path, whole)
+            .and_then(|aside| {
+                if aside.is_some() {
+                    self.cut(whole)?;
+                    self.file.sync_all()?;
+                }
+                Ok(aside)
+            })
+            .map_err(FileFault::of("cut back", &self.path))
+    }
+
+    /// Bytes the disk still takes, for who asks whether the whole run will fit.
+    ///
+    /// # Errors
+    /// The file system does not say.
+    pub fn room(&self) -> Result<u64, FileFault> {
+        let told = rustix::fs::fstatvfs(&self.file).map_err(io::Error::from);
+        let told = told.map_err(FileFault::of("asked for its disk's room", &self.path))?;
+        Ok(told.f_bavail.saturating_mul(told.f_frsize))
+    }
+
+    /// There is none without the lock: what it removes when it goes is its own.
+    fn locked(file: File, path: &Path) -> Result<Self, FileFault> {
+        if on(Guarding::Lock) {
+            file.try_lock().map_err(|refused| match refused {
+                TryLockError::WouldBlock => FileFault::InUse {
+                    path: path.to_owned(),
+                },
+                TryLockError::Error(error) => FileFault::of("locked", path)(error),
+            })?;
+        }
+        Ok(Self {
+            file,
+            path: path.to_owned(),
+        })
+    }
+
+    /// Puts the reserve beside the file and makes file, reserve and their names durable.
+    fn settle(&self) -> Result<(), FileFault> {
+        let settled = ballast::lay(&self.path)
+            .and_then(|()| self.file.sync_all())
+            .and_then(|()| sync_folder(&self.path));
+        settled.map_err(FileFault::of("given its reserve", &self.path))
+    }
+}
+
+impl Storage for FileStorage {
+    fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
+        write_whole(&mut self.file, bytes)
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        self.file.sync_data()?;
+        // A file without a name is on no disk tomorrow.
+        if self.file.metadata()?.nlink() == 0 {
+            return Err(io::Error::new(
+                io::ErrorKind::NotFound,
+                "somebody has removed it",
+            ));
+        }
+        Ok(())
+    }
+
+    fn cut(&mut self, length: u64) -> io::Result<()> {
+        if self.file.metadata()?.len() < length {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidData,
+                "bytes that were written are not there",
+            ));
+        }
+        self.file.set_len(length)
+    }
+
+    fn release_reserve(&mut self) {
+        ballast::release(&self.path);
+    }
+}
+
+/// The reserve is of use only while someone may write; the next to open the journal lays it again.
+impl Drop for FileStorage {
+    fn drop(&mut self) {
+        self.release_reserve();
+    }
+}
+
+/// A file that did not exist before; what is written to it goes to its end.
+fn new_file(path: &Path) -> io::Result<File> {
+    OpenOptions::new()
+        .read(true)
+        .append(true)
+        .create_new(true)
+        .mode(MODE)
+        .open(path)
+}
+
+/// Makes the names in the folder of a path durable.
+fn sync_folder(path: &Path) -> io::Result<()> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    File::open(folder)?.sync_all()
+}
+
+/// The path with more behind its name: `journal` and `.reserve` give `journal.reserve`.
+fn beside(path: &Path, more: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(more);
+    PathBuf::from(name)
+}
+
+/// Writes all the bytes, each once: a write that takes fewer is gone on with, one that was interrupted is made again.
+fn write_whole(out: &mut impl Write, mut bytes: &[u8]) -> io::Result<()> {
+    while !bytes.is_empty() {
+        match out.write(bytes) {
+            Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
+            Ok(taken) => bytes = &bytes[taken..],
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

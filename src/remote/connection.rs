@@ -1,0 +1,221 @@
+//! The line to a client. In: a stream, bytes to send. Out: bytes that came, without delay. It knows no protocol. While it
+//! waits, the rig is heard; while the rig moves, the line is looked after, so that nothing moves for a client that is gone.
+//!
+//! Clients of the field leave Nagle's delay on: with a delayed acknowledgement of ours every message of theirs would wait
+//! 40 ms. So what comes is acknowledged at once, after every read, for the system forgets the wish.
+
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::net::sockopt::set_tcp_quickack;
+use rustix::net::{RecvFlags, recv};
+
+use super::{Ended, LOOK};
+use crate::remote::control::Specimen;
+use crate::rig::{RigFault, Wish};
+
+/// A client that takes nothing for so long is gone.
+const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// A client that has begun a message and does not end it for so long is sent away, and so is one that comes and says nothing: nobody
+/// else is let in meanwhile.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Bytes that a client may have sent ahead, and that are looked through for its leave.
+const SENT_AHEAD: usize = 1 << 16;
+
+/// Why there is nothing more to read or write.
+#[derive(Debug)]
+pub enum Broken {
+    HungUp,
+    /// A person wants the end.
+    Stopped,
+    /// It owes the rest of what it has begun.
+    Silent,
+    Lost(io::Error),
+    /// The rig failed while the client was waited for.
+    Rig(RigFault),
+}
+
+/// A client's stream, and who may want the end.
+pub struct Connection<'a> {
+    stream: TcpStream,
+    wish: &'a Wish,
+    pub(super) patience: Duration,
+}
+
+impl<'a> Connection<'a> {
+    /// No wait on the line is longer than `wait`.
+    ///
+    /// # Errors
+    /// The stream cannot be set up: it is gone already.
+    pub fn new(stream: TcpStream, wait: Duration, wish: &'a Wish) -> io::Result<Self> {
+        stream.set_nonblocking(false)?;
+        stream.set_nodelay(true)?;
+        stream.set_read_timeout(Some(wait.min(LOOK)))?;
+        stream.set_write_timeout(Some(wait.min(LOOK)))?;
+        set_tcp_quickack(&stream, true)?;
+        Ok(Self {
+            stream,
+            wish,
+            patience: PATIENCE,
+        })
+    }
+
+    /// Has the rig carry out what the client proposed. Where the client goes away meanwhile, the rig holds where it is; not where it has
+    /// taken its leave in what it sent ahead.
+    ///
+    /// # Errors
+    /// The rig fails, or was held on its way.
+    pub fn execute(
+        &self,
+        specimen: &mut Specimen<'_, '_>,
+        takes_leave: impl Fn(&[u8]) -> bool + Send + 'static,
+    ) -> Result<(), Ended> {
+        let line = self
+            .stream
+            .try_clone()
+            .map_err(|error| Ended::Lost(error.to_string()))?;
+        let executed = self
+            .wish
+            .for_client(move || is_gone(&line, &takes_leave), || specimen.execute());
+        executed.map_err(|fault| match fault {
+            RigFault::Interrupted if !self.wish.wants_end() => Ended::HungUp,
+            fault => fault.into(),
+        })
+    }
+
+    /// Waits for bytes and gives how many came, at least one. Between two messages a client may think as long as it likes; `owed_since`
+    /// is when it began one.
+    ///
+    /// # Errors
+    /// None will come.
+    pub fn read(
+        &mut self,
+        buffer: &mut [u8],
+        specimen: &mut Specimen<'_, '_>,
+        owed_since: Option<Instant>,
+    ) -> Result<usize, Broken> {
+        loop {
+            if owed_since.is_some_and(|since| since.elapsed() > self.patience) {
+                return Err(Broken::Silent);
+            }
+            if self.wish.wants_end() {
+                return Err(Broken::Stopped);
+            }
+            specimen.listen().map_err(Broken::Rig)?;
+            match self.stream.read(buffer) {
+                Ok(0) => return Err(Broken::HungUp),
+                Ok(count) => {
+                    set_tcp_quickack(&self.stream, true)
+                        .map_err(|error| Broken::Lost(error.into()))?;
+                    return Ok(count);
+                }
+                Err(error) if waits(&error) => {}
+                Err(error) => return Err(gone(error)),
+            }
+        }
+    }
+
+    /// Waits until the buffer is full: it holds what the client must say next.
+    ///
+    /// # Errors
+    /// It will not be.
+    pub fn read_all(
+        &mut self,
+        buffer: &mut [u8],
+        specimen: &mut Specimen<'_, '_>,
+    ) -> Result<(), Broken> {
+        let (mut filled, since) = (0, Instant::now());
+        while filled < buffer.len() {
+            filled += self.read(&mut buffer[filled..], specimen, Some(since))?;
+        }
+        Ok(())
+    }
+
+    /// [`Self::read_all`] from a client that is not silent for long; the rig may have failed, and is heard where it can be.
+    ///
+    /// # Errors
+    /// It was silent, or is gone.
+    pub fn read_soon(
+        &mut self,
+        buffer: &mut [u8],
+        specimen: &mut Specimen<'_, '_>,
+        silence: Duration,
+    ) -> Result<(), Broken> {
+        let mut filled = 0;
+        let mut deadline = Instant::now() + silence;
+        while filled < buffer.len() {
+            let _ = specimen.listen();
+            match self.stream.read(&mut buffer[filled..]) {
+                Ok(0) => return Err(Broken::HungUp),
+                Ok(count) => {
+                    filled += count;
+                    deadline = Instant::now() + silence;
+                    set_tcp_quickack(&self.stream, true)
+                        .map_err(|error| Broken::Lost(error.into()))?;
+                }
+                Err(error) if waits(&error) && Instant::now() < deadline => {}
+                Err(error) => return Err(gone(error)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends all the bytes.
+    ///
+    /// # Errors
+    /// They are not taken.
+    pub fn write(
+        &mut self,
+        mut bytes: &[u8],
+        specimen: &mut Specimen<'_, '_>,
+    ) -> Result<(), Broken> {
+        let deadline = Instant::now() + WRITE_TIMEOUT;
+        while !bytes.is_empty() {
+            match self.stream.write(bytes) {
+                Ok(0) => return Err(Broken::HungUp),
+                Ok(count) => bytes = &bytes[count..],
+                Err(error) if waits(&error) && Instant::now() < deadline => {
+                    specimen.listen().map_err(Broken::Rig)?;
+                }
+                Err(error) => return Err(gone(error)),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether the other side will send nothing more, and did not say that it would.
+fn is_gone(line: &TcpStream, takes_leave: &dyn Fn(&[u8]) -> bool) -> bool {
+    let mut watched = [PollFd::new(line, PollFlags::RDHUP)];
+    let at_once = Timespec {
+        tv_sec: 0,
+        tv_nsec: 0,
+    };
+    let ended = PollFlags::RDHUP | PollFlags::HUP | PollFlags::ERR;
+    if !poll(&mut watched, Some(&at_once)).is_ok_and(|_| watched[0].revents().intersects(ended)) {
+        return false;
+    }
+    let mut ahead = vec![0; SENT_AHEAD];
+    let (_, count) =
+        recv(line, &mut ahead[..], RecvFlags::PEEK | RecvFlags::DONTWAIT).unwrap_or_default();
+    !takes_leave(&ahead[..count])
+}
+
+/// Whether nothing happened yet.
+fn waits(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
+    )
+}
+
+fn gone(error: io::Error) -> Broken {
+    match error.kind() {
+        ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => Broken::HungUp,
+        _ => Broken::Lost(error),
+    }
+}

@@ -1,0 +1,267 @@
+//! Remote control: a coordinator or a finite-element program drives the specimen through the guard.
+//! In: a listener, a specimen, a protocol. Out: how each session ended and what it requested. It
+//! reads no plan, opens no port and keeps no record.
+
+mod connection;
+pub mod control;
+#[cfg(test)]
+mod frame_tests;
+mod generic_client;
+mod generic_header;
+mod nees;
+pub mod nees_message;
+pub(crate) mod request;
+#[cfg(test)]
+mod tests;
+
+use std::io::{self, ErrorKind};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+pub use crate::remote::control::Driven;
+use crate::remote::control::Specimen;
+use crate::rig::{RigFault, Wish};
+use crate::run::Parting;
+use connection::{Broken, Connection};
+pub use nees::usual_names;
+
+/// How often a wait looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// What the client speaks.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Protocol {
+    /// With the names of its control points, one an axis; none: of one axis, and any name is it.
+    Nees { control_points: Vec<String> },
+    /// With the constant stiffness it is told, N/m: of n axes n·n numbers, row by row.
+    GenericClient { stiffness: Vec<f64> },
+}
+
+/// How a session ended. The rig holds in every case.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ended {
+    /// The client said so.
+    Closed,
+    /// The client went away without a word.
+    HungUp,
+    /// A person wanted the end.
+    Stopped,
+    /// The client does not speak the protocol, or wants what cannot be served.
+    Misspoken(String),
+    Lost(String),
+    Limit(RigFault),
+    Rig(RigFault),
+}
+
+impl Ended {
+    /// For the record.
+    const fn parting(&self) -> Parting {
+        match self {
+            Self::Closed => Parting::Closed,
+            Self::Stopped | Self::Limit(_) => Parting::Stopped,
+            Self::HungUp | Self::Misspoken(_) | Self::Lost(_) | Self::Rig(_) => Parting::Failed,
+        }
+    }
+
+    /// Whether another client may come: not once the rig was stopped by a limit or by its own fault.
+    const fn allows_another(&self) -> bool {
+        matches!(
+            self,
+            Self::Closed | Self::HungUp | Self::Misspoken(_) | Self::Lost(_)
+        )
+    }
+}
+
+impl std::fmt::Display for Ended {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Closed => f.write_str("closed by the client"),
+            Self::HungUp => f.write_str("the client went away without closing"),
+            Self::Stopped => f.write_str("stopped by a person"),
+            Self::Misspoken(reason) => write!(f, "the client cannot be served: {reason}"),
+            Self::Lost(reason) => write!(f, "the connection was lost: {reason}"),
+            Self::Limit(fault) | Self::Rig(fault) => write!(f, "{fault}"),
+        }
+    }
+}
+
+impl From<RigFault> for Ended {
+    fn from(fault: RigFault) -> Self {
+        match fault {
+            RigFault::LimitBreached { .. } => Self::Limit(fault),
+            RigFault::Interrupted => Self::Stopped,
+            RigFault::NotSettled { .. } | RigFault::Following { .. } | RigFault::Device(_) => {
+                Self::Rig(fault)
+            }
+        }
+    }
+}
+
+impl From<Broken> for Ended {
+    fn from(broken: Broken) -> Self {
+        match broken {
+            Broken::HungUp => Self::HungUp,
+            Broken::Stopped => Self::Stopped,
+            Broken::Silent => {
+                Self::Misspoken("it is silent, and has not said what it must say next".to_owned())
+            }
+            Broken::Lost(error) => Self::Lost(error.to_string()),
+            Broken::Rig(fault) => fault.into(),
+        }
+    }
+}
+
+/// One client, from its coming to its going.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Session {
+    pub ended: Ended,
+    pub driven: Driven,
+}
+
+/// What happens while serving, for who tells it.
+#[derive(Debug)]
+pub enum Event<'a> {
+    Connected(SocketAddr),
+    Ended(&'a Session),
+}
+
+/// Serves one client after the other, or only `once`; a second one at the same time is refused. Ends when a person wants the end,
+/// and after a session that a limit or the rig ended.
+///
+/// # Errors
+/// The listener fails.
+pub fn serve(
+    listener: &TcpListener,
+    protocol: &Protocol,
+    specimen: &mut Specimen<'_, '_>,
+    once: bool,
+    wish: &Wish,
+    told: &mut dyn FnMut(Event<'_>),
+) -> io::Result<()> {
+    listener.set_nonblocking(true)?;
+    let (busy, closing) = (AtomicBool::new(false), AtomicBool::new(false));
+    std::thread::scope(|scope| {
+        let (sender, clients) = channel();
+        let door = scope.spawn(|| keep_door(listener, &busy, &closing, sender));
+        loop {
+            let (stream, address) = match next_client(&clients, wish, specimen) {
+                Ok(Some(client)) => client,
+                Ok(None) => break,
+                Err(fault) => {
+                    let ended = Ended::from(fault);
+                    specimen.leave(ended.parting(), ended.to_string());
+                    told(Event::Ended(&Session {
+                        ended,
+                        driven: Driven::default(),
+                    }));
+                    break;
+                }
+            };
+            told(Event::Connected(address));
+            let session = session(stream, address, protocol, specimen, wish);
+            told(Event::Ended(&session));
+            if once || !session.ended.allows_another() {
+                break;
+            }
+            busy.store(false, Ordering::Release);
+        }
+        specimen.close();
+        closing.store(true, Ordering::Release);
+        door.join()
+            .unwrap_or_else(|_| Err(io::Error::other("who keeps the door fell over")))
+    })
+}
+
+/// Serves one client.
+pub fn session(
+    stream: TcpStream,
+    address: SocketAddr,
+    protocol: &Protocol,
+    specimen: &mut Specimen<'_, '_>,
+    wish: &Wish,
+) -> Session {
+    let ended = match specimen.come(address.to_string()) {
+        Err(fault) => fault.into(),
+        Ok(()) => match Connection::new(stream, specimen.wait(LOOK), wish) {
+            Err(error) => Ended::Lost(error.to_string()),
+            Ok(mut connection) => match protocol {
+                Protocol::Nees { control_points } => {
+                    nees::session(&mut connection, specimen, control_points)
+                }
+                Protocol::GenericClient { stiffness } => {
+                    generic_client::session(&mut connection, specimen, stiffness)
+                }
+            },
+        },
+    };
+    specimen.leave(ended.parting(), ended.to_string());
+    Session {
+        ended,
+        driven: specimen.driven(),
+    }
+}
+
+/// Lets one client in while there is none, and turns the others away.
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "who waits for clients is to see that nobody keeps the door any more"
+)]
+fn keep_door(
+    listener: &TcpListener,
+    busy: &AtomicBool,
+    closing: &AtomicBool,
+    clients: Sender<(TcpStream, SocketAddr)>,
+) -> io::Result<()> {
+    let look = Timespec {
+        tv_sec: 0,
+        tv_nsec: 100_000_000,
+    };
+    while !closing.load(Ordering::Acquire) {
+        match poll(&mut [PollFd::new(listener, PollFlags::IN)], Some(&look)) {
+            Ok(0) | Err(rustix::io::Errno::INTR) => continue,
+            Ok(_) => {}
+            Err(error) => return Err(error.into()),
+        }
+        match listener.accept() {
+            // Who is not sent on is closed by being dropped.
+            Ok(client) if !busy.swap(true, Ordering::AcqRel) => {
+                if clients.send(client).is_err() {
+                    return Ok(());
+                }
+            }
+            Ok(_) => {}
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    ErrorKind::WouldBlock | ErrorKind::ConnectionAborted
+                ) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+/// Waits for a client, and hears the rig meanwhile.
+fn next_client(
+    clients: &Receiver<(TcpStream, SocketAddr)>,
+    wish: &Wish,
+    specimen: &mut Specimen<'_, '_>,
+) -> Result<Option<(TcpStream, SocketAddr)>, RigFault> {
+    while !wish.wants_end() {
+        match specimen.listen() {
+            // Whoever wants it held wants the end, and nothing was moving.
+            Err(RigFault::Interrupted) => break,
+            listened => listened?,
+        }
+        match clients.recv_timeout(specimen.wait(LOOK)) {
+            Ok(client) => return Ok(Some(client)),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
+        }
+    }
+    Ok(None)
+}

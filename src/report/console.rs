@@ -1,0 +1,188 @@
+//! The verdict for a person at a terminal. In: a run. Out: text for stderr, aligned; plain or coloured, as the caller says.
+
+use std::fmt::Write as _;
+
+use super::report_status::Standing;
+use super::{Run, coverage_factor, deviations, number, report_status, summary};
+use crate::plan::DecisionRule;
+use crate::record::Outcome;
+use crate::run::rehearsal;
+use crate::text::sanitize::one_line;
+use crate::verdict::{ConditionOutcome, Verdict};
+
+/// The verdict, each requirement with value, limit and margin, and what a reader must know before trusting them.
+#[must_use]
+pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
+    if let Outcome::NotReleased { reason } = &run.record.outcome {
+        return format!(
+            "NOT RELEASED  {}: {}\n",
+            one_line(&run.plan.title),
+            one_line(reason)
+        );
+    }
+    let mut text = String::new();
+    let paint = |verdict: Verdict, words: &str| paint(verdict, words, coloured);
+    let _ = writeln!(
+        text,
+        "{}  {}{}",
+        paint(
+            run.assessment.verdict,
+            &run.assessment.verdict.name().to_uppercase()
+        ),
+        one_line(&run.plan.title),
+        standing_text(
+            &report_status::of(run),
+            rehearsal::told(run.plan).is_some(),
+            &one_line(&run.plan.rig.name)
+        )
+    );
+    if run.assessment.requirements.is_empty() {
+        text.push_str("  no requirement\n");
+    }
+    let rows: Vec<[String; 5]> = run
+        .assessment
+        .requirements
+        .iter()
+        .map(|requirement| {
+            let name = one_line(&requirement.label);
+            let Some(deciding) = summary::governing(requirement) else {
+                return [
+                    requirement.verdict.name().to_owned(),
+                    name,
+                    String::new(),
+                    String::new(),
+                    String::new(),
+                ];
+            };
+            let value = number::value(deciding).unwrap_or_else(|| "no value".to_owned());
+            let margin = number::margin(deciding).map_or_else(
+                || deciding.reason.clone().unwrap_or_default(),
+                |margin| format!("margin {margin}{}", band(deciding, run.assessment.rule)),
+            );
+            [
+                requirement.verdict.name().to_owned(),
+                name,
+                value,
+                number::bound(deciding),
+                one_line(&margin),
+            ]
+        })
+        .collect();
+    let width = |column: usize| {
+        rows.iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths = [width(0), width(1), width(2), width(3)];
+    for (row, requirement) in rows.iter().zip(&run.assessment.requirements) {
+        let verdict = paint(requirement.verdict, &padded(&row[0], widths[0]));
+        let cells: Vec<String> = (1..4)
+            .map(|column| padded(&row[column], widths[column]))
+            .collect();
+        let line = format!("  {verdict}  {}  {}", cells.join("  "), row[4]);
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    text.push_str(&rule(run));
+    for deviation in deviations::of(run) {
+        let _ = writeln!(text, "  note: {}", one_line(&deviation));
+    }
+    let report = run.provenance.report_id();
+    let report = if report == run.provenance.run_id {
+        String::new()
+    } else {
+        format!(", report {report}")
+    };
+    let _ = writeln!(text, "  run {}{report}", run.provenance.run_id);
+    text
+}
+
+/// What must be left between value and limit, where the rule wants that.
+fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
+    match (rule, number::guard_band(condition)) {
+        (DecisionRule::Simple, _) => match condition
+            .conforms
+            .filter(|_| condition.wider_than_tolerance)
+        {
+            Some(share) => format!(
+                ", U exceeds the tolerance: probability of conformity {}",
+                number::probability(share)
+            ),
+            None => String::new(),
+        },
+        (DecisionRule::Guarded, Some(band)) => format!(", guard band {band}"),
+        (DecisionRule::Guarded, None) => condition
+            .reason
+            .as_ref()
+            .map_or_else(String::new, |reason| format!(", {reason}")),
+    }
+}
+
+/// The rule of decision, where a U is printed that it regards or not.
+fn rule(run: &Run<'_>) -> String {
+    let told = match coverage_factor::largest(run.assessment) {
+        Some(factor) => {
+            format!("± is U = k·u (about 95 %; k up to {factor}, of few degrees of freedom)")
+        }
+        None => "± is U = 2u".to_owned(),
+    };
+    let uncertain = run
+        .assessment
+        .requirements
+        .iter()
+        .flat_map(|requirement| &requirement.conditions);
+    match run.assessment.rule {
+        DecisionRule::Guarded => format!(
+            "  decision rule: guarded; {told}, and a limit nearer than that decides nothing\n"
+        ),
+        DecisionRule::Simple
+            if uncertain
+                .into_iter()
+                .any(|condition| condition.conforms.is_some()) =>
+        {
+            format!("  decision rule: simple; {told}, the value alone decides\n")
+        }
+        DecisionRule::Simple => String::new(),
+    }
+}
+
+/// What the report may be taken for, where it is no certificate.
+fn standing_text(standing: &Standing, rehearsed: bool, rig: &str) -> String {
+    match standing {
+        Standing::Certifiable => String::new(),
+        Standing::Rehearsal if rehearsed => "  (REHEARSAL: not the test of the plan)".to_owned(),
+        Standing::Rehearsal => format!("  (rig `{rig}`, simulated: a rehearsal)"),
+        Standing::Incomplete => "  (INCOMPLETE)".to_owned(),
+        Standing::NotCertifiable { missing } => format!(
+            "  (NOT CERTIFIABLE: lacks {})",
+            one_line(&missing.join(", "))
+        ),
+        Standing::ParticularsMissing { missing } => {
+            format!(
+                "  (PARTICULARS MISSING: {}; see `psd issue`)",
+                one_line(&missing.join(", "))
+            )
+        }
+    }
+}
+
+fn padded(text: &str, width: usize) -> String {
+    format!(
+        "{text}{}",
+        " ".repeat(width.saturating_sub(text.chars().count()))
+    )
+}
+
+fn paint(verdict: Verdict, words: &str, coloured: bool) -> String {
+    let code = match verdict {
+        Verdict::Completed => return words.to_owned(),
+        Verdict::Pass => "32",
+        Verdict::Inconclusive => "33",
+        Verdict::Fail | Verdict::Aborted | Verdict::Error => "31",
+    };
+    if coloured {
+        format!("\u{1b}[1;{code}m{words}\u{1b}[0m")
+    } else {
+        words.to_owned()
+    }
+}

@@ -1,0 +1,117 @@
+//! A report on paper. In: a [`Document`]. Out: the bytes of a PDF, the same for the same document: date and identity are the
+//! document's own, the fonts the program's. Every text goes to the template as data, so that none of it is ever markup.
+
+use std::borrow::Cow;
+
+use serde_json::Value;
+use typst::diag::SourceDiagnostic;
+use typst::foundations::{Datetime, Smart};
+use typst_layout::PagedDocument;
+use typst_pdf::{PdfOptions, PdfStandard, PdfStandards};
+
+use super::Document;
+use super::world::Sealed;
+use crate::text::glyphs;
+
+const TEMPLATE: &str = include_str!("certificate.typ");
+
+/// The report as a PDF: PDF/A-3b where the day of the test is known, which that form of it demands; else PDF 1.7.
+pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
+    let day = document.date.as_deref().and_then(day);
+    let mut data = serde_json::to_value(document).map_err(|error| error.to_string())?;
+    data["day"] = day.map_or(Value::Null, |(year, month, day)| {
+        serde_json::json!([year, month, day])
+    });
+    data["attachments"] = document
+        .attachments
+        .iter()
+        .map(|file| serde_json::json!([file.name, file.text]))
+        .collect();
+    for key in [
+        "title", "kind", "id", "date", "front", "verdict", "marks", "body", "end",
+    ] {
+        set_in_our_fonts(&mut data[key]);
+    }
+    let mut files = vec![("report.json".to_owned(), data.to_string().into_bytes())];
+    files.extend(document.figures().map(|figure| {
+        (
+            format!("figure-{}.svg", figure.number),
+            figure.svg.clone().into_bytes(),
+        )
+    }));
+    let world = Sealed::new(TEMPLATE, files)?;
+    let paged = typst::compile::<PagedDocument>(&world)
+        .output
+        .map_err(|errors| told(&errors))?;
+    let standard = if day.is_some() {
+        PdfStandard::A_3b
+    } else {
+        PdfStandard::V_1_7
+    };
+    let options = PdfOptions {
+        ident: Smart::Custom(document.id.clone()),
+        creator: Smart::Custom(Some("psd".to_owned())),
+        standards: PdfStandards::new(&[standard]).map_err(|error| error.message().to_string())?,
+        // A tagged file makes common readers complain of its structure, and a report is no form to fill in.
+        tagged: false,
+        ..PdfOptions::default()
+    };
+    typst_pdf::pdf(&paged, &options).map_err(|errors| told(&errors))
+}
+
+fn told(errors: &[SourceDiagnostic]) -> String {
+    errors
+        .iter()
+        .map(|error| error.message.to_string())
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
+/// Year, month and day where a text begins with a day of the calendar.
+fn day(text: &str) -> Option<(i32, u8, u8)> {
+    let mut parts = text.get(..10)?.split('-');
+    let (year, month, day) = (
+        parts.next()?.parse().ok()?,
+        parts.next()?.parse().ok()?,
+        parts.next()?.parse().ok()?,
+    );
+    Datetime::from_ymd(year, month, day).map(|_| (year, month, day))
+}
+
+/// Every text below, so that the fonts have each of its characters and each of its lines can end somewhere.
+fn set_in_our_fonts(value: &mut Value) {
+    match value {
+        Value::String(text) => {
+            if let Cow::Owned(new) = settable(text) {
+                *text = new;
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(set_in_our_fonts),
+        Value::Object(fields) => fields.values_mut().for_each(set_in_our_fonts),
+        _ => {}
+    }
+}
+
+/// A character that no font of ours has stands as its code point: an empty box would say nothing. A word longer than most
+/// lines may be broken after every few letters.
+fn settable(text: &str) -> Cow<'_, str> {
+    const LONGEST_WORD: usize = 40;
+    const ZERO_WIDTH_SPACE: char = '\u{200b}';
+    let long = text
+        .split(char::is_whitespace)
+        .any(|word| word.chars().count() > LONGEST_WORD);
+    if !long {
+        return glyphs::shown(text);
+    }
+    let mut settable = String::with_capacity(2 * text.len());
+    for part in text.split_inclusive(char::is_whitespace) {
+        let breaks = part.chars().count() > LONGEST_WORD;
+        for (index, c) in part.chars().enumerate() {
+            if breaks && index > 0 && index % 8 == 0 {
+                settable.push(ZERO_WIDTH_SPACE);
+            }
+            glyphs::push(&mut settable, c);
+        }
+    }
+    Cow::Owned(settable)
+}

@@ -1,0 +1,91 @@
+//! What a chart is drawn on: shapes and words in reference pixels, 96 to the inch, y downward. Two surfaces are canvases: a
+//! raster of fine pixels and a drawing in vectors, both with the same font, so that words take the same room on each.
+
+use std::sync::Once;
+
+use plotters::prelude::{IntoFont as _, RGBColor};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color as _, FontStyle, FontTransform, TextStyle, register_font};
+
+use super::super::document::fonts::{SANS, SANS_BOLD};
+use super::chart::{Colour, Line};
+
+/// A point in reference pixels, y downward.
+pub(super) type Point = (f64, f64);
+
+/// A surface to draw on.
+pub(super) trait Canvas {
+    fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String>;
+
+    fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String>;
+
+    /// A line of several pieces with round joins.
+    fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String>;
+
+    fn text(&self, text: &str, at: Point, style: &Lettering) -> Result<(), String>;
+}
+
+/// Where a text stands about its point.
+#[derive(Clone, Copy)]
+pub(super) struct Anchor {
+    pub horizontal: HPos,
+    pub vertical: VPos,
+}
+
+/// How a text is set.
+#[derive(Clone, Copy)]
+pub(super) struct Lettering {
+    /// Height of a line from the lowest to the highest letter, reference pixels.
+    pub size: f64,
+    pub bold: bool,
+    pub colour: Colour,
+    pub anchor: Anchor,
+    /// Read from below.
+    pub upright: bool,
+}
+
+/// Words are measured at this many times their size: the font's reader rounds to whole pixels.
+const MEASURED_AT: f64 = 8.0;
+
+impl Lettering {
+    /// Width of a text as it is drawn, in reference pixels.
+    pub fn width(&self, text: &str) -> Result<f64, String> {
+        let (width, _) = self
+            .scaled(MEASURED_AT)
+            .font
+            .box_size(&crate::text::glyphs::shown(text))
+            .map_err(|error| error.to_string())?;
+        Ok(f64::from(width) / MEASURED_AT)
+    }
+
+    /// As the font's reader wants it, `scale` times as large.
+    pub fn scaled(&self, scale: f64) -> TextStyle<'static> {
+        const FAMILY: &str = "psd";
+        static FONTS: Once = Once::new();
+        FONTS.call_once(|| {
+            // The two fonts are part of the program: that they read is a property of the build, not of a run.
+            for (style, font) in [(FontStyle::Normal, SANS), (FontStyle::Bold, SANS_BOLD)] {
+                assert!(
+                    register_font(FAMILY, style, font).is_ok(),
+                    "the embedded font reads"
+                );
+            }
+        });
+        let weight = if self.bold {
+            FontStyle::Bold
+        } else {
+            FontStyle::Normal
+        };
+        let mut font = (FAMILY, self.size * scale, weight).into_font();
+        if self.upright {
+            font = font.transform(FontTransform::Rotate270);
+        }
+        let (red, green, blue) = self.colour;
+        let color = RGBColor(red, green, blue).to_backend_color();
+        TextStyle {
+            font,
+            color,
+            pos: Pos::new(self.anchor.horizontal, self.anchor.vertical),
+        }
+    }
+}

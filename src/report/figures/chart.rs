@@ -1,0 +1,162 @@
+//! What a chart shows, before anything is drawn: series, bands and reference lines in SI, and the style of each. A
+//! style is told apart by colour and by dash or marker, so that a grey print can be read.
+
+use std::borrow::Cow;
+
+use super::points::Points;
+use crate::units::Dimension;
+
+/// A picture of two quantities.
+pub(crate) struct Chart {
+    pub x: Quantity,
+    pub y: Quantity,
+    pub bands: Vec<Band>,
+    pub series: Vec<Series>,
+    pub references: Vec<Reference>,
+}
+
+/// What an axis measures.
+pub(crate) struct Quantity {
+    pub name: Cow<'static, str>,
+    pub dimension: Dimension,
+    pub end: End,
+    /// Whether zero must be on the axis.
+    pub from_zero: bool,
+}
+
+/// Where an axis ends.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    /// With the data: a time.
+    Data,
+    /// A little past the data, so that no marker stands on the frame.
+    Air,
+    /// At a whole tick past the data.
+    Tick,
+    /// As `Air`, of what is counted: every tick is a whole number.
+    Whole,
+}
+
+impl Quantity {
+    pub const fn time() -> Self {
+        Self {
+            name: Cow::Borrowed("Virtual time"),
+            dimension: Dimension::TIME,
+            end: End::Data,
+            from_zero: false,
+        }
+    }
+
+    pub const fn of(name: &'static str, dimension: Dimension) -> Self {
+        Self {
+            name: Cow::Borrowed(name),
+            dimension,
+            end: End::Tick,
+            from_zero: true,
+        }
+    }
+
+    /// The same, along x.
+    pub const fn along(name: &'static str, dimension: Dimension) -> Self {
+        Self {
+            name: Cow::Borrowed(name),
+            dimension,
+            end: End::Air,
+            from_zero: true,
+        }
+    }
+}
+
+/// The curve of one procedure on a chart of several, with the axes of that chart.
+pub(crate) struct SharedCurve {
+    pub x: Quantity,
+    pub y: Quantity,
+    /// What the chart shows, for its caption.
+    pub words: &'static str,
+    pub points: Points,
+}
+
+/// A named set of points, SI.
+pub(crate) struct Series {
+    pub label: String,
+    pub points: Points,
+    pub style: Style,
+}
+
+/// Upright shaded intervals of x with one name.
+pub(crate) struct Band {
+    pub label: &'static str,
+    pub intervals: Vec<(f64, f64)>,
+    pub colour: Colour,
+}
+
+/// A level line across the plot with its text on it.
+pub(crate) struct Reference {
+    pub label: String,
+    pub y: f64,
+}
+
+pub(crate) type Colour = (u8, u8, u8);
+
+/// Okabe and Ito's colours, told apart by every common kind of colour vision.
+pub(crate) mod palette {
+    use crate::report::figures::chart::Colour;
+
+    pub const BLACK: Colour = (0, 0, 0);
+    pub const BLUE: Colour = (0, 114, 178);
+    pub const VERMILION: Colour = (213, 94, 0);
+    pub const GREEN: Colour = (0, 158, 115);
+    pub const PURPLE: Colour = (204, 121, 167);
+    pub const SKY: Colour = (86, 180, 233);
+    pub const CONTACT: Colour = (226, 232, 238);
+    pub const LIMIT: Colour = (250, 226, 196);
+    pub const CLOUD: Colour = (176, 190, 200);
+}
+
+/// How a series is drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct Style {
+    pub colour: Colour,
+    /// None: markers only.
+    pub line: Option<Line>,
+    pub marker: Option<Marker>,
+}
+
+#[derive(Clone, Copy)]
+pub(crate) struct Line {
+    /// Reference pixels (96 to the inch).
+    pub width: f64,
+    /// Lengths drawn and left out, in turn, reference pixels; empty: solid.
+    pub dash: &'static [f64],
+}
+
+#[derive(Clone, Copy)]
+pub(crate) enum Marker {
+    Disc(f64),
+    Ring(f64),
+}
+
+impl Style {
+    pub const fn line(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
+        Self {
+            colour,
+            line: Some(Line { width, dash }),
+            marker: None,
+        }
+    }
+
+    pub const fn marker(colour: Colour, marker: Marker) -> Self {
+        Self {
+            colour,
+            line: None,
+            marker: Some(marker),
+        }
+    }
+}
+
+pub(crate) const SOLID: &[f64] = &[];
+pub(crate) const DASHED: &[f64] = &[9.0, 4.0];
+pub(super) const SPARSE: &[f64] = &[6.0, 9.0];
+pub(crate) const DOTTED: &[f64] = &[2.0, 3.0];
+pub(crate) const DASH_DOT: &[f64] = &[10.0, 3.5, 2.0, 3.5];
+pub(crate) const LONG: &[f64] = &[16.0, 4.0];

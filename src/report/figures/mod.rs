@@ -1,0 +1,123 @@
+//! Figures, as PNG at 192 dpi and as vectors. In: a run. Out: bytes and a caption, one figure at a
+//! time, because the canvas of one takes 60 MB while it is drawn. It knows no HTML.
+
+mod axis;
+mod canvas;
+pub(crate) mod chart;
+mod data;
+mod draw;
+mod plain;
+pub(crate) mod points;
+mod raster;
+mod together;
+mod vector;
+
+use super::{OutputError, Run};
+use crate::plan::formula::ProcedureId;
+use crate::plan::{Figure, FigureKind};
+use crate::procedures;
+use crate::record::ProcedureRecord;
+use chart::Chart;
+
+pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
+pub use plain::{Curve, Curves, PlainAxis};
+
+/// A figure, drawn in vectors.
+pub(super) struct Drawn {
+    pub svg: String,
+    /// What it shows, in one sentence.
+    pub caption: String,
+}
+
+/// A figure that is not drawn yet.
+pub(super) struct Undrawn {
+    /// `figures/NAME_FIGURE`, without its ending.
+    pub path: String,
+    chart: Chart,
+    caption: String,
+    kind: FigureKind,
+    procedure: String,
+}
+
+impl Undrawn {
+    /// None where the record cannot draw it: a procedure that was stopped before it recorded anything has no figure.
+    pub fn of(run: &Run<'_>, figure: &Figure) -> Option<Self> {
+        let procedure = run.record.procedures.get(figure.procedure.0)?;
+        let (chart, caption) = chart_of(run, procedure, figure)?;
+        let path = format!("figures/{}", name_of(run, figure));
+        Some(Self {
+            path,
+            chart,
+            caption,
+            kind: figure.kind,
+            procedure: procedure.name.clone(),
+        })
+    }
+
+    pub fn png(&self) -> Result<Vec<u8>, OutputError> {
+        draw::png(&self.chart).map_err(|reason| self.failed(reason))
+    }
+
+    pub fn in_vectors(self) -> Result<Drawn, OutputError> {
+        let svg = draw::svg(&self.chart).map_err(|reason| self.failed(reason))?;
+        Ok(Drawn {
+            svg,
+            caption: self.caption,
+        })
+    }
+
+    fn failed(&self, reason: String) -> OutputError {
+        OutputError::Figure {
+            figure: self.kind.name(),
+            procedure: self.procedure.clone(),
+            reason,
+        }
+    }
+}
+
+/// What the figures of a report plot, in the report's order.
+#[must_use]
+pub fn data(run: &Run<'_>) -> Figures {
+    let one = |figure: &Figure| {
+        let procedure = run.record.procedures.get(figure.procedure.0)?;
+        let (chart, _) = chart_of(run, procedure, figure)?;
+        Some(data::of(name_of(run, figure), &procedure.name, &chart))
+    };
+    Figures {
+        figures: run.plan.report.figures.iter().filter_map(one).collect(),
+        ..Figures::default()
+    }
+}
+
+/// `hit_displacement`, or `paused-moving_displacement`: no name of a procedure has a hyphen.
+fn name_of(run: &Run<'_>, figure: &Figure) -> String {
+    let name = |procedure: ProcedureId| {
+        run.record
+            .procedures
+            .get(procedure.0)
+            .map(|procedure| procedure.name.as_str())
+    };
+    let names: Vec<&str> = figure.procedures().filter_map(name).collect();
+    format!("{}_{}", names.join("-"), figure.kind.name())
+}
+
+/// The chart and its caption; None where the procedure does not draw this figure or has no steps.
+fn chart_of(
+    run: &Run<'_>,
+    procedure: &ProcedureRecord,
+    figure: &Figure,
+) -> Option<(Chart, String)> {
+    if figure.beside.is_empty() {
+        return procedures::chart(run, procedure, figure);
+    }
+    let drawn = figure
+        .procedures()
+        .filter_map(|procedure| run.record.procedures.get(procedure.0));
+    let curves: Vec<_> = drawn
+        .map(|procedure| {
+            let curve = procedures::shared_curve(figure.kind, &procedure.history);
+            (procedure.name.as_str(), curve)
+        })
+        .collect();
+    together::chart(figure.kind, curves)
+}

@@ -1,0 +1,94 @@
+//! Curves of several runs on one sheet: each told apart by colour and dash. In: points in SI. Out: PNG bytes.
+
+use std::borrow::Cow;
+
+use super::chart::{
+    Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Marker, Quantity, SOLID, Series, Style,
+    palette,
+};
+use super::draw;
+use crate::units::Dimension;
+
+/// What an axis measures.
+#[derive(Clone, Debug)]
+pub struct PlainAxis {
+    pub name: String,
+    pub dimension: Dimension,
+}
+
+/// One curve, SI.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    pub label: String,
+    pub points: Vec<(f64, f64)>,
+    /// Drawn as dots that no line joins.
+    pub dots: bool,
+    /// Of the runs, from 0: gives colour and dash. None: one of many, drawn pale.
+    pub place: Option<usize>,
+}
+
+/// A sheet of curves.
+#[derive(Clone, Debug)]
+pub struct Curves {
+    pub x: PlainAxis,
+    pub y: PlainAxis,
+    pub curves: Vec<Curve>,
+}
+
+const STYLES: [(Colour, f64, &[f64]); 8] = [
+    (palette::BLUE, 2.4, SOLID),
+    (palette::VERMILION, 1.8, DASHED),
+    (palette::GREEN, 1.8, DASH_DOT),
+    (palette::PURPLE, 2.0, DOTTED),
+    (palette::SKY, 1.8, LONG),
+    (palette::BLACK, 1.4, DASHED),
+    (palette::VERMILION, 1.4, SOLID),
+    (palette::GREEN, 1.6, DOTTED),
+];
+
+impl Curves {
+    /// Runs that can be told apart on one sheet.
+    pub const TOLD_APART: usize = 6;
+
+    /// Draws them, the last on top.
+    ///
+    /// # Errors
+    /// The picture cannot be encoded.
+    pub fn png(&self) -> Result<Vec<u8>, String> {
+        let axis = |axis: &PlainAxis, end: End| Quantity {
+            name: Cow::Owned(axis.name.clone()),
+            dimension: axis.dimension,
+            end,
+            from_zero: false,
+        };
+        let x_end = if self.x.dimension == Dimension::TIME {
+            End::Data
+        } else {
+            End::Air
+        };
+        let series = |curve: &Curve| {
+            let (colour, width, dash) = curve.place.map_or((palette::CLOUD, 1.0, SOLID), |place| {
+                STYLES[place % STYLES.len()]
+            });
+            let style = match curve.place {
+                Some(place) if curve.dots && place % 2 == 1 => {
+                    Style::marker(colour, Marker::Ring(3.0))
+                }
+                _ if curve.dots => Style::marker(colour, Marker::Disc(2.0)),
+                _ => Style::line(colour, width, dash),
+            };
+            Series {
+                label: curve.label.clone(),
+                points: curve.points.clone().into(),
+                style,
+            }
+        };
+        draw::png(&Chart {
+            x: axis(&self.x, x_end),
+            y: axis(&self.y, End::Tick),
+            bands: Vec::new(),
+            series: self.curves.iter().map(series).collect(),
+            references: Vec::new(),
+        })
+    }
+}

@@ -1,0 +1,282 @@
+//! A drawing surface with fine edges: everything is drawn eight times as large as a reference pixel and box-averaged
+//! to two, which is 192 dpi. In: shapes in reference pixels. Out: PNG bytes. Knows no axes.
+
+use plotters::prelude::{
+    BitMapBackend, Circle, DrawingArea, IntoDrawingArea as _, Polygon, RGBColor, Rectangle, Text,
+};
+use plotters::style::Color as _;
+use plotters::style::text_anchor::VPos;
+
+use super::canvas::{Canvas, Lettering, Point};
+use super::chart::{Colour, Line};
+
+/// Subpixels to a reference pixel.
+const FINE: u32 = 8;
+/// Subpixels averaged into one of the picture, in each direction.
+const BOX: u32 = 4;
+const SIDE: usize = BOX as usize;
+/// Bytes of such a piece of a row, and of a stretch of rows that is looked at as a whole.
+const PIECE: usize = 3 * SIDE;
+const STRETCH: usize = 16 * PIECE;
+/// 192 dpi in pixels to the metre.
+const PIXELS_PER_METRE: u32 = 7559;
+
+struct Raster<'a> {
+    area: DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>,
+}
+
+/// Draws on a white sheet of `width × height` reference pixels and encodes it.
+pub(super) fn png(
+    width: u32,
+    height: u32,
+    paint: impl FnOnce(&dyn Canvas) -> Result<(), String>,
+) -> Result<Vec<u8>, String> {
+    let (fine_width, fine_height) = (width * FINE, height * FINE);
+    let mut fine = vec![255_u8; fine_width as usize * fine_height as usize * 3];
+    {
+        let area =
+            BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height)).into_drawing_area();
+        let canvas = Raster { area };
+        paint(&canvas)?;
+        canvas.area.present().map_err(|error| error.to_string())?;
+    }
+    encode(
+        &average(&fine, fine_width as usize),
+        fine_width / BOX,
+        fine_height / BOX,
+    )
+    .map_err(|error| error.to_string())
+}
+
+/// Each BOX × BOX square of subpixels becomes their mean. Most of a figure is white paper, which is told by comparing whole
+/// stretches of rows.
+fn average(fine: &[u8], fine_width: usize) -> Vec<u8> {
+    let row = 3 * fine_width;
+    let white = vec![255_u8; row];
+    let mut picture = vec![255; fine.len() / (SIDE * SIDE)];
+    for (band, line) in fine
+        .chunks_exact(row * SIDE)
+        .zip(picture.chunks_exact_mut(row / SIDE))
+    {
+        let rows = [0, 1, 2, 3].map(|y| &band[y * row..(y + 1) * row]);
+        for start in (0..row).step_by(STRETCH) {
+            let end = row.min(start + STRETCH);
+            if rows.iter().all(|row| row[start..end] == white[start..end]) {
+                continue;
+            }
+            for x in (start..end).step_by(PIECE) {
+                if rows.iter().any(|row| row[x..x + PIECE] != white[..PIECE]) {
+                    line[x / SIDE..x / SIDE + 3].copy_from_slice(&mean(&rows, x));
+                }
+            }
+        }
+    }
+    picture
+}
+
+/// Mean colour of the square that begins at byte `x` of its rows.
+fn mean(rows: &[&[u8]; SIDE], x: usize) -> [u8; 3] {
+    let mut sums = [0_u32; 3];
+    for row in rows {
+        let piece = &row[x..x + PIECE];
+        let mut at = 0;
+        while at < PIECE {
+            sums[0] += u32::from(piece[at]);
+            sums[1] += u32::from(piece[at + 1]);
+            sums[2] += u32::from(piece[at + 2]);
+            at += 3;
+        }
+    }
+    sums.map(|sum| u8::try_from((sum + BOX * BOX / 2) / (BOX * BOX)).unwrap_or(u8::MAX))
+}
+
+fn encode(picture: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_pixel_dims(Some(png::PixelDimensions {
+        xppu: PIXELS_PER_METRE,
+        yppu: PIXELS_PER_METRE,
+        unit: png::Unit::Meter,
+    }));
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(picture)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "clamped to a few times any sheet"
+)]
+fn fine(point: Point) -> (i32, i32) {
+    let scale = |value: f64| (value * f64::from(FINE)).round().clamp(-1e5, 1e5) as i32;
+    (scale(point.0), scale(point.1))
+}
+
+const fn rgb(colour: Colour) -> RGBColor {
+    RGBColor(colour.0, colour.1, colour.2)
+}
+
+impl Canvas for Raster<'_> {
+    fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String> {
+        let shape = Rectangle::new([fine(from), fine(to)], rgb(colour).filled());
+        self.area.draw(&shape).map_err(|error| error.to_string())
+    }
+
+    fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String> {
+        let (radius, _) = fine((radius, 0.0));
+        self.area
+            .draw(&Circle::new(fine(centre), radius, rgb(colour).filled()))
+            .map_err(|error| error.to_string())
+    }
+
+    /// Each piece is a quadrangle of its own: one filled outline of the
+    /// whole would show hollow slits where the line folds back on itself.
+    fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
+        for piece in dashes(points, line.dash) {
+            for ends in piece.windows(2) {
+                self.segment(ends[0], ends[1], line.width, colour)?;
+            }
+            // A dash has square ends; a solid line's joins are round.
+            let joins = if line.dash.is_empty() {
+                &piece[..]
+            } else {
+                piece.get(1..piece.len() - 1).unwrap_or_default()
+            };
+            for join in joins {
+                self.disc(*join, 0.5 * line.width, colour)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn text(&self, text: &str, at: Point, style: &Lettering) -> Result<(), String> {
+        // The font's box is taller below its letters than above: a centred text is let down to look centred.
+        let sinks = matches!(style.anchor.vertical, VPos::Center) && !style.upright;
+        let at = if sinks {
+            (at.0, at.1 + 0.17 * style.size)
+        } else {
+            at
+        };
+        let style = style.scaled(f64::from(FINE));
+        self.area
+            .draw(&Text::new(
+                crate::text::glyphs::shown(text).into_owned(),
+                fine(at),
+                style,
+            ))
+            .map_err(|error| error.to_string())
+    }
+}
+
+impl Raster<'_> {
+    fn segment(&self, from: Point, to: Point, width: f64, colour: Colour) -> Result<(), String> {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let length = dx.hypot(dy);
+        if length == 0.0 {
+            return Ok(());
+        }
+        let (nx, ny) = (-dy / length * 0.5 * width, dx / length * 0.5 * width);
+        let corners = [
+            (from.0 + nx, from.1 + ny),
+            (to.0 + nx, to.1 + ny),
+            (to.0 - nx, to.1 - ny),
+            (from.0 - nx, from.1 - ny),
+        ];
+        self.area
+            .draw(&Polygon::new(corners.map(fine), rgb(colour).filled()))
+            .map_err(|error| error.to_string())
+    }
+}
+
+/// The drawn pieces of a line, walked along its length; a solid line is one piece.
+fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
+    let Some(&first) = points.first() else {
+        return Vec::new();
+    };
+    if pattern.is_empty() {
+        return vec![points.to_vec()];
+    }
+    let (mut pieces, mut piece, mut part, mut left) = (Vec::new(), vec![first], 0, pattern[0]);
+    for ends in points.windows(2) {
+        let (from, to) = (ends[0], ends[1]);
+        let length = (to.0 - from.0).hypot(to.1 - from.1);
+        let mut walked = 0.0;
+        while length - walked > left {
+            walked += left;
+            let at = (
+                from.0 + (to.0 - from.0) * walked / length,
+                from.1 + (to.1 - from.1) * walked / length,
+            );
+            if part % 2 == 0 {
+                piece.push(at);
+                pieces.push(std::mem::take(&mut piece));
+            } else {
+                piece = vec![at];
+            }
+            part = (part + 1) % pattern.len();
+            left = pattern[part];
+        }
+        left -= length - walked;
+        if part % 2 == 0 {
+            piece.push(to);
+        }
+    }
+    if piece.len() > 1 {
+        pieces.push(piece);
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dashes_follow_the_length_of_the_line_round_a_corner() {
+        let pieces = dashes(&[(0.0, 0.0), (3.0, 0.0), (3.0, 10.0)], &[4.0, 2.0]);
+        assert_eq!(
+            pieces,
+            [
+                vec![(0.0, 0.0), (3.0, 0.0), (3.0, 1.0)],
+                vec![(3.0, 3.0), (3.0, 7.0)],
+                vec![(3.0, 9.0), (3.0, 10.0)]
+            ]
+        );
+    }
+
+    #[test]
+    fn averaging_keeps_a_flat_colour_and_halves_an_edge() {
+        let row: Vec<u8> = [0_u8, 0, 255, 255]
+            .iter()
+            .flat_map(|grey| [*grey; 3])
+            .collect();
+        assert_eq!(average(&row.repeat(4), 4), [128, 128, 128]);
+        assert_eq!(average(&[7; 4 * 4 * 3], 4), [7, 7, 7]);
+    }
+
+    /// A sheet of white with one dark subpixel, wherever it is: the mean of its square, and paper all around.
+    #[test]
+    fn no_mark_is_lost_in_the_paper() {
+        let (width, height) = (4 * 37, 8);
+        for place in 0..width * height {
+            let mut fine = vec![255_u8; 3 * width * height];
+            fine[3 * place..3 * place + 3].copy_from_slice(&[0, 95, 255]);
+            let picture = average(&fine, width);
+            let square = (place / width / 4) * (width / 4) + place % width / 4;
+            for (at, colour) in picture.chunks_exact(3).enumerate() {
+                assert_eq!(
+                    colour,
+                    if at == square {
+                        [239, 245, 255]
+                    } else {
+                        [255; 3]
+                    },
+                    "subpixel {place}, square {at}"
+                );
+            }
+        }
+    }
+}

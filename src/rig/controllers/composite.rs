@@ -1,0 +1,242 @@
+//! Several devices of one role as one: each drives or weighs some of the rig's axes, on a line of its own. In: targets of all
+//! axes. Out: one move, one reading. A move is offered to every one of them before it is begun by any; what one of them does
+//! not accept, none of them begins. It knows no dialect.
+
+use super::{Channel, Device, DeviceFault, DeviceIdentity, Move, Sample};
+use crate::plan::Limits;
+use crate::rig::{NO_POWER_UP, Tally};
+
+/// One of them.
+pub struct Member {
+    pub device: Box<dyn Device>,
+    /// The axes of the rig that it drives or weighs, by place, in the order of its own.
+    pub axes: Vec<usize>,
+    /// The device must give this serial number.
+    pub serial_number: Option<String>,
+}
+
+/// All of them.
+pub struct Several {
+    members: Vec<Member>,
+    /// Axes of the rig.
+    axes: usize,
+    /// What each makes of the last move that was encoded.
+    proposed: Vec<Move>,
+    culprit: Option<usize>,
+}
+
+/// The devices of one role of a rig of so many axes: one that has them all is itself.
+#[must_use]
+pub fn together(mut members: Vec<Member>, axes: usize) -> Option<Box<dyn Device>> {
+    if members.len() == 1 && members[0].axes.iter().copied().eq(0..axes) {
+        return members.pop().map(|member| member.device);
+    }
+    if members.is_empty() {
+        return None;
+    }
+    Some(Box::new(Several {
+        members,
+        axes,
+        proposed: Vec::new(),
+        culprit: None,
+    }))
+}
+
+impl Several {
+    /// The same of each in turn; the first that fails is remembered.
+    fn each<T>(
+        &mut self,
+        mut call: impl FnMut(usize, &mut Member) -> Result<T, DeviceFault>,
+    ) -> Result<Vec<T>, DeviceFault> {
+        let mut made = Vec::with_capacity(self.members.len());
+        for (place, member) in self.members.iter_mut().enumerate() {
+            match call(place, member) {
+                Ok(value) => made.push(value),
+                Err(fault) => {
+                    self.culprit = Some(place);
+                    return Err(fault);
+                }
+            }
+        }
+        Ok(made)
+    }
+
+    /// Every one accepts the move, or it is taken back from those that have.
+    fn offer_to_all(&mut self, moves: &[Move]) -> Result<(), DeviceFault> {
+        let offered = self.each(|place, member| member.device.offer(&moves[place]));
+        if offered.is_err() {
+            let accepted = self.culprit.unwrap_or(0);
+            for (member, going) in self.members.iter_mut().zip(moves).take(accepted) {
+                // One that does not hear it executes nothing either: it is never told to.
+                member.device.withdraw(going).ok();
+            }
+        }
+        offered.map(drop)
+    }
+}
+
+impl Device for Several {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        let said = self.each(|_, member| {
+            let said = member.device.identify()?;
+            let (has, wanted) = (member.device.axes(), member.axes.len());
+            if has != wanted {
+                return Err(DeviceFault::Unfit(format!(
+                    "it has {has} channels, and {wanted} of the rig's axes are behind it"
+                )));
+            }
+            match &member.serial_number {
+                Some(wanted) if *wanted != said.serial => Err(DeviceFault::Unfit(format!(
+                    "the plan wants serial number `{wanted}`, this one is `{}`",
+                    said.serial
+                ))),
+                _ => Ok(said),
+            }
+        })?;
+        let all = |field: fn(&DeviceIdentity) -> &str| {
+            said.iter()
+                .map(field)
+                .filter(|text| !text.is_empty())
+                .collect::<Vec<_>>()
+                .join(" + ")
+        };
+        let known = said.iter().any(|identity| identity.boot.is_some());
+        let boots: Vec<&str> = said
+            .iter()
+            .map(|identity| identity.boot.as_deref().unwrap_or(NO_POWER_UP))
+            .collect();
+        Ok(DeviceIdentity {
+            model: all(|identity| &identity.model),
+            serial: all(|identity| &identity.serial),
+            firmware: all(|identity| &identity.firmware),
+            boot: known.then(|| boots.join(" + ")),
+            simulated: said.iter().any(|identity| identity.simulated),
+            raw: said.into_iter().flat_map(|identity| identity.raw).collect(),
+        })
+    }
+
+    fn axes(&self) -> usize {
+        self.axes
+    }
+
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        if targets.len() != self.axes {
+            return Err(DeviceFault::Unfit(format!(
+                "it has {} axes, not {}",
+                self.axes,
+                targets.len()
+            )));
+        }
+        let moves = self.each(|_, member| {
+            let own: Vec<f64> = member.axes.iter().map(|axis| targets[*axis]).collect();
+            member.device.encode(&own, speed)
+        })?;
+        let mut said = targets.to_vec();
+        for (member, going) in self.members.iter().zip(&moves) {
+            for (axis, target) in member.axes.iter().zip(&going.targets) {
+                said[*axis] = *target;
+            }
+        }
+        let frames = moves
+            .iter()
+            .flat_map(|going| going.frames.clone())
+            .collect();
+        let speed = moves.iter().map(|going| going.speed).fold(0.0, f64::max);
+        self.proposed = moves;
+        Ok(Move {
+            frames,
+            targets: said,
+            speed,
+            id: None,
+        })
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let moves = std::mem::take(&mut self.proposed);
+        let ours = moves
+            .iter()
+            .flat_map(|going| &going.frames)
+            .eq(going.frames.iter());
+        if moves.len() != self.members.len() || !ours {
+            return Err(DeviceFault::Unfit(
+                "this is not the move that was made last".to_owned(),
+            ));
+        }
+        self.offer_to_all(&moves)?;
+        self.each(|place, member| member.device.begin(&moves[place]))?;
+        self.each(|place, member| member.device.finish(&moves[place]))
+            .map(drop)
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let samples = self.each(|_, member| member.device.sample())?;
+        let mut channels = vec![Channel::default(); self.axes];
+        for (member, sample) in self.members.iter().zip(&samples) {
+            for (axis, channel) in member.axes.iter().zip(sample.axes()) {
+                channels[*axis] = channel;
+            }
+        }
+        let moving = match samples.iter().map(|sample| sample.moving) {
+            mut all if all.clone().any(|moving| moving == Some(true)) => {
+                all.find(|moving| *moving == Some(true)).flatten()
+            }
+            mut all => all.all(|moving| moving == Some(false)).then_some(false),
+        };
+        let others = channels.split_off(1.min(channels.len()));
+        let Channel {
+            displacement,
+            force,
+            flags,
+        } = channels.pop().unwrap_or_default();
+        let raw = samples.into_iter().flat_map(|sample| sample.raw).collect();
+        Ok(Sample {
+            time: None,
+            displacement,
+            force,
+            moving,
+            flags,
+            others,
+            raw,
+        })
+    }
+
+    /// Every one is told, also where one of them does not hear it.
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        let mut held = Ok(());
+        for (place, member) in self.members.iter_mut().enumerate() {
+            if let Err(fault) = member.device.hold()
+                && held.is_ok()
+            {
+                self.culprit = Some(place);
+                held = Err(fault);
+            }
+        }
+        held
+    }
+
+    /// Each has a line of its own, and is armed there.
+    fn emergency(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    fn narrow_limits(&mut self, limits: &[Limits]) -> Result<(), DeviceFault> {
+        let own = |axes: &[usize]| {
+            axes.iter()
+                .filter_map(|axis| limits.get(*axis).copied())
+                .collect::<Vec<Limits>>()
+        };
+        self.each(|_, member| member.device.narrow_limits(&own(&member.axes)))
+            .map(drop)
+    }
+
+    fn culprit(&self) -> Option<usize> {
+        self.culprit
+    }
+
+    fn tally(&self) -> Tally {
+        self.members
+            .iter()
+            .map(|member| member.device.tally())
+            .fold(Tally::default(), Tally::plus)
+    }
+}

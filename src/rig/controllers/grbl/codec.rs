@@ -1,0 +1,377 @@
+//! Grbl 1.1, axis X in machine coordinates. In: a target and a speed; a line that came, with what may be glued to it.
+//! Out: the bytes of a jog; what the line says. It keeps no conversation. `ok` says that a line was understood, never
+//! that the axis has arrived; the position is counted steps, not a measurement.
+
+use crate::rig::controllers::number;
+
+pub const ASK: &[u8] = b"?";
+pub const HOLD: &[u8] = b"!";
+pub const RESUME: &[u8] = b"~";
+/// Forgets what it was told. At rest it keeps its position; in motion it loses it.
+pub const RESET: &[u8] = b"\x18";
+pub const BUILD: &[u8] = b"$I\n";
+pub const SETTINGS: &[u8] = b"$$\n";
+
+/// Grbl goes no slower, whatever it is told, mm/min.
+pub const SLOWEST: f64 = 1.0;
+
+/// More digits of a number than these are not heard.
+const DIGITS: usize = 8;
+
+/// What a line says, or a part of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Word {
+    Ok,
+    Error(u64),
+    Alarm(u64),
+    Status(Status),
+    /// `$` number and the text of its value.
+    Setting(u64, String),
+    /// `[VER:…]`: version and the owner's own text.
+    Version(String, String),
+    /// It has started anew.
+    Banner(String),
+    /// `[…]` and echoes: nothing that answers.
+    Message,
+    Unknown,
+}
+
+impl Word {
+    /// Whether it can stand before the `ok` of a question, as a part of what is answered.
+    #[must_use]
+    pub const fn is_part(&self) -> bool {
+        matches!(self, Self::Setting(..) | Self::Version(..) | Self::Message)
+    }
+}
+
+/// A status report.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Status {
+    pub state: State,
+    /// X in machine coordinates, m.
+    pub position: f64,
+}
+
+/// What a status report says that it does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    Idle,
+    Run,
+    Jog,
+    /// Held, and at rest.
+    Held,
+    /// Still coming to rest.
+    Holding,
+    Alarm,
+    Door,
+    Check,
+    Home,
+    Sleep,
+}
+
+impl State {
+    #[must_use]
+    pub const fn is_moving(self) -> bool {
+        matches!(self, Self::Run | Self::Jog | Self::Holding | Self::Home)
+    }
+}
+
+/// A jog as it is sent, and what its bytes say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jog {
+    pub line: Vec<u8>,
+    /// m
+    pub target: f64,
+    /// m/s
+    pub speed: f64,
+}
+
+/// The jog to `target` (m) at `speed` (m/s).
+///
+/// # Errors
+/// Grbl cannot hear it, or would do something else.
+pub fn jog(target: f64, speed: f64) -> Result<Jog, String> {
+    // Numbers have no exponent; 0.1 µm is far finer than a step.
+    let place = written(target * 1e3, 4)
+        .ok_or_else(|| format!("{target} m is no place Grbl can be sent to"))?;
+    let feed =
+        written(speed * 6e4, 3).ok_or_else(|| format!("{speed} m/s is no speed for Grbl"))?;
+    let heard = |text: &str, scale, meant| {
+        number::read_back(text, scale, meant).ok_or_else(|| format!("`{text}` is no number"))
+    };
+    let (target, speed) = (heard(&place, 1e3, target)?, heard(&feed, 6e4, speed)?);
+    if speed.is_nan() || speed * 6e4 < SLOWEST * (1.0 - 1e-12) {
+        return Err(format!(
+            "Grbl goes no slower than {SLOWEST} mm/min: {feed} mm/min was asked for"
+        ));
+    }
+    Ok(Jog {
+        line: format!("$J=G21G90G53X{place}F{feed}\n").into_bytes(),
+        target,
+        speed,
+    })
+}
+
+fn written(value: f64, decimals: usize) -> Option<String> {
+    number::write(value, decimals)
+        .filter(|text| text.bytes().filter(u8::is_ascii_digit).count() <= DIGITS)
+}
+
+/// What a line says, part by part: on some clones a status is glued to an `ok`, and a start comes in the middle of one.
+#[must_use]
+pub fn words(line: &[u8]) -> Vec<Word> {
+    if let Some(at) = line.windows(5).position(|window| window == b"Grbl ") {
+        return vec![Word::Banner(printable(&line[at..]))];
+    }
+    let mut words = Vec::new();
+    let mut rest = line.trim_ascii();
+    while !rest.is_empty() {
+        let (word, length) = first(rest);
+        words.push(word);
+        rest = rest[length..].trim_ascii_start();
+    }
+    words
+}
+
+/// The first word and its length.
+fn first(rest: &[u8]) -> (Word, usize) {
+    let all = rest.len();
+    match rest {
+        [b'<', ..] => match rest.iter().position(|byte| *byte == b'>') {
+            Some(end) => (
+                status(&rest[1..end]).map_or(Word::Unknown, Word::Status),
+                end + 1,
+            ),
+            None => (Word::Unknown, all),
+        },
+        b"ok" | [b'o', b'k', b'<', ..] | [b'o', b'k', b'o', b'k', ..] => (Word::Ok, 2),
+        [b'e', b'r', b'r', b'o', b'r', b':', code @ ..] => {
+            numbered(code, b"error:".len(), Word::Error)
+        }
+        [b'A', b'L', b'A', b'R', b'M', b':', code @ ..] => {
+            numbered(code, b"ALARM:".len(), Word::Alarm)
+        }
+        [b'$', setting @ ..] => (self::setting(setting).unwrap_or(Word::Unknown), all),
+        [b'[', b'V', b'E', b'R', b':', text @ .., b']'] => {
+            let mut fields = text.splitn(2, |byte| *byte == b':').map(printable);
+            let mut field = || fields.next().unwrap_or_default();
+            (Word::Version(field(), field()), all)
+        }
+        [b'[', .., b']'] | [b'>', ..] => (Word::Message, all),
+        _ => (Word::Unknown, all),
+    }
+}
+
+/// A code of 1 to 3 digits, at the end or with a status glued to it.
+fn numbered(code: &[u8], before: usize, word: fn(u64) -> Word) -> (Word, usize) {
+    let digits = code
+        .iter()
+        .position(|byte| *byte == b'<')
+        .unwrap_or(code.len());
+    let known = (digits <= 3)
+        .then(|| number::count(&code[..digits]))
+        .flatten();
+    (known.map_or(Word::Unknown, word), before + digits)
+}
+
+fn setting(text: &[u8]) -> Option<Word> {
+    let at = text.iter().position(|byte| *byte == b'=')?;
+    number::fixed(&text[at + 1..])?;
+    Some(Word::Setting(
+        number::count(&text[..at])?,
+        printable(&text[at + 1..]),
+    ))
+}
+
+fn status(report: &[u8]) -> Option<Status> {
+    let mut fields = report.split(|byte| *byte == b'|');
+    let state = match fields.next()? {
+        b"Idle" => State::Idle,
+        b"Run" => State::Run,
+        b"Jog" => State::Jog,
+        b"Hold:0" => State::Held,
+        b"Hold:1" => State::Holding,
+        b"Alarm" => State::Alarm,
+        b"Door" | b"Door:0" | b"Door:1" | b"Door:2" | b"Door:3" => State::Door,
+        b"Check" => State::Check,
+        b"Home" => State::Home,
+        b"Sleep" => State::Sleep,
+        _ => return None,
+    };
+    let axes: Option<Vec<f64>> = fields
+        .next()?
+        .strip_prefix(b"MPos:")?
+        .split(|byte| *byte == b',')
+        .map(number::fixed)
+        .collect();
+    Some(Status {
+        state,
+        position: axes?.first()? / 1e3,
+    })
+}
+
+fn printable(bytes: &[u8]) -> String {
+    bytes.escape_ascii().to_string()
+}
+
+/// What the code of an `error:` means, where a jog or a question can meet it.
+#[must_use]
+pub const fn error(code: u64) -> &'static str {
+    match code {
+        3 | 33 => "it does not understand the line",
+        8 => "it is not at rest",
+        9 => "it is locked by an alarm or still moving",
+        11 | 14 => "the line is too long",
+        15 => "the target is outside its travel",
+        16 => "it does not understand the jog",
+        22 => "the speed is missing",
+        _ => "see Grbl's list of error codes",
+    }
+}
+
+/// What the code of an `ALARM:` means.
+#[must_use]
+pub const fn alarm(code: u64) -> &'static str {
+    match code {
+        1 => "an end switch was hit, its position is likely lost",
+        2 => "the target is outside its travel",
+        3 => "it was reset in motion, its position is likely lost",
+        6..=9 => "homing failed",
+        _ => "see Grbl's list of alarm codes",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(line: &str) -> Word {
+        let words = words(line.as_bytes());
+        assert_eq!(words.len(), 1, "{words:?}");
+        words.into_iter().next().unwrap()
+    }
+
+    #[test]
+    fn a_jog_is_absolute_in_machine_millimetres_and_says_what_it_will_do() {
+        let jog = jog(1.25e-3, 0.5e-3).unwrap();
+        assert_eq!(jog.line, b"$J=G21G90G53X1.2500F30.000\n");
+        assert_eq!((jog.target, jog.speed), (1.25e-3, 0.5e-3));
+        let rounded = super::jog(-0.000_999_96, 1e-3).unwrap();
+        assert!(rounded.line.starts_with(b"$J=G21G90G53X-1.0000F"));
+        assert_eq!(rounded.target, -0.001);
+    }
+
+    #[test]
+    fn what_grbl_would_not_hear_as_it_is_meant_is_not_said() {
+        for (target, speed) in [
+            (f64::NAN, 1e-3),
+            (f64::INFINITY, 1e-3),
+            (10.0, 1e-3),
+            (0.001, f64::NAN),
+            (0.001, 0.0),
+            (0.001, -1e-3),
+            (0.001, 0.9 / 6e4),
+            (0.001, 2.0),
+        ] {
+            assert!(jog(target, speed).is_err(), "{target} {speed}");
+        }
+        assert!(jog(9.999, 1.6).is_ok() && jog(0.001, 1.0 / 6e4).is_ok());
+    }
+
+    #[test]
+    fn a_line_is_understood_whole() {
+        assert_eq!(one("ok\r"), Word::Ok);
+        assert_eq!(one("error:15"), Word::Error(15));
+        assert_eq!(one("ALARM:3"), Word::Alarm(3));
+        assert_eq!(
+            one("$110=500.000"),
+            Word::Setting(110, "500.000".to_owned())
+        );
+        assert_eq!(
+            one("[VER:1.1h.20190825:bench]"),
+            Word::Version("1.1h.20190825".to_owned(), "bench".to_owned())
+        );
+        assert_eq!(one("[MSG:'$H'|'$X' to unlock]"), Word::Message);
+        assert_eq!(
+            one("Grbl 1.1h ['$' for help]"),
+            Word::Banner("Grbl 1.1h [\\'$\\' for help]".to_owned())
+        );
+        let status = |state, position| Word::Status(Status { state, position });
+        assert_eq!(
+            one("<Idle|MPos:1.250,0.000,0.000|FS:0,0>"),
+            status(State::Idle, 1.25e-3)
+        );
+        assert_eq!(
+            one("<Hold:1|MPos:-5.529,0.560,7.000|FS:0,0|Pn:X>"),
+            status(State::Holding, -5.529e-3)
+        );
+        assert!(State::Holding.is_moving() && State::Jog.is_moving() && !State::Held.is_moving());
+    }
+
+    #[test]
+    fn glued_lines_are_taken_apart_and_a_start_in_the_middle_is_seen() {
+        let idle = Word::Status(Status {
+            state: State::Idle,
+            position: 0.0,
+        });
+        assert_eq!(
+            words(b"ok<Idle|MPos:0.000,0.000,0.000|FS:0,0>"),
+            [Word::Ok, idle.clone()]
+        );
+        assert_eq!(
+            words(b"<Idle|MPos:0.000,0.000,0.000>ok"),
+            [idle.clone(), Word::Ok]
+        );
+        assert_eq!(
+            words(b"error:9<Idle|MPos:0.000,0.000,0.000>"),
+            [Word::Error(9), idle]
+        );
+        assert!(matches!(
+            words(b"<Idle|MPos:0.0\r\nGrbl 1.1h ['$' for help]").as_slice(),
+            [Word::Banner(_)]
+        ));
+        assert!(matches!(
+            words(b"<Idle|MPos:0.000,0.0Grbl 1.1h ['$' for help]").as_slice(),
+            [Word::Banner(_)]
+        ));
+        assert_eq!(words(b"  \r"), []);
+    }
+
+    #[test]
+    fn a_broken_line_says_nothing() {
+        for line in [
+            "<Idle|MPos:1.250,0.000",
+            "<Idle|MPos:1.2 50,0.000,0.000>",
+            "<Idle|MPos:--1.250,0.000,0.000>",
+            "<Idle|MPos:nan,0.000,0.000>",
+            "<Idle|MPos:1.250,,0.000>",
+            "<Idle|WPos:1.250,0.000,0.000>",
+            "<Idle|FS:0,0>",
+            "<idle|MPos:1.250,0.000,0.000>",
+            "<Hold|MPos:1.250,0.000,0.000>",
+            "okay",
+            "error:1x",
+            "error:",
+            "error:1234",
+            "$110=fast",
+            "\0ok",
+            "MPos:1.250",
+        ] {
+            assert!(
+                words(line.as_bytes())
+                    .iter()
+                    .all(|word| *word == Word::Unknown),
+                "{line}: {:?}",
+                words(line.as_bytes())
+            );
+        }
+        let whole = b"<Idle|MPos:1.250,0.000,0.000|FS:0,0>";
+        for length in 1..whole.len() {
+            assert_eq!(
+                words(&whole[..length]),
+                [Word::Unknown],
+                "a status cut after {length} bytes"
+            );
+        }
+    }
+}

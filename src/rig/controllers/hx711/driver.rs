@@ -1,0 +1,152 @@
+//! A load cell that sends raw counts by itself, one a line. In: nothing. Out: a count that was begun after it was wanted.
+//! It moves nothing and does not know what a count weighs.
+
+use crate::rig::Tally;
+use crate::rig::controllers::hx711;
+use crate::rig::controllers::hx711::codec::RAILS;
+use crate::rig::controllers::{
+    DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk, stream,
+};
+
+/// The converter at the other end of a line.
+pub struct Hx711Device {
+    talk: Talk,
+}
+
+impl Hx711Device {
+    #[must_use]
+    pub const fn new(talk: Talk) -> Self {
+        Self { talk }
+    }
+}
+
+/// Who answers where counts come.
+pub(crate) fn introduced() -> DeviceIdentity {
+    DeviceIdentity {
+        model: "HX711".to_owned(),
+        ..DeviceIdentity::default()
+    }
+}
+
+/// The count of a line.
+pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
+    let Some(count) = hx711::codec::count(&line) else {
+        return Err(DeviceFault::NoReading {
+            raw: line,
+            reason: "it is no count of 24 bits".to_owned(),
+        });
+    };
+    let (low, high) = RAILS;
+    let flags = Flags {
+        saturated: hx711::codec::is_saturated(count),
+        ..Flags::default()
+    };
+    Ok(Sample {
+        force: Some(Force::Counts { count, low, high }),
+        flags,
+        raw: vec![line],
+        ..Sample::default()
+    })
+}
+
+impl Gauge for Hx711Device {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.sample()?;
+        Ok(introduced())
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        decoded(stream::fresh_line(&mut self.talk)?)
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+
+    fn device() -> (Hx711Device, ScriptedPort, VirtualClock) {
+        let clock = VirtualClock::default();
+        let port = ScriptedPort::new(&clock);
+        (
+            Hx711Device::new(Talk::new(
+                Box::new(port.clone()),
+                Box::new(clock.clone()),
+                0.5,
+            )),
+            port,
+            clock,
+        )
+    }
+
+    fn say(port: &ScriptedPort, seconds: f64, bytes: &str) {
+        port.say(&[Say::After(seconds, bytes.as_bytes().to_vec())]);
+    }
+
+    fn count(sample: &Sample) -> i64 {
+        match sample.force {
+            Some(Force::Counts {
+                count,
+                low: -8_388_608,
+                high: 8_388_607,
+            }) => count,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_count_is_taken_that_was_begun_after_it_was_wanted() {
+        let (mut device, port, clock) = device();
+        for second in 0..20 {
+            say(&port, 0.1, &format!("{second}\r\n"));
+        }
+        clock.advance(1.05);
+        let sample = device.sample().unwrap();
+        assert_eq!(
+            count(&sample),
+            11,
+            "the one under way may have been begun before"
+        );
+        assert_eq!((sample.raw, port.sent().len()), (vec![b"11".to_vec()], 0));
+    }
+
+    #[test]
+    fn half_a_count_is_never_a_count() {
+        let (mut device, port, clock) = device();
+        say(&port, 0.0, "-81");
+        clock.advance(0.05);
+        say(&port, 0.01, "2344\r\n");
+        say(&port, 0.1, "-8123");
+        say(&port, 0.1, "45\r\n");
+        assert_eq!(count(&device.sample().unwrap()), -812_345);
+        say(&port, 0.1, "7\r\n81");
+        assert_eq!(
+            device.sample(),
+            Err(DeviceFault::Silent { seconds: 0.5 }),
+            "a line that does not end"
+        );
+    }
+
+    #[test]
+    fn the_rails_are_saturated_and_anything_else_is_no_reading() {
+        for (line, saturated) in [("8388607", true), ("-8388608", true), ("8388606", false)] {
+            let (mut device, port, _) = device();
+            say(&port, 0.1, &format!("\n{line}\r\n"));
+            assert_eq!(device.sample().unwrap().flags.saturated, saturated);
+        }
+        for line in ["8388608", "nan", "12.5", "", "HX711 ready"] {
+            let (mut device, port, _) = device();
+            say(&port, 0.1, &format!("\n{line}\r\n"));
+            assert!(
+                matches!(device.sample(), Err(DeviceFault::NoReading { .. })),
+                "{line}"
+            );
+        }
+        let (mut device, _, _) = device();
+        assert_eq!(device.identify(), Err(DeviceFault::Silent { seconds: 0.5 }));
+    }
+}

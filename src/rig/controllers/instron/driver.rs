@@ -1,0 +1,368 @@
+//! An Instron 8800-style console: absolute ramps in position mode, position and load as fractions of full scale. In:
+//! metres and metres a second. Out: ramps that are read back before they start, and readings in which an exact zero is
+//! asked again. Orders are not answered, so that what they did is asked for.
+
+use crate::rig::Tally;
+use crate::rig::controllers::instron;
+use crate::rig::controllers::instron::codec::{Channel, Movement, Question, Trouble};
+use crate::rig::controllers::unsequenced::ask_line;
+use crate::rig::controllers::{
+    Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis,
+};
+
+/// Shortest time between polls, s: the console does not bear more.
+const BETWEEN_POLLS: f64 = 0.1;
+/// How often an order is given before it counts as not heard.
+const TRIES: u32 = 3;
+/// A target (fraction of full scale) and a time (s) that differ by less are the same.
+const SAME_TARGET: f64 = 1e-7;
+const SAME_TIME: f64 = 1e-3;
+
+/// The console at the other end of a line.
+pub struct Instron {
+    talk: Talk,
+    position: Reader,
+    load: Reader,
+    /// Where it was last, m.
+    last: Option<f64>,
+    movement: Movement,
+    /// When it was last polled, s by the clock.
+    polled: Option<f64>,
+}
+
+/// What is known of a channel.
+#[derive(Default)]
+struct Reader {
+    /// m or N
+    full_scale: f64,
+    /// The last reading was zero, and was asked for twice.
+    at_zero: bool,
+}
+
+impl Instron {
+    #[must_use]
+    pub fn new(talk: Talk) -> Self {
+        let (position, load) = (Reader::default(), Reader::default());
+        Self {
+            talk,
+            position,
+            load,
+            last: None,
+            movement: Movement::Stopped,
+            polled: None,
+        }
+    }
+
+    /// Asks, and keeps what came.
+    fn ask(&mut self, question: Question, raw: &mut Vec<Vec<u8>>) -> Result<Vec<u8>, DeviceFault> {
+        let answer = ask_line(&mut self.talk, &question.line(), instron::codec::ENDING)?;
+        raw.push(answer.clone());
+        Ok(answer)
+    }
+
+    fn number(&mut self, question: Question, raw: &mut Vec<Vec<u8>>) -> Result<f64, DeviceFault> {
+        let answer = self.ask(question, raw)?;
+        instron::codec::number(&answer).ok_or_else(|| no_reading(answer, "no number"))
+    }
+
+    /// Readings glitch to zero: an exact zero is asked again.
+    fn number_twice_if_zero(
+        &mut self,
+        question: Question,
+        raw: &mut Vec<Vec<u8>>,
+    ) -> Result<f64, DeviceFault> {
+        let first = self.number(question, raw)?;
+        if first != 0.0 {
+            return Ok(first);
+        }
+        self.wait_for_poll()?;
+        let second = self.number(question, raw)?;
+        self.count_glitch(second != 0.0);
+        Ok(second)
+    }
+
+    /// To look twice is routine; it mended a reading only where the second look saw something else.
+    const fn count_glitch(&mut self, glitch: bool) {
+        self.talk.tally_mut().reread += glitch as u64;
+    }
+
+    fn feedback(&mut self, channel: Channel, raw: &mut Vec<Vec<u8>>) -> Result<f64, DeviceFault> {
+        let question = Question::Feedback(channel);
+        let at_zero = self.reader(channel).at_zero;
+        let fraction = if at_zero {
+            self.number(question, raw)?
+        } else {
+            self.number_twice_if_zero(question, raw)?
+        };
+        let reader = self.reader(channel);
+        reader.at_zero = fraction == 0.0;
+        Ok(fraction * reader.full_scale)
+    }
+
+    const fn reader(&mut self, channel: Channel) -> &mut Reader {
+        match channel {
+            Channel::Position => &mut self.position,
+            Channel::Load => &mut self.load,
+        }
+    }
+
+    /// A stop that is a glitch to zero is asked again, too.
+    fn ask_movement(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Movement, DeviceFault> {
+        let mut movement = self.ask_movement_once(raw)?;
+        if movement == Movement::Stopped && self.movement != Movement::Stopped {
+            self.wait_for_poll()?;
+            movement = self.ask_movement_once(raw)?;
+            self.count_glitch(movement != Movement::Stopped);
+        }
+        self.movement = movement;
+        Ok(movement)
+    }
+
+    fn ask_movement_once(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Movement, DeviceFault> {
+        let answer = self.ask(Question::Movement, raw)?;
+        instron::codec::movement(&answer).ok_or_else(|| no_reading(answer, "no movement"))
+    }
+
+    /// The emergency stop is a flag; whatever else has tripped makes the rig unfit.
+    fn ask_status(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Flags, DeviceFault> {
+        let answer = self.ask(Question::Status, raw)?;
+        let status =
+            instron::codec::status(&answer).ok_or_else(|| no_reading(answer, "no status"))?;
+        match status.trouble {
+            Some(Trouble::EmergencyStop) => {
+                return Ok(Flags {
+                    emergency_stop: true,
+                    ..Flags::default()
+                });
+            }
+            // Which of the two it is, it does not say.
+            Some(Trouble::TravelLimit) => {
+                return Ok(Flags {
+                    limit_high: true,
+                    limit_low: true,
+                    ..Flags::default()
+                });
+            }
+            Some(trouble) => return Err(DeviceFault::Unfit(trouble.to_string())),
+            None => {}
+        }
+        if status.actuator_off {
+            Err(DeviceFault::Unfit("the actuator is off".to_owned()))
+        } else {
+            Ok(Flags::default())
+        }
+    }
+
+    fn wait_for_poll(&mut self) -> Result<(), DeviceFault> {
+        if let Some(polled) = self.polled {
+            let wait = polled + BETWEEN_POLLS - self.talk.now();
+            if wait > 0.0 {
+                self.talk.sleep(wait)?;
+            }
+        }
+        self.polled = Some(self.talk.now());
+        Ok(())
+    }
+
+    /// Makes the ramp ready until it is read back as it was sent. Nothing moves yet.
+    fn make_ready(&mut self, frames: &[Vec<u8>]) -> Result<(), DeviceFault> {
+        let (target, seconds) = instron::codec::said(frames)
+            .ok_or_else(|| DeviceFault::Unfit("this is no ramp".to_owned()))?;
+        let mut raw = Vec::new();
+        for _ in 0..TRIES {
+            self.talk.send(&frames.concat())?;
+            let heard = [
+                self.number(Question::Target, &mut raw),
+                self.number(Question::RampTime, &mut raw),
+            ];
+            match heard {
+                [Ok(to), Ok(within)]
+                    if (to - target).abs() <= SAME_TARGET
+                        && (within - seconds).abs() <= SAME_TIME =>
+                {
+                    return Ok(());
+                }
+                [
+                    Err(fault @ (DeviceFault::Lost { .. } | DeviceFault::Interrupted)),
+                    _,
+                ]
+                | [
+                    _,
+                    Err(fault @ (DeviceFault::Lost { .. } | DeviceFault::Interrupted)),
+                ] => return Err(fault),
+                _ => self.talk.tally_mut().resent += 1,
+            }
+        }
+        Err(DeviceFault::Refused {
+            reason: "its ramp is not the one that was sent".to_owned(),
+        })
+    }
+
+    /// Whether it runs, or has already arrived.
+    fn is_under_way(&mut self, target: f64) -> Result<bool, DeviceFault> {
+        let mut raw = Vec::new();
+        if self.ask_movement(&mut raw)? == Movement::Running {
+            return Ok(true);
+        }
+        let here = self.feedback(Channel::Position, &mut raw)?;
+        let way = self.last.map_or(0.0, |last| (target - last).abs());
+        Ok((target - here).abs() <= (way / 2.0).max(SAME_TARGET * self.position.full_scale))
+    }
+}
+
+impl Device for Instron {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        let mut raw = Vec::new();
+        for (place, channel) in [Channel::Position, Channel::Load].into_iter().enumerate() {
+            self.wait_for_poll()?;
+            let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
+            // Of a glitch and the number the number.
+            raw.drain(place..raw.len() - 1);
+            if !(0.0 < full_scale && full_scale.is_finite()) {
+                return Err(DeviceFault::Unfit(format!(
+                    "the full scale of its {channel:?} channel is {full_scale}"
+                )));
+            }
+            self.reader(channel).full_scale = full_scale;
+        }
+        let flags = self.sample()?.flags;
+        if flags != Flags::default() {
+            let trouble = if flags.emergency_stop {
+                Trouble::EmergencyStop
+            } else {
+                Trouble::TravelLimit
+            };
+            return Err(DeviceFault::Unfit(trouble.to_string()));
+        }
+        Ok(introduced(raw))
+    }
+
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let target = one_axis(targets)?;
+        let from = self.last.ok_or_else(|| {
+            DeviceFault::Unfit("where it stands is not known: read first".to_owned())
+        })?;
+        let unsayable =
+            || DeviceFault::Unfit(format!("the console cannot say {target} m at {speed} m/s"));
+        let full_scale = self.position.full_scale;
+        let rounded = instron::codec::ramp(target / full_scale, 0.0).ok_or_else(unsayable)?;
+        let (fraction, _) = instron::codec::said(&rounded).ok_or_else(unsayable)?;
+        let way = (fraction * full_scale - from).abs();
+        let mut frames = instron::codec::ramp(fraction, way / speed).ok_or_else(unsayable)?;
+        let (fraction, seconds) = instron::codec::said(&frames).ok_or_else(unsayable)?;
+        frames.extend(instron::codec::start());
+        // The time was rounded up.
+        let speed = if way > 0.0 {
+            (way / seconds).min(speed)
+        } else {
+            speed
+        };
+        Ok(Move {
+            frames,
+            targets: vec![meant_by(fraction * full_scale, target)],
+            speed,
+            id: None,
+        })
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let start = instron::codec::start();
+        let ready = going.frames.len().saturating_sub(start.len());
+        self.make_ready(&going.frames[..ready])?;
+        for _ in 0..TRIES {
+            self.talk.send(&start.concat())?;
+            if self.is_under_way(going.targets[0])? {
+                return Ok(());
+            }
+            self.talk.tally_mut().resent += 1;
+        }
+        Err(DeviceFault::Refused {
+            reason: "it does not set off".to_owned(),
+        })
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        self.wait_for_poll()?;
+        let mut raw = Vec::new();
+        let flags = self.ask_status(&mut raw)?;
+        let moving = self.ask_movement(&mut raw)? == Movement::Running;
+        let displacement = self.feedback(Channel::Position, &mut raw)?;
+        let force = self.feedback(Channel::Load, &mut raw)?;
+        self.last = Some(displacement);
+        let (displacement, force) = (Some(displacement), Some(Force::Newtons(force)));
+        Ok(Sample {
+            time: None,
+            displacement,
+            force,
+            moving: Some(moving),
+            flags,
+            others: Vec::new(),
+            raw,
+        })
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        for _ in 0..TRIES {
+            self.talk.send(&instron::codec::hold().concat())?;
+            if self.ask_movement(&mut Vec::new())? != Movement::Running {
+                return Ok(());
+            }
+            self.talk.tally_mut().resent += 1;
+        }
+        Err(DeviceFault::Refused {
+            reason: "it does not hold".to_owned(),
+        })
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        instron::codec::hold().concat()
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+/// Who answers as a console, in these replies: the full scales of position and load.
+pub(crate) fn introduced(raw: Vec<Vec<u8>>) -> DeviceIdentity {
+    DeviceIdentity {
+        model: "Instron 8800-style console".to_owned(),
+        raw,
+        ..DeviceIdentity::default()
+    }
+}
+
+/// A target (m) that the bytes of a ramp say: the last bit of a float is no part of that.
+fn meant_by(said: f64, target: f64) -> f64 {
+    if (said - target).abs() <= 4.0 * f64::EPSILON * target.abs() {
+        target
+    } else {
+        said
+    }
+}
+
+/// Whether these are the bytes of a ramp to this place (m), the position's full scale being `full_scale`, and of its start. What
+/// speed it is depends on where it begins, which stands in no byte.
+pub(crate) fn sends(wire: &[u8], target: f64, full_scale: f64) -> bool {
+    let lines: Vec<Vec<u8>> = wire
+        .split_inclusive(|byte| *byte == b'\n')
+        .map(<[u8]>::to_vec)
+        .collect();
+    let Some((fraction, seconds)) = instron::codec::said(&lines) else {
+        return false;
+    };
+    let again = instron::codec::ramp(fraction, seconds)
+        .map(|ramp| [ramp, instron::codec::start()].concat().concat());
+    again.is_some_and(|again| again == wire)
+        && meant_by(fraction * full_scale, target).to_bits() == target.to_bits()
+}
+
+fn no_reading(raw: Vec<u8>, reason: &str) -> DeviceFault {
+    DeviceFault::NoReading {
+        raw,
+        reason: reason.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,312 @@
+//! A Mark-10 stand with its gauge. In: metres and metres a second. Out: travel limits that are
+//! targets, read back before the stand sets off; readings in newtons. The travel is in hundredths of a millimetre, and
+//! so are the targets. Lines have no check: what came unasked is thrown away, and after a silence all is asked twice.
+
+use crate::rig::Tally;
+use crate::rig::controllers::mark10;
+use crate::rig::controllers::mark10::codec::{Side, Status};
+use crate::rig::controllers::unsequenced::ask_line;
+use crate::rig::controllers::{
+    Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis,
+};
+
+/// How often a setting or an order is given before it counts as not heard.
+const TRIES: u32 = 3;
+/// Half a quantum of the travel, m: what is nearer is there.
+const THERE: f64 = 0.5e-5 * 1.01;
+/// How far past its limit the travel may be before the stand is stopped, m.
+const OVERRUN: f64 = 5e-5;
+/// Twice, since one may be taken for a digit of a setting that was cut short.
+const EMERGENCY: &[u8] = b"ss";
+
+/// The stand at the other end of a line.
+pub struct Mark10 {
+    talk: Talk,
+    /// Travel as last read, m.
+    last: Option<f64>,
+    /// Where it is going, m.
+    going: Option<(Side, f64)>,
+}
+
+impl Mark10 {
+    #[must_use]
+    pub const fn new(talk: Talk) -> Self {
+        Self {
+            talk,
+            last: None,
+            going: None,
+        }
+    }
+
+    fn ask(&mut self, question: &[u8]) -> Result<Vec<u8>, DeviceFault> {
+        ask_line(&mut self.talk, question, mark10::codec::ENDING)
+    }
+
+    fn ask_travel(&mut self, question: &[u8]) -> Result<(f64, Vec<u8>), DeviceFault> {
+        let answer = self.ask(question)?;
+        match mark10::codec::travel(&answer) {
+            Some(travel) => Ok((travel, answer)),
+            None => Err(no_reading(answer, "no travel in mm")),
+        }
+    }
+
+    fn ask_status(&mut self) -> Result<(Status, Vec<u8>), DeviceFault> {
+        let answer = self.ask(mark10::codec::ASK_STATUS)?;
+        match mark10::codec::status(&answer) {
+            Some(status) => Ok((status, answer)),
+            None => Err(no_reading(answer, "no status")),
+        }
+    }
+
+    /// Asks anew where the answer was garbled: outside of a reading nobody else does.
+    fn patiently<T>(
+        &mut self,
+        mut ask: impl FnMut(&mut Self) -> Result<T, DeviceFault>,
+    ) -> Result<T, DeviceFault> {
+        for _ in 1..TRIES {
+            match ask(self) {
+                Err(DeviceFault::NoReading { .. }) => self.talk.tally_mut().reread += 1,
+                said => return said,
+            }
+        }
+        ask(self)
+    }
+
+    fn status(&mut self) -> Result<Status, DeviceFault> {
+        self.patiently(Self::ask_status).map(|(status, _)| status)
+    }
+
+    /// Outside of limit mode nothing stops the stand at its target. It leaves that mode where it is switched on anew or by hand.
+    fn in_limit_mode(&mut self, status: Status) -> Result<(), DeviceFault> {
+        if status.limit_mode {
+            return Ok(());
+        }
+        self.stop()?;
+        Err(DeviceFault::Rebooted {
+            was: "limit mode".to_owned(),
+            is: "another mode, in which no target stops it".to_owned(),
+        })
+    }
+
+    /// Sends the settings until the limit is read back as it was sent. Nothing moves yet.
+    fn set_limit(
+        &mut self,
+        settings: &[Vec<u8>],
+        side: Side,
+        limit: f64,
+    ) -> Result<(), DeviceFault> {
+        for _ in 0..TRIES {
+            self.talk.send(&settings.concat())?;
+            match self.ask_travel(ask_limit(side)) {
+                Ok((heard, _)) if (heard - limit).abs() <= THERE => return Ok(()),
+                Ok(_) | Err(DeviceFault::NoReading { .. }) => self.talk.tally_mut().resent += 1,
+                Err(fault) => return Err(fault),
+            }
+        }
+        Err(DeviceFault::Refused {
+            reason: "its travel limit is not the one that was sent".to_owned(),
+        })
+    }
+
+    fn stop(&mut self) -> Result<(), DeviceFault> {
+        for _ in 0..TRIES {
+            self.talk.send(mark10::codec::STOP)?;
+            if !self.status()?.moving {
+                self.going = None;
+                return Ok(());
+            }
+            self.talk.tally_mut().resent += 1;
+        }
+        Err(DeviceFault::Refused {
+            reason: "it does not stop".to_owned(),
+        })
+    }
+}
+
+impl Device for Mark10 {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.talk.send(mark10::codec::READY)?;
+        if !self.status()?.limit_mode {
+            return Err(DeviceFault::Unfit(
+                "the stand does not go into limit mode: does it have PC control?".to_owned(),
+            ));
+        }
+        self.patiently(Self::sample)?;
+        Ok(stand_introduced())
+    }
+
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let target = one_axis(targets)?;
+        let from = self.last.ok_or_else(|| {
+            DeviceFault::Unfit("where it stands is not known: read first".to_owned())
+        })?;
+        let unsayable =
+            || DeviceFault::Unfit(format!("the stand cannot say {target} m at {speed} m/s"));
+        let side = if target < from {
+            Side::Lower
+        } else {
+            Side::Upper
+        };
+        let mut going = settings(target, speed, side).ok_or_else(unsayable)?;
+        // Rounded to where it stands already, it is not sent off.
+        if (going.targets[0] - from).abs() > THERE {
+            going.frames.push(direction(side).to_vec());
+        }
+        Ok(going)
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let [speed, limit, direction @ ..] = going.frames.as_slice() else {
+            return Err(DeviceFault::Unfit(
+                "this is no move of the stand".to_owned(),
+            ));
+        };
+        let side = if limit.starts_with(b"g") {
+            Side::Lower
+        } else {
+            Side::Upper
+        };
+        self.set_limit(&[speed.clone(), limit.clone()], side, going.targets[0])?;
+        let Some(direction) = direction.first() else {
+            return Ok(());
+        };
+        let status = self.status()?;
+        self.in_limit_mode(status)?;
+        let there = |travel: f64| (travel - going.targets[0]).abs() <= THERE;
+        self.going = Some((side, going.targets[0]));
+        for _ in 0..TRIES {
+            self.talk.send(direction)?;
+            let status = self.status()?;
+            self.in_limit_mode(status)?;
+            if status.moving
+                || there(
+                    self.patiently(|stand| stand.ask_travel(mark10::codec::ASK_TRAVEL))?
+                        .0,
+                )
+            {
+                return Ok(());
+            }
+            // Not sent off again before its limit is known to stand.
+            if !there(self.patiently(|stand| stand.ask_travel(ask_limit(side)))?.0) {
+                self.stop()?;
+                return Err(DeviceFault::Refused {
+                    reason: "its travel limit is not the one that was read back".to_owned(),
+                });
+            }
+            self.talk.tally_mut().resent += 1;
+        }
+        Err(DeviceFault::Refused {
+            reason: "it does not set off".to_owned(),
+        })
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let (status, said_status) = self.ask_status()?;
+        self.in_limit_mode(status)?;
+        let (travel, said_travel) = self.ask_travel(mark10::codec::ASK_TRAVEL)?;
+        self.last = Some(travel);
+        let past = self.going.is_some_and(|(side, target)| match side {
+            Side::Lower => travel < target - OVERRUN,
+            Side::Upper => travel > target + OVERRUN,
+        });
+        if past {
+            self.stop()?;
+            return Err(DeviceFault::Unfit(
+                "the stand went past its travel limit".to_owned(),
+            ));
+        }
+        let said_force = self.ask(mark10::codec::ASK_FORCE_THROUGH_STAND)?;
+        let force = newtons(&said_force)?;
+        Ok(Sample {
+            time: None,
+            displacement: Some(travel),
+            force: Some(force),
+            moving: Some(status.moving),
+            // Its limits are its targets: to be at one is to have arrived.
+            flags: Flags::default(),
+            raw: vec![said_status, said_travel, said_force],
+            others: Vec::new(),
+        })
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        self.stop()
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        EMERGENCY.to_vec()
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+/// Who answers as a stand.
+pub(crate) fn stand_introduced() -> DeviceIdentity {
+    DeviceIdentity {
+        model: "Mark-10 stand".to_owned(),
+        ..DeviceIdentity::default()
+    }
+}
+
+/// Speed and travel limit of a move to `target` (m) at no more than `speed` (m/s), which goes to this side.
+fn settings(target: f64, speed: f64, side: Side) -> Option<Move> {
+    let (speed_setting, speed) = mark10::codec::speed(speed)?;
+    let (limit_setting, target) = mark10::codec::limit(side, target)?;
+    Some(Move {
+        frames: vec![speed_setting, limit_setting],
+        targets: vec![target],
+        speed,
+        id: None,
+    })
+}
+
+const fn ask_limit(side: Side) -> &'static [u8] {
+    match side {
+        Side::Lower => mark10::codec::ASK_LOWER_LIMIT,
+        Side::Upper => mark10::codec::ASK_UPPER_LIMIT,
+    }
+}
+
+const fn direction(side: Side) -> &'static [u8] {
+    match side {
+        Side::Lower => mark10::codec::DOWN,
+        Side::Upper => mark10::codec::UP,
+    }
+}
+
+/// Whether these are the bytes of a move to this place (m) at this speed (m/s), by either side, set off or left where it is.
+pub(crate) fn sends(wire: &[u8], target: f64, speed: f64) -> bool {
+    [Side::Lower, Side::Upper].into_iter().any(|side| {
+        settings(target, speed, side).is_some_and(|going| {
+            let said = going.targets[0].to_bits() == target.to_bits()
+                && going.speed.to_bits() == speed.to_bits();
+            let rest = wire.strip_prefix(going.frames.concat().as_slice());
+            said && rest.is_some_and(|rest| rest.is_empty() || rest == direction(side))
+        })
+    })
+}
+
+pub(crate) fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
+    match mark10::codec::force(answer) {
+        Some(mark10::codec::Force::Newtons(newtons)) => Ok(Force::Newtons(newtons)),
+        Some(mark10::codec::Force::Unknown) => {
+            Err(no_reading(answer.to_vec(), "the gauge did not understand"))
+        }
+        None => Err(no_reading(
+            answer.to_vec(),
+            "no force with a unit that is known",
+        )),
+    }
+}
+
+fn no_reading(raw: Vec<u8>, reason: &str) -> DeviceFault {
+    DeviceFault::NoReading {
+        raw,
+        reason: reason.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

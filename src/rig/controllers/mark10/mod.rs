@@ -1,0 +1,6 @@
+//! Mark-10 test stands and force gauges: `codec` turns bytes into meaning, `driver` and `load_cell`
+//! lead the conversation.
+
+pub mod codec;
+pub(crate) mod driver;
+pub(crate) mod load_cell;

@@ -1,0 +1,432 @@
+//! A Modbus RTU drive, transmitter or both, as its register map says. In: metres and metres a second. Out: register
+//! writes, and readings of the registers there are. It keeps the silences of the line, and never takes a late answer.
+//! Over a TCP port the same RTU bytes go. A stop can also be a frame that nobody waits for; sent into the middle of
+//! another frame it may not be heard, so that it replaces no wired emergency stop.
+
+use crate::plan::{ModbusMap, ModbusNumber};
+use crate::rig::Tally;
+use crate::rig::controllers::modbus;
+use crate::rig::controllers::modbus::codec::{Fault, Table};
+use crate::rig::controllers::unsequenced::{clear, fault, fresh, order};
+use crate::rig::controllers::{
+    Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis,
+};
+
+/// Silence before a question: 3.5 characters of 11 bits, and never less than this, s.
+const SHORTEST_GAP: f64 = 0.001_75;
+const GAP_BITS: f64 = 3.5 * 11.0;
+/// Further than any actuator reaches, m.
+const IMPLAUSIBLE_POSITION: f64 = 1e3;
+/// More than any cell carries, N.
+const IMPLAUSIBLE_FORCE: f64 = 1e12;
+/// Smaller than any reading but zero: what a float becomes when its words are swapped.
+const IMPLAUSIBLY_SMALL: f64 = 1e-30;
+
+/// The drive, or the transmitter, at the other end of a line.
+pub struct Modbus {
+    talk: Talk,
+    map: ModbusMap,
+    /// s
+    gap: f64,
+    position: Option<Register>,
+    force: Option<Register>,
+    status: Option<Register>,
+}
+
+/// A register to read, and the table it was found in.
+#[derive(Clone, Copy, Debug)]
+struct Register {
+    address: u16,
+    table: Table,
+}
+
+/// A number, as it was read.
+struct Value {
+    /// m or N
+    value: f64,
+    raw: Vec<u8>,
+}
+
+impl Modbus {
+    /// `baud` of a serial line gives the silence between frames; None: over TCP.
+    #[must_use]
+    pub fn new(talk: Talk, map: ModbusMap, baud: Option<u32>) -> Self {
+        let gap = baud.map_or(SHORTEST_GAP, |baud| {
+            (GAP_BITS / f64::from(baud)).max(SHORTEST_GAP)
+        });
+        let register = |address: Option<u16>| {
+            address.map(|address| Register {
+                address,
+                table: Table::Holding,
+            })
+        };
+        let (position, force, status) = (
+            register(map.position),
+            register(map.force),
+            register(map.status),
+        );
+        Self {
+            talk,
+            map,
+            gap,
+            position,
+            force,
+            status,
+        }
+    }
+
+    /// Finds the table a register is in: where there is no such holding register, the input registers are tried.
+    fn find(
+        &mut self,
+        register: Option<Register>,
+        count: u16,
+    ) -> Result<Option<Register>, DeviceFault> {
+        let Some(Register { address, .. }) = register else {
+            return Ok(None);
+        };
+        let asked = |table| modbus::codec::read(self.map.unit, table, address, count);
+        let (holding, input) = (asked(Table::Holding), asked(Table::Input));
+        let table = match self.words(&holding) {
+            Err(DeviceFault::Refused { .. }) => self.words(&input).map(|_| Table::Input)?,
+            said => said.map(|_| Table::Holding)?,
+        };
+        Ok(Some(Register { address, table }))
+    }
+
+    fn read(&mut self, register: Register, unit: f64, bound: f64) -> Result<Value, DeviceFault> {
+        let question = modbus::codec::read(
+            self.map.unit,
+            register.table,
+            register.address,
+            modbus::codec::width(self.map.number),
+        );
+        let (words, raw) = self.words(&question)?;
+        match value_of(self.map.number, &words, unit, bound) {
+            Some(value) => Ok(Value { value, raw }),
+            None => Err(DeviceFault::Impossible {
+                raw,
+                reason: no_number(self.map.number).to_owned(),
+            }),
+        }
+    }
+
+    /// The words that answer a question, and the bytes they came in.
+    fn words(&mut self, question: &[u8]) -> Result<(Vec<u16>, Vec<u8>), DeviceFault> {
+        let gap = self.gap;
+        fresh(&mut self.talk, |talk| exchange(talk, question, gap))
+    }
+
+    fn write(&mut self, frame: &[u8]) -> Result<(), DeviceFault> {
+        let gap = self.gap;
+        order(&mut self.talk, |talk| exchange(talk, frame, gap)).map(|_| ())
+    }
+
+    fn stop_frame(&self) -> Option<Vec<u8>> {
+        self.map
+            .command
+            .map(|command| modbus::codec::write(self.map.unit, command, &[self.map.stop_word]))
+    }
+}
+
+impl Device for Modbus {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        if self.position.is_none() && self.force.is_none() {
+            return Err(unfit("its map has neither a position nor a force to read"));
+        }
+        if self.map.target.is_some() && self.position.is_none() {
+            return Err(unfit("its map has a target, but no position to read"));
+        }
+        let width = modbus::codec::width(self.map.number);
+        self.position = self.find(self.position, width)?;
+        self.force = self.find(self.force, width)?;
+        self.status = self.find(self.status, 1)?;
+        self.sample()?;
+        Ok(introduced(&self.map))
+    }
+
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        frames(&self.map, one_axis(targets)?, speed)
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        going.frames.iter().try_for_each(|frame| self.write(frame))
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let mut sample = Sample {
+            flags: Flags::default(),
+            ..Sample::default()
+        };
+        if let Some(register) = self.position {
+            let Value { value, raw } =
+                self.read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?;
+            sample.displacement = Some(value);
+            sample.raw.push(raw);
+        }
+        if let Some(register) = self.force {
+            let Value { value, raw } =
+                self.read(register, self.map.force_unit, IMPLAUSIBLE_FORCE)?;
+            sample.force = Some(Force::Newtons(value));
+            sample.raw.push(raw);
+        }
+        if let Some(register) = self.status {
+            let (words, raw) = self.words(&modbus::codec::read(
+                self.map.unit,
+                register.table,
+                register.address,
+                1,
+            ))?;
+            sample.moving = words.first().map(|word| word & self.map.moving_mask != 0);
+            sample.raw.push(raw);
+        }
+        Ok(sample)
+    }
+
+    /// By its stop word; a drive without a command register is sent to where it is.
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        let frame = if let Some(frame) = self.stop_frame() {
+            frame
+        } else {
+            let register = self
+                .position
+                .ok_or_else(|| unfit("it has nothing to stop it with"))?;
+            let here = self
+                .read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?
+                .value;
+            target_frame(&self.map, here)?.0
+        };
+        self.write(&frame)
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        self.stop_frame().unwrap_or_default()
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+/// What is said of registers that hold no number that can be.
+const fn no_number(number: ModbusNumber) -> &'static str {
+    match number {
+        ModbusNumber::Int16 => {
+            "it holds no number that can be: look for another register or kind of number"
+        }
+        _ => "it holds no number that can be: try the other word order, or another kind of number",
+    }
+}
+
+/// Who answers as this unit.
+pub(crate) fn introduced(map: &ModbusMap) -> DeviceIdentity {
+    DeviceIdentity {
+        model: format!("Modbus unit {}", map.unit),
+        ..DeviceIdentity::default()
+    }
+}
+
+/// What is sent to go to `target` (m) at a speed that is not above `speed` (m/s), and what it says. A drive that has its words the
+/// other way round is told a speed of next to nothing, so that it does not move: the second word of the speed is 0.
+fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    let slower = if is_float(map.number) {
+        modbus::codec::without_low_word(speed / map.speed_unit) * map.speed_unit
+    } else {
+        speed
+    };
+    frames_saying(map, target, slower)
+}
+
+/// The same at this speed itself, as near as the registers can say it.
+fn frames_saying(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+    let (target_frame, target) = target_frame(map, target)?;
+    let mut going = Move {
+        frames: Vec::new(),
+        targets: vec![target],
+        speed,
+        id: None,
+    };
+    // Before the target, since some drives set off as soon as they have one.
+    if let Some(register) = map.speed {
+        let (words, said) = say_speed(map, speed)?;
+        going
+            .frames
+            .push(modbus::codec::write(map.unit, register, &words));
+        going.speed = said;
+    }
+    going.frames.push(target_frame);
+    if let Some(command) = map.command {
+        going
+            .frames
+            .push(modbus::codec::write(map.unit, command, &[map.start_word]));
+    }
+    Ok(going)
+}
+
+/// Whether these are the bytes of a move to this place (m) at this speed (m/s).
+pub(crate) fn sends(wire: &[u8], map: &ModbusMap, target: f64, speed: f64) -> bool {
+    frames_saying(map, target, speed).is_ok_and(|going| {
+        let said = going.targets[0].to_bits() == target.to_bits()
+            && going.speed.to_bits() == speed.to_bits();
+        said && going.frames.concat() == wire
+    })
+}
+
+fn target_frame(map: &ModbusMap, target: f64) -> Result<(Vec<u8>, f64), DeviceFault> {
+    let register = map
+        .target
+        .ok_or_else(|| unfit("it has no target register: it cannot move"))?;
+    let (words, said) = say(map.number, target, map.length_unit, f64::round)?;
+    Ok((modbus::codec::write(map.unit, register, &words), said))
+}
+
+/// The registers of a quantity, and what they say; `whole` rounds where they hold whole numbers.
+fn say(
+    number: ModbusNumber,
+    quantity: f64,
+    unit: f64,
+    whole: fn(f64) -> f64,
+) -> Result<(Vec<u16>, f64), DeviceFault> {
+    let value = quantity / unit;
+    let value = if is_float(number) || same(value.round(), value) {
+        value
+    } else {
+        whole(value)
+    };
+    let words = modbus::codec::to_words(number, value)
+        .ok_or_else(|| unfit("its registers cannot hold the number"))?;
+    let said = modbus::codec::from_words(number, &words)
+        .ok_or_else(|| unfit("its registers cannot hold the number"))?
+        * unit;
+    // The last bit of turning units is no part of what the registers say.
+    Ok((words, if same(said, quantity) { quantity } else { said }))
+}
+
+/// Registers of a speed that is not above the one asked for.
+fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault> {
+    let (words, said) = say(map.number, speed, map.speed_unit, f64::floor)?;
+    if said <= speed {
+        return if said > 0.0 {
+            Ok((words, said))
+        } else {
+            Err(unfit("its registers cannot hold so low a speed"))
+        };
+    }
+    // A short float may be above by half its last bit.
+    say(
+        map.number,
+        speed * (1.0 - f64::from(f32::EPSILON)),
+        map.speed_unit,
+        f64::floor,
+    )
+}
+
+/// m or N, where the registers hold a number that can be.
+fn value_of(number: ModbusNumber, words: &[u16], unit: f64, bound: f64) -> Option<f64> {
+    modbus::codec::from_words(number, words)
+        .map(|value| value * unit)
+        .filter(|value| plausible(*value, bound))
+}
+
+/// What an answer of this unit says as a position (m); None: it is no answer that holds a number. The second None: no number
+/// that can be.
+#[expect(
+    clippy::option_option,
+    reason = "no answer and no number are different things here"
+)]
+pub(crate) fn position_in(map: &ModbusMap, answer: &[u8]) -> Option<Option<f64>> {
+    let words = words_in(map, answer, modbus::codec::width(map.number))?;
+    Some(value_of(
+        map.number,
+        &words,
+        map.length_unit,
+        IMPLAUSIBLE_POSITION,
+    ))
+}
+
+/// The same as a force, N.
+#[expect(
+    clippy::option_option,
+    reason = "no answer and no number are different things here"
+)]
+pub(crate) fn force_in(map: &ModbusMap, answer: &[u8]) -> Option<Option<f64>> {
+    let words = words_in(map, answer, modbus::codec::width(map.number))?;
+    Some(value_of(
+        map.number,
+        &words,
+        map.force_unit,
+        IMPLAUSIBLE_FORCE,
+    ))
+}
+
+/// Whether it is an answer of this unit that holds a status.
+pub(crate) fn is_status(map: &ModbusMap, answer: &[u8]) -> bool {
+    words_in(map, answer, 1).is_some()
+}
+
+/// So many registers of an answer, whichever of the two tables they are from. Which they are it does not say itself.
+fn words_in(map: &ModbusMap, answer: &[u8], count: u16) -> Option<Vec<u16>> {
+    let asked =
+        |table| modbus::codec::answer(&modbus::codec::read(map.unit, table, 0, count), answer).ok();
+    asked(Table::Holding).or_else(|| asked(Table::Input))
+}
+
+/// One question or order and its answer, after the silence that ends whatever came before.
+fn exchange(
+    talk: &mut Talk,
+    question: &[u8],
+    gap: f64,
+) -> Result<(Vec<u16>, Vec<u8>), DeviceFault> {
+    clear(talk, gap)?;
+    talk.send(question)?;
+    let deadline = talk.now() + talk.reply_timeout();
+    let mut received = Vec::new();
+    let answer = loop {
+        let missing = match modbus::codec::answer_length(question, &received) {
+            Ok(Some(length)) if length == received.len() => {
+                break modbus::codec::answer(question, &received);
+            }
+            Ok(Some(length)) => length - received.len(),
+            Ok(None) => 1,
+            Err(fault) => break Err(fault),
+        };
+        match talk.exactly(missing, deadline) {
+            Ok(bytes) => received.extend(bytes),
+            Err(missed) => {
+                talk.tally_mut().ignored += u64::from(!received.is_empty());
+                return Err(fault(missed, talk));
+            }
+        }
+    };
+    match answer {
+        Ok(words) => Ok((words, received)),
+        Err(Fault::Exception(code)) => Err(DeviceFault::Refused {
+            reason: format!("{} (exception {code})", modbus::codec::exception(code)),
+        }),
+        Err(Fault::Broken(_)) => {
+            talk.tally_mut().ignored += 1;
+            Err(DeviceFault::Silent {
+                seconds: talk.reply_timeout(),
+            })
+        }
+    }
+}
+
+fn plausible(value: f64, bound: f64) -> bool {
+    value == 0.0 || (IMPLAUSIBLY_SMALL <= value.abs() && value.abs() <= bound)
+}
+
+/// Equal but for the last bits of turning units.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 4.0 * f64::EPSILON * b.abs()
+}
+
+const fn is_float(number: ModbusNumber) -> bool {
+    matches!(number, ModbusNumber::Float32 { .. })
+}
+
+fn unfit(reason: &str) -> DeviceFault {
+    DeviceFault::Unfit(reason.to_owned())
+}
+
+#[cfg(test)]
+mod tests;

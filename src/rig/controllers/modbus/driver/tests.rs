@@ -1,0 +1,374 @@
+//! Transcripts of a drive and of a transmitter: exceptions, noise, silence, late answers, swapped words.
+
+use super::*;
+use crate::rig::safety::failpoint::{Guarding, without};
+use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+use crate::rig::transport::Clock as _;
+
+const T: f64 = 0.2;
+const FLOAT: ModbusNumber = ModbusNumber::Float32 {
+    high_word_first: true,
+};
+
+/// Position 10, force 20, status 30 with bit 0, target 40, speed 50, command 60: 1 starts, 2 stops. In mm, mm/s and N.
+const MAP: ModbusMap = ModbusMap {
+    unit: 1,
+    number: FLOAT,
+    target: Some(40),
+    speed: Some(50),
+    position: Some(10),
+    force: Some(20),
+    status: Some(30),
+    moving_mask: 1,
+    command: Some(60),
+    start_word: 1,
+    stop_word: 2,
+    length_unit: 1e-3,
+    speed_unit: 1e-3,
+    force_unit: 1.0,
+};
+const CELL: ModbusMap = ModbusMap {
+    target: None,
+    speed: None,
+    position: None,
+    status: None,
+    command: None,
+    ..MAP
+};
+
+fn device(map: ModbusMap) -> (Modbus, ScriptedPort, VirtualClock) {
+    let clock = VirtualClock::default();
+    let port = ScriptedPort::new(&clock);
+    let talk = Talk::new(Box::new(port.clone()), Box::new(clock.clone()), T);
+    (Modbus::new(talk, map, Some(19_200)), port, clock)
+}
+
+fn sealed(body: &[u8]) -> Vec<u8> {
+    let check = modbus::codec::crc(body).to_le_bytes();
+    [body, &check].concat()
+}
+
+fn float(value: f32) -> Vec<u8> {
+    sealed(&[&[1, 3, 4][..], &value.to_bits().to_be_bytes()].concat())
+}
+
+fn at_once(bytes: Vec<u8>) -> [Say; 1] {
+    [Say::After(0.01, bytes)]
+}
+
+fn frames(port: &ScriptedPort) -> Vec<Vec<u8>> {
+    port.sent().into_iter().map(|(_, frame)| frame).collect()
+}
+
+fn force(sample: &Sample) -> f64 {
+    match sample.force {
+        Some(Force::Newtons(newtons)) => newtons,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_sample_is_what_the_registers_say() {
+    let (mut device, port, _) = device(MAP);
+    port.reply(&at_once(float(12.5)));
+    // In pieces of one byte.
+    port.reply(
+        &float(-300.0)
+            .into_iter()
+            .map(|byte| Say::After(0.001, vec![byte]))
+            .collect::<Vec<_>>(),
+    );
+    port.reply(&at_once(sealed(&[1, 3, 2, 0, 5])));
+    let sample = device.sample().unwrap();
+    assert_eq!(sample.displacement, Some(0.0125));
+    assert_eq!(force(&sample), -300.0);
+    assert_eq!(sample.moving, Some(true), "0b101 and mask 1");
+    assert_eq!(
+        sample.raw,
+        [float(12.5), float(-300.0), sealed(&[1, 3, 2, 0, 5])]
+    );
+    let asked = [
+        &[1, 3, 0, 10, 0, 2][..],
+        &[1, 3, 0, 20, 0, 2],
+        &[1, 3, 0, 30, 0, 1],
+    ]
+    .map(sealed);
+    assert_eq!(frames(&port), asked);
+    assert_eq!(device.tally(), Tally::default());
+}
+
+#[test]
+fn three_and_a_half_characters_of_silence_come_before_every_question() {
+    let (mut device, port, _) = device(CELL);
+    port.reply(&at_once(float(1.0)));
+    port.reply(&at_once(float(2.0)));
+    device.sample().unwrap();
+    device.sample().unwrap();
+    let times: Vec<f64> = port.sent().iter().map(|(time, _)| *time).collect();
+    let gap = 38.5 / 19_200.0;
+    assert!(
+        times[0] >= gap - 1e-9 && times[1] >= times[0] + 0.01 + gap - 1e-9,
+        "{times:?}"
+    );
+}
+
+#[test]
+fn a_move_is_speed_target_start_and_its_numbers_are_those_of_its_registers() {
+    let (mut device, port, _) = device(MAP);
+    let going = device.encode(&[0.001_3], 0.003).unwrap();
+    let short = |value: f32| value.to_bits().to_be_bytes();
+    assert_eq!(going.frames[0][7..11], short(3.0));
+    assert_eq!(going.frames[1][7..11], short(1.3));
+    assert_eq!(going.frames[2], sealed(&[1, 6, 0, 60, 0, 1]));
+    assert_eq!(
+        going.targets[0],
+        f64::from(1.3_f32) * 1e-3,
+        "1.3 is no short float"
+    );
+    assert_eq!(going.speed, 0.003);
+    for frame in &going.frames {
+        let echo = if frame[1] == 6 {
+            frame.clone()
+        } else {
+            sealed(&frame[..6])
+        };
+        port.reply(&at_once(echo));
+    }
+    device.start(&going).unwrap();
+    assert_eq!(frames(&port), going.frames);
+}
+
+#[test]
+fn no_speed_is_rounded_up_and_no_number_is_clamped() {
+    let whole = ModbusMap {
+        number: ModbusNumber::Int16,
+        length_unit: 1e-5,
+        speed_unit: 1e-5,
+        ..MAP
+    };
+    let (mut device, ..) = device(whole);
+    let going = device.encode(&[0.012_344], 0.001_239).unwrap();
+    assert!(
+        (going.targets[0] - 0.012_34).abs() < 1e-15 && (going.speed - 0.001_23).abs() < 1e-15,
+        "{going:?}"
+    );
+    for step in 1..2000 {
+        let asked = f64::from(step) * 1e-5;
+        let going = device.encode(&[asked], asked).unwrap();
+        assert_eq!(
+            (going.targets[0], going.speed),
+            (asked, asked),
+            "the last bit of turning units is not held against it"
+        );
+    }
+    for (target, speed) in [
+        (0.4, 1e-3),
+        (f64::NAN, 1e-3),
+        (0.0, 1e-6),
+        (0.0, f64::NAN),
+        (0.0, -1.0),
+    ] {
+        assert!(
+            matches!(device.encode(&[target], speed), Err(DeviceFault::Unfit(_))),
+            "{target} {speed}"
+        );
+    }
+    let (mut device, ..) = self::device(MAP);
+    for step in 1..2000 {
+        let asked = f64::from(step) * 1.7e-6;
+        let said = device.encode(&[0.0], asked).unwrap().speed;
+        assert!(said <= asked && said > 0.99 * asked, "{said} {asked}");
+    }
+}
+
+#[test]
+fn an_exception_is_a_refusal_in_words() {
+    let (mut device, port, _) = device(MAP);
+    let going = device.encode(&[0.001], 0.001).unwrap();
+    port.reply(&at_once(sealed(&[1, 0x90, 3])));
+    let refused = DeviceFault::Refused {
+        reason: "the value is not allowed (exception 3)".to_owned(),
+    };
+    assert_eq!(device.start(&going), Err(refused));
+    assert_eq!(port.sent().len(), 1, "neither target nor start follow");
+}
+
+#[test]
+fn noise_and_a_broken_answer_are_waited_out_and_asked_again() {
+    let (mut device, port, _) = device(CELL);
+    let mut broken = float(7.0);
+    broken[4] ^= 0x10;
+    port.reply(&at_once(broken));
+    port.reply(&at_once(float(8.0)));
+    port.reply(&at_once(float(9.0)));
+    assert_eq!(force(&device.sample().unwrap()), 9.0);
+    assert_eq!(
+        device.tally(),
+        Tally {
+            resent: 1,
+            ignored: 1,
+            reread: 0
+        }
+    );
+    // What was said before anybody asked is thrown away.
+    port.say(&[
+        Say::After(0.0, vec![0xFF; 700]),
+        Say::After(0.0, float(1.0)),
+    ]);
+    port.reply(&at_once(float(2.0)));
+    assert_eq!(force(&device.sample().unwrap()), 2.0);
+}
+
+/// The first question is answered after 1.2 T, the others at once.
+fn late_answer() -> f64 {
+    let (mut device, port, _) = device(CELL);
+    // The late one comes where the line is listened to for silence, or as the answer to the second question.
+    port.reply(&[Say::After(1.2 * T, float(111.0))]);
+    for value in [222.0, 333.0, 444.0] {
+        port.reply(&at_once(float(value)));
+    }
+    force(&device.sample().unwrap())
+}
+
+#[test]
+fn a_late_answer_is_never_taken_and_the_guard_is_what_stops_it() {
+    assert_ne!(late_answer(), 111.0);
+    assert_eq!(without(Guarding::Sequence, late_answer), 111.0);
+}
+
+#[test]
+fn an_answer_that_comes_while_the_second_question_is_open_is_one_too_many() {
+    let (mut device, port, _) = device(CELL);
+    port.reply(&[Say::After(2.1 * T, float(111.0))]);
+    // In order on the line: the late one, then the answer to the second question.
+    port.reply(&at_once(float(222.0)));
+    port.reply(&at_once(float(333.0)));
+    port.reply(&at_once(float(444.0)));
+    assert_eq!(force(&device.sample().unwrap()), 444.0);
+    assert!(device.tally().ignored >= 1);
+}
+
+#[test]
+fn silence_is_bounded() {
+    let (mut device, port, clock) = device(CELL);
+    assert!(matches!(device.sample(), Err(DeviceFault::Silent { .. })));
+    assert!(clock.now() < 8.0 * T && port.sent().len() == 4);
+}
+
+#[test]
+fn what_is_no_number_is_no_reading() {
+    let (mut device, port, _) = device(CELL);
+    for value in [f32::NAN, f32::INFINITY, 1e30, 1e-40] {
+        port.reply(&at_once(float(value)));
+        assert!(
+            matches!(device.sample(), Err(DeviceFault::Impossible { .. })),
+            "{value}"
+        );
+    }
+}
+
+#[test]
+fn swapped_words_are_noticed_when_it_is_opened() {
+    for value in [12.5_f32, 0.1, -3.75, 1234.5] {
+        let (mut device, port, _) = device(ModbusMap {
+            number: ModbusNumber::Float32 {
+                high_word_first: false,
+            },
+            ..MAP
+        });
+        for reply in [
+            float(value),
+            float(0.0),
+            sealed(&[1, 3, 2, 0, 0]),
+            float(value),
+        ] {
+            port.reply(&at_once(reply));
+        }
+        let DeviceFault::Impossible { reason, .. } = device.identify().unwrap_err() else {
+            panic!()
+        };
+        assert!(reason.contains("other word order"), "{reason}");
+    }
+}
+
+/// Where every reading is exactly 0 nothing tells the order: then the first move must be none.
+#[test]
+fn a_drive_with_its_words_the_other_way_round_is_told_no_speed() {
+    for speed in [1e-3, 1.1e-3, 0.7e-3, 0.05] {
+        let (mut device, ..) = device(MAP);
+        let going = device.encode(&[1e-4], speed).unwrap();
+        assert!(
+            going.speed <= speed && going.speed > 0.99 * speed,
+            "{}",
+            going.speed
+        );
+        let words = modbus::codec::written(&going.frames[0]);
+        let turned = modbus::codec::from_words(
+            ModbusNumber::Float32 {
+                high_word_first: false,
+            },
+            &words,
+        )
+        .unwrap();
+        assert!(turned.abs() < 1e-38, "{speed} m/s is {turned} mm/s to it");
+        assert!(sends(
+            &going.frames.concat(),
+            &MAP,
+            going.targets[0],
+            going.speed
+        ));
+        // A record of an older version says the speed to the last of its digits.
+        let older = frames_saying(&MAP, 1e-4, speed).unwrap();
+        assert!(sends(
+            &older.frames.concat(),
+            &MAP,
+            older.targets[0],
+            older.speed
+        ));
+    }
+}
+
+#[test]
+fn a_transmitter_with_input_registers_only_is_found_out() {
+    let (mut device, port, _) = device(CELL);
+    let input = |value: f32| sealed(&[&[1, 4, 4][..], &value.to_bits().to_be_bytes()].concat());
+    for reply in [sealed(&[1, 0x83, 2]), input(5.0), input(5.0), input(6.0)] {
+        port.reply(&at_once(reply));
+    }
+    assert_eq!(device.identify().unwrap().model, "Modbus unit 1");
+    assert_eq!(force(&device.sample().unwrap()), 6.0);
+    assert_eq!(frames(&port)[3], sealed(&[1, 4, 0, 20, 0, 2]));
+    assert!(
+        matches!(device.encode(&[0.0], 1.0), Err(DeviceFault::Unfit(_))),
+        "it cannot move"
+    );
+}
+
+#[test]
+fn it_holds_by_its_stop_word_or_by_going_where_it_is() {
+    let (mut device, port, _) = device(MAP);
+    let stop = sealed(&[1, 6, 0, 60, 0, 2]);
+    // The first order is lost.
+    port.reply(&[]);
+    port.reply(&at_once(stop.clone()));
+    device.hold().unwrap();
+    assert_eq!(frames(&port), [stop.clone(), stop.clone()]);
+    assert_eq!(device.emergency(), stop);
+    let (mut device, port, _) = self::device(ModbusMap {
+        command: None,
+        ..MAP
+    });
+    port.reply(&at_once(float(2.5)));
+    let target = modbus::codec::write(1, 40, &[0x4020, 0]);
+    port.reply(&at_once(sealed(&target[..6])));
+    device.hold().unwrap();
+    assert_eq!(frames(&port)[1], target);
+    assert!(device.emergency().is_empty());
+}
+
+#[test]
+fn a_hangup_is_a_lost_line() {
+    let (mut device, port, _) = device(CELL);
+    port.reply(&[Say::After(0.01, float(1.0)[..4].to_vec()), Say::HangUp]);
+    assert!(matches!(device.sample(), Err(DeviceFault::Lost { .. })));
+}

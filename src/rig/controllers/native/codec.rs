@@ -1,0 +1,554 @@
+//! psd's own line protocol. In: a request and its sequence number; a line that came. Out: the frame; the reply the line
+//! is. It keeps no conversation: which reply answers which request is the driver's business.
+//!
+//! # The protocol
+//! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request is at most 96 bytes with its ending, of a rig of several
+//! axes 512; a reply at most 512.
+//!
+//! ```text
+//! request = ">" VERB  SP SEQ          *(SP word) "*" CRC LF
+//! reply   = "<" KIND  SP SEQ SP BOOT  *(SP word) "*" CRC LF
+//! ```
+//! CRC is CRC-16/CCITT-FALSE (polynomial 1021, start FFFF; `123456789` gives 29B1) of what stands between the lead
+//! character and `*`, as 4 upper-case hexadecimal digits. SEQ is a decimal of 32 bits, one more with every new request.
+//! BOOT is 4 random upper-case hexadecimal digits of this power-up. Words are printable ASCII without blanks. Units are
+//! fixed: mm, N, mm/s, ms. Lengths and speeds have 6 decimals, forces 3.
+//!
+//! A frame that is broken is not answered. The rig keeps its last reply: the same SEQ again is answered by it and does
+//! nothing; any other than the next is `ERR SEQ`. HELLO is taken with every SEQ, is carried out each time, and sets SEQ.
+//!
+//! A rig has 1 to 6 axes. What stands in braces is said for each axis in turn, the first one first, so that a rig of one
+//! axis says each once; how many axes it has is told by the number of words of its reply to HELLO.
+//!
+//! | Request | Reply |
+//! |---|---|
+//! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move it began (id 0: none since power-up). The limits of a run are gone after it. |
+//! | `LIM {d_low d_high f_low f_high} v_high` | `ACK state`: the limits of this run. Wider than the rig's own: `ERR LIMIT`. |
+//! | `MOVE id {target} rate` | `ACK state`: all axes go to their absolute targets together, and arrive together, the one with the farthest way at the rate. An id is greater than every one before. The last id with its targets again: `ACK` without motion; with others, or an older id: `ERR ID`. |
+//! | `GLIDE id {target velocity} ms` | `ACK state left`: every axis follows the cubic from where and as fast as it is to its target, which it passes with its velocity so many ms after the last `GLIDE` ended, or from now on where none is under way; `left` is how long it is to that end, ms. It does not stop there: it goes on as fast as it passed, and holds where no `GLIDE` follows. |
+//! | `MEAS n` | `DATA t {disp force raw flags} state`: the median of n readings of each channel. |
+//! | `STAT` | `ACK state flags`: a bit is set where it is of any axis. |
+//! | `STOP` | `ACK HELD`: stops all axes, keeps the load, and stays held until `CLR`. |
+//! | `CLR` | `ACK state`: lets go of a latched hold. Nothing moves. |
+//! | `REF token` | `ACK state`: its position is to be trusted from now on, of all axes; the token is whose word that is. |
+//!
+//! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3
+//! lower limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` carries
+//! one word: `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `LATE`, `HELD`, `STOP`, `REF`, `FAULT`.
+//!
+//! The byte `!` anywhere holds at once, as `STOP` does, and is no part of a frame. No valid frame for W ms (3000 as
+//! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: what it does not do exactly, it refuses. Holding
+//! keeps the load; taking it away is an operator's act. None of this is in place of a wired emergency stop and end switches.
+
+use std::fmt::Write as _;
+
+use crate::plan::Interval;
+use crate::rig::LastMove;
+use crate::rig::controllers::Flags;
+use crate::rig::controllers::number;
+use crate::rig::safety::failpoint::{Guarding, on};
+
+/// Longest request with its ending, bytes: of one axis, of several.
+pub const LONGEST_FRAME: usize = 96;
+pub const LONGEST_FRAME_OF_SEVERAL: usize = 512;
+
+/// Axes of a rig, at most: the reply to HELLO is no longer than a reply may be.
+pub const MOST_AXES: usize = 6;
+
+/// What is asked. Lengths m, speeds m/s, forces N.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request<'a> {
+    Hello,
+    Limits(&'a Bounds),
+    /// Targets of every axis and the speed as [`lengths`] and [`length`] write them: what is said is written once.
+    Move {
+        id: u64,
+        targets: &'a str,
+        speed: &'a str,
+    },
+    /// Where each axis passes and as fast as what, so long after the way before.
+    Glide {
+        id: u64,
+        ends: &'a [End],
+        seconds: f64,
+    },
+    Measure {
+        readings: u32,
+    },
+    Status,
+    Stop,
+    Clear,
+    Reference {
+        token: &'a str,
+    },
+}
+
+/// The end of a smooth way: m, m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    pub place: f64,
+    pub velocity: f64,
+}
+
+/// What a rig keeps to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds {
+    /// One entry an axis.
+    pub axes: Vec<AxisBounds>,
+    /// m/s, of the axis that is fastest.
+    pub top_speed: f64,
+}
+
+/// What one axis keeps to: m, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisBounds {
+    pub displacement: Interval,
+    pub force: Interval,
+}
+
+impl Bounds {
+    /// Whether every axis has a place to stand, and a speed to go at.
+    #[must_use]
+    pub fn allow_something(&self) -> bool {
+        let some = |bounds: Interval| bounds.low <= bounds.high;
+        self.top_speed > 0.0
+            && self
+                .axes
+                .iter()
+                .all(|axis| some(axis.displacement) && some(axis.force))
+    }
+}
+
+/// The first word of a reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Ack,
+    Data,
+    Err,
+}
+
+/// A reply that came whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reply {
+    pub kind: Kind,
+    pub sequence: u32,
+    /// As it came, without its ending.
+    pub line: Vec<u8>,
+    /// Where the word of the power-up begins in it.
+    boot: usize,
+}
+
+impl Reply {
+    /// Word of the power-up, 4 hexadecimal digits.
+    #[must_use]
+    pub fn boot(&self) -> &str {
+        text(&self.line[self.boot..self.boot + BOOT_DIGITS])
+    }
+
+    /// What it says, word by word. Whole and in order it may have an empty or a strange field: the rig says the same however
+    /// often it is asked for this reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
+    #[must_use]
+    pub fn words(&self) -> Vec<&str> {
+        let said = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
+        let mut words = Vec::with_capacity(USUAL_WORDS);
+        words.extend(said.split(|byte| *byte == b' ').skip(1).map(text));
+        words
+    }
+}
+
+/// Of the word of a power-up, and of `*` with the checksum behind it.
+const BOOT_DIGITS: usize = 4;
+const CHECK_LENGTH: usize = 5;
+
+/// Words of a reading of one axis, and some to spare.
+const USUAL_WORDS: usize = 8;
+
+/// Why a line is no reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Broken {
+    Shape,
+    Checksum,
+}
+
+/// What a rig says of itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hello {
+    pub model: String,
+    pub serial: String,
+    pub firmware: String,
+    pub bounds: Bounds,
+    pub last: Option<LastMove>,
+}
+
+/// What a rig says that it does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    Idle,
+    Moving,
+    Held,
+}
+
+/// A reading of every axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Data {
+    /// s
+    pub time: f64,
+    pub axes: Vec<AxisData>,
+    pub state: State,
+}
+
+/// What one axis says: m, N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisData {
+    pub displacement: f64,
+    pub force: f64,
+    pub raw: i64,
+    pub flags: Flags,
+}
+
+/// The frame of a request; nothing where one of its numbers cannot be said or it would be too long.
+#[must_use]
+pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
+    let mut longest = LONGEST_FRAME;
+    let mut several = |axes: usize| {
+        if axes > 1 {
+            longest = LONGEST_FRAME_OF_SEVERAL;
+        }
+    };
+    let mut out = String::with_capacity(LONGEST_FRAME);
+    match request {
+        Request::Hello => write!(out, ">HELLO {sequence}"),
+        Request::Limits(bounds) => {
+            several(bounds.axes.len());
+            let axes: Vec<String> = bounds.axes.iter().map(bounds_of).collect::<Option<_>>()?;
+            write!(
+                out,
+                ">LIM {sequence} {} {}",
+                axes.join(" "),
+                length(bounds.top_speed)?
+            )
+        }
+        Request::Move { id, targets, speed } => {
+            several(targets.split(' ').count());
+            write!(out, ">MOVE {sequence} {id} {targets} {speed}")
+        }
+        Request::Glide { id, ends, seconds } => {
+            several(ends.len());
+            write!(
+                out,
+                ">GLIDE {sequence} {id} {} {}",
+                lengths(&in_turn(ends))?,
+                time(*seconds)?
+            )
+        }
+        Request::Measure { readings } => write!(out, ">MEAS {sequence} {readings}"),
+        Request::Status => write!(out, ">STAT {sequence}"),
+        Request::Stop => write!(out, ">STOP {sequence}"),
+        Request::Clear => write!(out, ">CLR {sequence}"),
+        Request::Reference { token } => {
+            let word = !token.is_empty()
+                && token
+                    .bytes()
+                    .all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
+            word.then(|| write!(out, ">REF {sequence} {token}"))?
+        }
+    }
+    .ok()?;
+    let sum = checksum(&out.as_bytes()[1..]);
+    writeln!(out, "*{sum:04X}").ok()?;
+    (out.len() <= longest).then(|| out.into_bytes())
+}
+
+/// `d_low d_high f_low f_high`
+fn bounds_of(axis: &AxisBounds) -> Option<String> {
+    let (low, high) = (
+        length(axis.displacement.low)?,
+        length(axis.displacement.high)?,
+    );
+    let (least, most) = (
+        number::write(axis.force.low, 3)?,
+        number::write(axis.force.high, 3)?,
+    );
+    Some(format!("{low} {high} {least} {most}"))
+}
+
+/// Lengths after each other.
+#[must_use]
+pub fn lengths(values: &[f64]) -> Option<String> {
+    let words: Vec<String> = values
+        .iter()
+        .map(|value| length(*value))
+        .collect::<Option<_>>()?;
+    Some(words.join(" "))
+}
+
+/// Place and velocity of each end after each other.
+pub(crate) fn in_turn(ends: &[End]) -> Vec<f64> {
+    ends.iter()
+        .flat_map(|end| [end.place, end.velocity])
+        .collect()
+}
+
+/// s as it is written: ms.
+pub(crate) fn time(seconds: f64) -> Option<String> {
+    number::write(seconds * 1e3, 3)
+}
+
+/// How long it is to the end of a way (s), as the reply to `GLIDE` says.
+#[must_use]
+pub fn left(words: &[&str]) -> Option<f64> {
+    let [_, left] = words else { return None };
+    number::fixed(left.as_bytes())
+        .filter(|left| *left >= 0.0)
+        .map(|left| left / 1e3)
+}
+
+/// The sequence number of a frame to be sent.
+#[must_use]
+pub fn sequence(frame: &[u8]) -> Option<u32> {
+    let word = frame.split(|byte| matches!(byte, b' ' | b'*')).nth(1)?;
+    number::count(word).and_then(|count| u32::try_from(count).ok())
+}
+
+/// m or m/s as it is written: mm or mm/s.
+#[must_use]
+pub fn length(value: f64) -> Option<String> {
+    number::write(value * 1e3, 6)
+}
+
+/// The reply a line is, without its ending.
+///
+/// # Errors
+/// It is none.
+pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
+    let [b'<', body @ .., b'*', a, b, c, d] = line else {
+        return Err(Broken::Shape);
+    };
+    let stated = number::hexadecimal(&[*a, *b, *c, *d], 4).ok_or(Broken::Shape)?;
+    if stated != checksum(body) && on(Guarding::Checksum) {
+        return Err(Broken::Checksum);
+    }
+    let mut words = body.split(|byte| *byte == b' ');
+    let mut next = || words.next().ok_or(Broken::Shape);
+    let kind = next()?;
+    let (kind_length, kind) = match kind {
+        b"ACK" => (kind.len(), Kind::Ack),
+        b"DATA" => (kind.len(), Kind::Data),
+        b"ERR" => (kind.len(), Kind::Err),
+        _ => return Err(Broken::Shape),
+    };
+    let counted = next()?;
+    let sequence = number::count(counted)
+        .and_then(|count| u32::try_from(count).ok())
+        .ok_or(Broken::Shape)?;
+    number::hexadecimal(next()?, BOOT_DIGITS).ok_or(Broken::Shape)?;
+    // Behind `<`, the kind, the number, and a blank after either.
+    let boot = 1 + kind_length + 1 + counted.len() + 1;
+    Ok(Reply {
+        kind,
+        sequence,
+        line: line.to_vec(),
+        boot,
+    })
+}
+
+/// A word of a line; of what is none nothing.
+fn text(bytes: &[u8]) -> &str {
+    let printable = bytes.iter().all(u8::is_ascii_graphic);
+    str::from_utf8(bytes)
+        .ok()
+        .filter(|_| printable)
+        .unwrap_or_default()
+}
+
+/// What a rig says of itself.
+#[must_use]
+pub fn hello(words: &[&str]) -> Option<Hello> {
+    let [model, serial, firmware, numbers @ ..] = words else {
+        return None;
+    };
+    if words.iter().any(|word| word.is_empty()) {
+        return None;
+    }
+    // For each axis four limits and a target, and two words for all.
+    let axes = numbers
+        .len()
+        .checked_sub(2)
+        .filter(|words| words.is_multiple_of(5))
+        .map(|words| words / 5)?;
+    if !(1..=MOST_AXES).contains(&axes) {
+        return None;
+    }
+    let (limits, rest) = numbers.split_at(4 * axes);
+    let [top_speed, id, targets @ ..] = rest else {
+        return None;
+    };
+    let axis = |words: &[&str]| {
+        let [low, high, least, most] = words else {
+            return None;
+        };
+        Some(AxisBounds {
+            displacement: Interval {
+                low: millimetres(low)?,
+                high: millimetres(high)?,
+            },
+            force: Interval {
+                low: number::fixed(least.as_bytes())?,
+                high: number::fixed(most.as_bytes())?,
+            },
+        })
+    };
+    let axes = limits.chunks_exact(4).map(axis).collect::<Option<_>>()?;
+    let bounds = Bounds {
+        axes,
+        top_speed: millimetres(top_speed)?,
+    };
+    let id = number::count(id.as_bytes())?;
+    let targets = targets
+        .iter()
+        .map(|target| millimetres(target))
+        .collect::<Option<_>>()?;
+    let last = (id > 0).then_some(LastMove { id, targets });
+    let [model, serial, firmware] = [model, serial, firmware].map(|word| (*word).to_owned());
+    Some(Hello {
+        model,
+        serial,
+        firmware,
+        bounds,
+        last,
+    })
+}
+
+/// The reading of a `DATA` reply.
+#[must_use]
+pub fn data(words: &[&str]) -> Option<Data> {
+    let [time, axes @ .., state] = words else {
+        return None;
+    };
+    if axes.is_empty() || !axes.len().is_multiple_of(4) {
+        return None;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "ms since power-up")]
+    let time = number::count(time.as_bytes())? as f64 / 1e3;
+    let axes = axes.chunks_exact(4).map(axis_data).collect::<Option<_>>()?;
+    Some(Data {
+        time,
+        axes,
+        state: self::state(state)?,
+    })
+}
+
+/// The first axis (from 1) of a `DATA` reply of several that has no number where one belongs.
+#[must_use]
+pub fn axis_without_number(words: &[&str]) -> Option<usize> {
+    let [_, axes @ .., _] = words else {
+        return None;
+    };
+    let several = axes.len() > 4 && axes.len().is_multiple_of(4);
+    several
+        .then(|| {
+            axes.chunks_exact(4)
+                .position(|words| axis_data(words).is_none())
+        })
+        .flatten()
+        .map(|axis| axis + 1)
+}
+
+fn axis_data(words: &[&str]) -> Option<AxisData> {
+    let [displacement, force, raw, flags] = words else {
+        return None;
+    };
+    Some(AxisData {
+        displacement: millimetres(displacement)?,
+        force: number::fixed(force.as_bytes())?,
+        raw: number::whole(raw.as_bytes())?,
+        flags: self::flags(flags)?,
+    })
+}
+
+/// mm as m.
+fn millimetres(word: &str) -> Option<f64> {
+    number::fixed(word.as_bytes()).map(|value| value / 1e3)
+}
+
+/// A word of flags; one with a bit nobody knows says nothing.
+#[must_use]
+pub fn flags(word: &str) -> Option<Flags> {
+    let bits =
+        number::hexadecimal(word.strip_prefix("0x")?.as_bytes(), 4).filter(|bits| *bits < 0x100)?;
+    let bit = |index: u16| bits >> index & 1 == 1;
+    Some(Flags {
+        saturated: bit(0),
+        stale: bit(1),
+        limit_high: bit(2),
+        limit_low: bit(3),
+        emergency_stop: bit(4),
+        unreferenced: bit(5),
+        unsettled: bit(6),
+        watchdog_tripped: bit(7),
+    })
+}
+
+#[must_use]
+pub fn state(word: &str) -> Option<State> {
+    match word {
+        "IDLE" => Some(State::Idle),
+        "MOVING" => Some(State::Moving),
+        "HELD" => Some(State::Held),
+        _ => None,
+    }
+}
+
+/// What the code of an `ERR` means.
+#[must_use]
+pub fn refusal(words: &[&str]) -> String {
+    let code = words.first().copied().unwrap_or_default();
+    let meaning = match code {
+        "SEQ" => "the rig is at another sequence number",
+        "VERB" => "the rig does not know this request",
+        "ARG" => "the rig does not take this argument",
+        "LIMIT" => "outside the limits of the rig",
+        "RATE" => "faster than the rig may go",
+        "ID" => "this number of a move was given to another target",
+        "BUSY" => "the rig is still moving",
+        "LATE" => "the way would have ended before it came",
+        "HELD" => "the rig is held",
+        "STOP" => "the emergency stop is pressed",
+        "REF" => "the rig is not referenced",
+        "FAULT" => "the rig has a fault of its own",
+        _ => "for a reason psd does not know",
+    };
+    format!("{meaning} (`ERR {}`)", words.join(" "))
+}
+
+/// CRC-16/CCITT-FALSE.
+#[must_use]
+pub fn checksum(bytes: &[u8]) -> u16 {
+    bytes.iter().fold(0xffff, |sum: u16, byte| {
+        let [high, low] = sum.to_be_bytes();
+        u16::from_be_bytes([low, 0]) ^ REMAINDERS[usize::from(high ^ byte)]
+    })
+}
+
+/// What the polynomial 1021 leaves of each byte, shifted through bit by bit.
+const REMAINDERS: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut byte: u16 = 0;
+    while byte < 256 {
+        let (mut sum, mut bit) = (byte << 8, 0);
+        while bit < 8 {
+            sum = if sum & 0x8000 == 0 {
+                sum << 1
+            } else {
+                sum << 1 ^ 0x1021
+            };
+            bit += 1;
+        }
+        table[byte as usize] = sum;
+        byte += 1;
+    }
+    table
+};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,472 @@
+//! Driver for psd's own protocol. In: moves and requests in SI. Out: replies that are complete, in
+//! order and from the same power-up. `codec` knows the bytes. It does not judge a reading.
+
+use crate::physics::tracking::trajectory::Path;
+use crate::plan::Limits;
+use crate::rig::controllers::native;
+use crate::rig::controllers::native::codec::{
+    AxisBounds, Bounds, Hello, Kind, Reply, Request, State,
+};
+use crate::rig::controllers::number;
+use crate::rig::controllers::{
+    Answer, Channel, Device, DeviceFault, DeviceIdentity, Force, Move, Sample, Talk,
+};
+use crate::rig::safety::failpoint::{Guarding, on};
+use crate::rig::{LastMove, Tally};
+
+mod path;
+
+/// How the model of a simulator begins.
+pub const SIMULATED: &str = "PSD-SIM";
+
+/// The firmware at the other end of a line.
+pub struct NativeDevice {
+    talk: Talk,
+    /// Of the last request.
+    sequence: u32,
+    boot: Option<String>,
+    hello: Option<Hello>,
+    /// The reply that said it.
+    introduction: Vec<u8>,
+    /// The limits of this run, as they were told.
+    narrowed: Option<Bounds>,
+    /// A request was not answered: rig and program may disagree on its number.
+    out_of_step: bool,
+    /// Held by this driver: the hold is latched.
+    held: bool,
+    /// Number of the next move, where none is proposed.
+    next_id: u64,
+    proposed: Option<Proposed>,
+}
+
+/// A move that has not been accepted.
+struct Proposed {
+    id: u64,
+    /// As they are written.
+    targets: String,
+    sent: bool,
+}
+
+impl NativeDevice {
+    #[must_use]
+    pub const fn new(talk: Talk) -> Self {
+        Self {
+            talk,
+            sequence: 0,
+            boot: None,
+            hello: None,
+            introduction: Vec::new(),
+            narrowed: None,
+            out_of_step: false,
+            held: false,
+            next_id: 1,
+            proposed: None,
+        }
+    }
+
+    /// Tells the rig that its position is to be trusted from now on; `token` says by whose word (letters, digits, `-`).
+    ///
+    /// # Errors
+    /// It refuses or is not heard.
+    pub fn reference(&mut self, token: &str) -> Result<(), DeviceFault> {
+        self.request(&Request::Reference { token }, Kind::Ack)
+            .map(drop)
+    }
+
+    fn hello(&self) -> Result<&Hello, DeviceFault> {
+        self.hello
+            .as_ref()
+            .ok_or_else(|| DeviceFault::Unfit("the rig has not been asked who it is".to_owned()))
+    }
+
+    /// Asks and waits for the reply of this kind, having taken up the conversation again where it was broken off.
+    fn request(&mut self, request: &Request<'_>, kind: Kind) -> Result<Reply, DeviceFault> {
+        if self.out_of_step {
+            self.say_hello()?;
+            if let Some(bounds) = self.narrowed.clone() {
+                self.request(&Request::Limits(&bounds), Kind::Ack)?;
+            }
+        }
+        let frame = framed(self.sequence.wrapping_add(1), request)?;
+        self.exchange(&frame, kind)
+    }
+
+    /// Sends the frame of the next sequence number.
+    fn exchange(&mut self, frame: &[u8], kind: Kind) -> Result<Reply, DeviceFault> {
+        self.sequence = self.sequence.wrapping_add(1);
+        self.out_of_step = true;
+        let (sequence, boot) = (self.sequence, self.boot.as_deref());
+        let answered = self
+            .talk
+            .exchange(frame, b"\n", |line| judge(line, sequence, kind, boot))?;
+        let refused = answered.kind == Kind::Err;
+        self.out_of_step = refused && answered.words().first() == Some(&"SEQ");
+        if refused {
+            return Err(DeviceFault::Refused {
+                reason: native::codec::refusal(&answered.words()),
+            });
+        }
+        Ok(answered)
+    }
+
+    fn say_hello(&mut self) -> Result<(), DeviceFault> {
+        let frame = framed(self.sequence.wrapping_add(1), &Request::Hello)?;
+        let reply = self.exchange(&frame, Kind::Ack)?;
+        let hello =
+            native::codec::hello(&reply.words()).filter(|hello| hello.bounds.allow_something());
+        let strange = || {
+            DeviceFault::Unfit(format!(
+                "`{}` does not say what rig it is",
+                reply.line.escape_ascii()
+            ))
+        };
+        let hello = hello.ok_or_else(strange)?;
+        if let Some(before) = &self.hello
+            && before.bounds.axes.len() != hello.bounds.axes.len()
+        {
+            return Err(strange());
+        }
+        self.hello = Some(hello);
+        self.boot = Some(reply.boot().to_owned());
+        self.introduction = reply.line;
+        Ok(())
+    }
+
+    /// Sends a move or a way as it was made. The reply to its last frame.
+    fn send(&mut self, going: &Move) -> Result<Option<Reply>, DeviceFault> {
+        // The bytes are on record before they are sent: they are never made anew with another number.
+        let next = self.sequence.wrapping_add(1);
+        if self.out_of_step
+            || going
+                .frames
+                .first()
+                .and_then(|frame| native::codec::sequence(frame))
+                != Some(next)
+        {
+            return Err(DeviceFault::Unfit(
+                "the rig was asked something else since this move was made".to_owned(),
+            ));
+        }
+        if let Some(proposed) = &mut self.proposed {
+            proposed.sent = true;
+        }
+        let mut last = None;
+        for frame in &going.frames {
+            let answered = self.exchange(frame, Kind::Ack)?;
+            state(&answered)?;
+            last = Some(answered);
+        }
+        self.next_id = going.id.map_or(self.next_id, |id| id + 1);
+        (self.held, self.proposed) = (false, None);
+        Ok(last)
+    }
+
+    /// The frames of a request that moves, in order: a latched hold is let go of first.
+    fn frames_of(&self, moving: Request<'_>) -> Result<Vec<Vec<u8>>, DeviceFault> {
+        let requests = if self.held {
+            vec![Request::Clear, moving]
+        } else {
+            vec![moving]
+        };
+        let mut sequence = self.sequence;
+        let frames = requests.iter().map(|request| {
+            sequence = sequence.wrapping_add(1);
+            framed(sequence, request)
+        });
+        frames.collect()
+    }
+
+    /// A request that is answered by the state alone.
+    fn command(&mut self, request: &Request<'_>) -> Result<State, DeviceFault> {
+        state(&self.request(request, Kind::Ack)?)
+    }
+}
+
+fn framed(sequence: u32, request: &Request<'_>) -> Result<Vec<u8>, DeviceFault> {
+    native::codec::frame(sequence, request)
+        .ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be said in a frame")))
+}
+
+/// Who a rig is that says this of itself.
+pub fn native_identity(hello: &Hello, boot: Option<String>) -> DeviceIdentity {
+    let Hello {
+        model,
+        serial,
+        firmware,
+        ..
+    } = hello.clone();
+    let simulated = model.starts_with(SIMULATED);
+    DeviceIdentity {
+        model,
+        serial,
+        firmware,
+        boot,
+        simulated,
+        raw: Vec::new(),
+    }
+}
+
+/// The reading that a `DATA` reply of so many axes says.
+pub(crate) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> {
+    let words = reply.words();
+    let Some(data) = native::codec::data(&words).filter(|data| data.axes.len() == axes) else {
+        let reason = match native::codec::axis_without_number(&words) {
+            Some(axis) => format!("axis {axis} has no number where one belongs"),
+            None => "a field is missing, too many or no number".to_owned(),
+        };
+        return Err(DeviceFault::Impossible {
+            raw: reply.line,
+            reason,
+        });
+    };
+    let mut axes = data.axes.iter().map(|axis| Channel {
+        displacement: Some(axis.displacement),
+        force: Some(Force::Newtons(axis.force)),
+        flags: axis.flags,
+    });
+    let Channel {
+        displacement,
+        force,
+        flags,
+    } = axes.next().unwrap_or_default();
+    let others = axes.collect();
+    let moving = Some(data.state == State::Moving);
+    Ok(Sample {
+        time: Some(data.time),
+        displacement,
+        force,
+        moving,
+        flags,
+        others,
+        raw: vec![reply.line],
+    })
+}
+
+/// What a line is to the request that is open.
+fn judge(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Reply> {
+    let Ok(reply) = native::codec::reply(line) else {
+        return Answer::Ignore;
+    };
+    if let Some(was) = boot.filter(|was| *was != reply.boot())
+        && on(Guarding::Reboot)
+    {
+        return Answer::Fault(DeviceFault::Rebooted {
+            was: was.to_owned(),
+            is: reply.boot().to_owned(),
+        });
+    }
+    if reply.sequence != sequence && on(Guarding::Sequence)
+        || reply.kind != kind && reply.kind != Kind::Err
+    {
+        return Answer::Ignore;
+    }
+    Answer::Take(reply)
+}
+
+fn state(reply: &Reply) -> Result<State, DeviceFault> {
+    let word = reply
+        .words()
+        .first()
+        .and_then(|word| native::codec::state(word));
+    word.ok_or_else(|| DeviceFault::NoReading {
+        raw: reply.line.clone(),
+        reason: "it names no state".to_owned(),
+    })
+}
+
+impl Device for NativeDevice {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.talk.drain()?;
+        self.narrowed = None;
+        self.say_hello()?;
+        let reply = self.request(&Request::Status, Kind::Ack)?;
+        let flags = reply
+            .words()
+            .get(1)
+            .and_then(|word| native::codec::flags(word));
+        let strange = || DeviceFault::NoReading {
+            raw: reply.line.clone(),
+            reason: "it has no flags".to_owned(),
+        };
+        if flags.ok_or_else(strange)?.emergency_stop {
+            return Err(DeviceFault::Unfit(
+                "the emergency stop is pressed".to_owned(),
+            ));
+        }
+        // Between two runs nothing is said to the rig, so that its watchdog has tripped: beginning a run is the
+        // operator's act that lets go of it. Within a run it is never let go of.
+        if state(&reply)? == State::Held {
+            self.command(&Request::Clear)?;
+        }
+        (self.held, self.proposed) = (false, None);
+        let hello = self.hello()?.clone();
+        self.next_id = hello.last.as_ref().map_or(0, |last| last.id) + 1;
+        Ok(DeviceIdentity {
+            raw: vec![self.introduction.clone()],
+            ..native_identity(&hello, self.boot.clone())
+        })
+    }
+
+    fn axes(&self) -> usize {
+        self.hello
+            .as_ref()
+            .map_or(1, |hello| hello.bounds.axes.len())
+    }
+
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        let bounds = &self.hello()?.bounds;
+        if self.out_of_step {
+            return Err(DeviceFault::Unfit(
+                "an answer is missing: the rig must be read before it moves again".to_owned(),
+            ));
+        }
+        if targets.len() != bounds.axes.len() {
+            return Err(DeviceFault::Unfit(format!(
+                "it has {} axes, not {}",
+                bounds.axes.len(),
+                targets.len()
+            )));
+        }
+        let unsaid = || {
+            DeviceFault::Unfit(format!(
+                "a move to {targets:?} m at {speed} m/s cannot be said"
+            ))
+        };
+        let (written, rate) = native::codec::lengths(targets)
+            .zip(native::codec::length(speed))
+            .ok_or_else(unsaid)?;
+        let said = |(written, meant): (&str, f64)| number::read_back(written, 1e3, meant);
+        let heard: Option<Vec<f64>> = written
+            .split(' ')
+            .zip(targets.iter().copied())
+            .map(said)
+            .collect();
+        let (targets, speed) = heard.zip(said((&rate, speed))).ok_or_else(unsaid)?;
+        if !bounds
+            .axes
+            .iter()
+            .zip(&targets)
+            .all(|(axis, target)| axis.displacement.contains(*target))
+        {
+            return Err(DeviceFault::Refused {
+                reason: format!("{written} mm is outside the limits the rig says it has"),
+            });
+        }
+        // A speed that is written as nothing would never arrive.
+        if !(0.0 < speed && speed <= bounds.top_speed) {
+            return Err(DeviceFault::Refused {
+                reason: format!("{} mm/s is no speed of this rig", speed * 1e3),
+            });
+        }
+        let id = match &self.proposed {
+            Some(proposed) if proposed.targets == written || !proposed.sent => proposed.id,
+            // The rig may have heard the other targets under this number.
+            Some(proposed) => proposed.id + 1,
+            None => self.next_id,
+        };
+        let frames = self.frames_of(Request::Move {
+            id,
+            targets: &written,
+            speed: &rate,
+        })?;
+        let sent = self
+            .proposed
+            .as_ref()
+            .is_some_and(|proposed| proposed.sent && proposed.id == id);
+        self.proposed = Some(Proposed {
+            id,
+            targets: written,
+            sent,
+        });
+        Ok(Move {
+            frames,
+            targets,
+            speed,
+            id: Some(id),
+        })
+    }
+
+    fn encode_way(&mut self, paths: &[Path]) -> Result<Move, DeviceFault> {
+        self.way(paths)
+    }
+
+    fn set_out(&mut self, going: &Move) -> Result<f64, DeviceFault> {
+        let Some(reply) = self.send(going)? else {
+            return Err(nothing_to_send());
+        };
+        let strange = || DeviceFault::NoReading {
+            raw: reply.line.clone(),
+            reason: "it does not say how long the way is".to_owned(),
+        };
+        native::codec::left(&reply.words()).ok_or_else(strange)
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        self.send(going)?.map(drop).ok_or_else(nothing_to_send)
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let reply = self.request(&Request::Measure { readings: 1 }, Kind::Data)?;
+        decoded(reply, self.axes())
+    }
+
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        self.talk.send(&self.emergency())?;
+        self.held = true;
+        match self.command(&Request::Stop)? {
+            State::Held => Ok(()),
+            other => Err(DeviceFault::Unfit(format!(
+                "told to stop, the rig says it is {other:?}"
+            ))),
+        }
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        b"!".to_vec()
+    }
+
+    fn narrow_limits(&mut self, limits: &[Limits]) -> Result<(), DeviceFault> {
+        let own = &self.hello()?.bounds;
+        if limits.len() != own.axes.len() {
+            return Err(DeviceFault::Unfit(format!(
+                "it has {} axes, not {}",
+                own.axes.len(),
+                limits.len()
+            )));
+        }
+        let narrower = |(own, limits): (&AxisBounds, &Limits)| AxisBounds {
+            displacement: own.displacement.intersection(limits.displacement),
+            force: own.force.intersection(limits.force),
+        };
+        let bounds = Bounds {
+            axes: own.axes.iter().zip(limits).map(narrower).collect(),
+            top_speed: limits
+                .iter()
+                .map(|limits| limits.speed.high)
+                .fold(own.top_speed, f64::min),
+        };
+        if !bounds.allow_something() {
+            return Err(DeviceFault::Unfit(
+                "the limits of the plan and those of the rig have nothing in common".to_owned(),
+            ));
+        }
+        self.command(&Request::Limits(&bounds))?;
+        self.narrowed = Some(bounds);
+        Ok(())
+    }
+
+    fn last_move(&self) -> Option<LastMove> {
+        self.hello.as_ref().and_then(|hello| hello.last.clone())
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+fn nothing_to_send() -> DeviceFault {
+    DeviceFault::Unfit("there are no bytes to send".to_owned())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,80 @@
+//! Ways of a rig that speaks psd's own protocol: smooth paths whose ends it passes. In: a path an axis, in the device's own
+//! directions. Out: the frame of a `GLIDE`, and what it says. It sends nothing.
+
+use super::{Move, NativeDevice, Proposed};
+use crate::physics::tracking::trajectory::Path;
+use crate::rig::controllers::DeviceFault;
+use crate::rig::controllers::native;
+use crate::rig::controllers::native::codec::{End, Request};
+use crate::rig::controllers::number;
+
+impl NativeDevice {
+    pub(super) fn way(&mut self, paths: &[Path]) -> Result<Move, DeviceFault> {
+        let bounds = &self.hello()?.bounds;
+        if self.out_of_step {
+            return Err(DeviceFault::Unfit(
+                "an answer is missing: the rig must be read before it moves again".to_owned(),
+            ));
+        }
+        if paths.len() != bounds.axes.len() {
+            return Err(DeviceFault::Unfit(format!(
+                "it has {} axes, not {}",
+                bounds.axes.len(),
+                paths.len()
+            )));
+        }
+        let said = |meant: f64| number::read_back(&native::codec::length(meant)?, 1e3, meant);
+        let end = |path: &Path| {
+            Some(End {
+                place: said(path.to)?,
+                velocity: said(path.end_velocity)?,
+            })
+        };
+        let ends: Option<Vec<End>> = paths.iter().map(end).collect();
+        let seconds = paths.first().map_or(0.0, |path| path.seconds);
+        let heard = native::codec::time(seconds)
+            .and_then(|written| number::read_back(&written, 1e3, seconds));
+        let unsaid =
+            || DeviceFault::Unfit(format!("a way of {seconds} s to {paths:?} cannot be said"));
+        let (ends, seconds) = ends
+            .zip(heard.filter(|seconds| *seconds > 0.0))
+            .ok_or_else(unsaid)?;
+        let inside = |(axis, path): (&native::codec::AxisBounds, &Path)| {
+            let (low, high) = path.reach();
+            axis.displacement.contains(low) && axis.displacement.contains(high)
+        };
+        if !bounds.axes.iter().zip(paths).all(inside) {
+            return Err(DeviceFault::Refused {
+                reason: "a way leads outside the limits the rig says it has".to_owned(),
+            });
+        }
+        let speed = paths.iter().map(Path::fastest).fold(0.0, f64::max);
+        if !(speed.is_finite() && speed <= bounds.top_speed) {
+            return Err(DeviceFault::Refused {
+                reason: format!("{} mm/s is no speed of this rig", speed * 1e3),
+            });
+        }
+        let id = match &self.proposed {
+            Some(proposed) if !proposed.sent => proposed.id,
+            Some(proposed) => proposed.id + 1,
+            None => self.next_id,
+        };
+        let written = native::codec::lengths(&native::codec::in_turn(&ends)).ok_or_else(unsaid)?;
+        let frames = self.frames_of(Request::Glide {
+            id,
+            ends: &ends,
+            seconds,
+        })?;
+        self.proposed = Some(Proposed {
+            id,
+            targets: written,
+            sent: false,
+        });
+        Ok(Move {
+            frames,
+            targets: ends.iter().map(|end| end.place).collect(),
+            speed,
+            id: Some(id),
+        })
+    }
+}

@@ -1,0 +1,472 @@
+//! Transcripts of the native dialect: what is sent, what comes back, what it means; and every fault of a line.
+
+use super::*;
+use crate::plan::Interval;
+use crate::rig::controllers::Flags;
+use crate::rig::safety::failpoint::without;
+use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+
+const WHO: &str =
+    "PSD-BENCH 0042 1.3 -2.000000 25.000000 -2000.000 12000.000 120.000000 17 1.250000";
+
+fn line(body: &str) -> Vec<u8> {
+    format!("<{body}*{:04X}\n", native::codec::checksum(body.as_bytes())).into_bytes()
+}
+
+fn say(port: &ScriptedPort, body: &str) {
+    port.reply(&[Say::After(0.01, line(body))]);
+}
+
+/// What was sent, without lead character, checksum and ending.
+fn sent(port: &ScriptedPort) -> Vec<String> {
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let body = |frame: String| {
+        frame
+            .trim_start_matches('>')
+            .split('*')
+            .next()
+            .unwrap()
+            .to_owned()
+    };
+    port.sent()
+        .into_iter()
+        .map(|(_, bytes)| body(text(bytes)))
+        .collect()
+}
+
+fn device() -> (NativeDevice, ScriptedPort) {
+    let clock = VirtualClock::default();
+    let port = ScriptedPort::new(&clock);
+    (
+        NativeDevice::new(Talk::new(Box::new(port.clone()), Box::new(clock), 0.25)),
+        port,
+    )
+}
+
+/// A rig that has said who it is, at sequence number 2.
+fn identified() -> (NativeDevice, ScriptedPort) {
+    let (mut device, port) = device();
+    say(&port, &format!("ACK 1 7F3A {WHO}"));
+    say(&port, "ACK 2 7F3A IDLE 0x0000");
+    device.identify().unwrap();
+    (device, port)
+}
+
+fn reading(sequence: u32, force: &str) -> String {
+    format!("DATA {sequence} 7F3A 118203 1.249871 {force} 812344 0x0000 IDLE")
+}
+
+fn force(sample: &Sample) -> f64 {
+    match sample.force {
+        Some(Force::Newtons(force)) => force,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_rig_is_asked_who_it_is_and_let_go_of_what_held_it_between_runs() {
+    let (mut device, port) = device();
+    say(
+        &port,
+        &format!("ACK 1 7F3A {}", WHO.replace("PSD-BENCH", "PSD-SIM-1")),
+    );
+    say(&port, "ACK 2 7F3A HELD 0x0080");
+    say(&port, "ACK 3 7F3A IDLE");
+    let identity = device.identify().unwrap();
+    assert_eq!(
+        (
+            identity.model.as_str(),
+            identity.serial.as_str(),
+            identity.firmware.as_str()
+        ),
+        ("PSD-SIM-1", "0042", "1.3")
+    );
+    assert_eq!(
+        (identity.boot.as_deref(), identity.simulated),
+        (Some("7F3A"), true)
+    );
+    assert_eq!(
+        device.last_move(),
+        Some(LastMove {
+            id: 17,
+            targets: vec![1.25e-3]
+        })
+    );
+    assert_eq!(sent(&port), ["HELLO 1", "STAT 2", "CLR 3"]);
+}
+
+#[test]
+fn a_rig_that_is_stopped_or_strange_is_unfit() {
+    let (mut device, port) = device();
+    say(&port, &format!("ACK 1 7F3A {WHO}"));
+    say(&port, "ACK 2 7F3A HELD 0x0010");
+    assert!(matches!(device.identify(), Err(DeviceFault::Unfit(_))));
+    assert_eq!(sent(&port).len(), 2, "a pressed stop is not cleared");
+    for strange in [
+        WHO.replace("25.000000", "-25.000000"),
+        WHO.replace("120.000000", "0.000000"),
+        WHO.replace(" 17", ""),
+    ] {
+        let (mut device, port) = self::device();
+        say(&port, &format!("ACK 1 7F3A {strange}"));
+        assert!(
+            matches!(device.identify(), Err(DeviceFault::Unfit(_))),
+            "{strange}"
+        );
+    }
+}
+
+#[test]
+fn limits_are_only_narrowed_a_move_is_accepted_and_a_reading_read() {
+    let (mut device, port) = identified();
+    let displacement = Interval {
+        low: -0.001,
+        high: 0.5,
+    };
+    let limits = Limits {
+        displacement,
+        speed: Interval {
+            low: 0.0,
+            high: 0.01,
+        },
+        ..Limits::NONE
+    };
+    say(&port, "ACK 3 7F3A IDLE");
+    device.narrow_limits(&[limits]).unwrap();
+    let going = device.encode(&[1.25e-3], 0.5e-3).unwrap();
+    assert_eq!(
+        (going.targets[0], going.speed, going.id, going.frames.len()),
+        (1.25e-3, 0.5e-3, Some(18), 1)
+    );
+    say(&port, "ACK 4 7F3A MOVING");
+    device.start(&going).unwrap();
+    say(&port, &reading(5, "512.375"));
+    let sample = device.sample().unwrap();
+    assert_eq!(
+        (sample.time, sample.displacement, force(&sample)),
+        (Some(118.203), Some(1.249_871e-3), 512.375)
+    );
+    assert_eq!(
+        (sample.moving, sample.flags),
+        (Some(false), Flags::default())
+    );
+    assert_eq!(sample.raw, [reading_line(5)]);
+    let expected = [
+        "LIM 3 -1.000000 25.000000 -2000.000 12000.000 10.000000",
+        "MOVE 4 18 1.250000 0.500000",
+        "MEAS 5 1",
+    ];
+    assert_eq!(sent(&port)[2..], expected);
+    let nowhere = Limits {
+        displacement: Interval {
+            low: 0.03,
+            high: 0.04,
+        },
+        ..Limits::NONE
+    };
+    assert!(matches!(
+        device.narrow_limits(&[nowhere]),
+        Err(DeviceFault::Unfit(_))
+    ));
+}
+
+fn reading_line(sequence: u32) -> Vec<u8> {
+    let mut line = line(&reading(sequence, "512.375"));
+    line.pop();
+    line
+}
+
+#[test]
+fn what_cannot_be_said_or_lies_outside_the_rig_is_not_offered() {
+    let (mut device, port) = identified();
+    for (target, speed) in [
+        (0.0251, 1e-3),
+        (-0.0021, 1e-3),
+        (f64::NAN, 1e-3),
+        (0.0, 0.0),
+        (0.0, 1e-11),
+        (0.0, 0.13),
+        (0.0, f64::NAN),
+        (0.0, -1e-3),
+    ] {
+        assert!(device.encode(&[target], speed).is_err(), "{target} {speed}");
+    }
+    assert!(
+        device.encode(&[0.025], 0.12).is_ok(),
+        "the limits themselves are inside"
+    );
+    assert_eq!(
+        device.encode(&[0.000_999_999_96], 1e-3).unwrap().targets[0],
+        0.001,
+        "what the bytes say"
+    );
+    assert_eq!(port.sent().len(), 2, "nothing of it was sent");
+}
+
+#[test]
+fn a_number_belongs_to_one_target_until_a_move_is_accepted() {
+    let (mut device, port) = identified();
+    let id = |device: &mut NativeDevice, target| device.encode(&[target], 1e-3).unwrap().id;
+    assert_eq!(
+        (id(&mut device, 0.001), id(&mut device, 0.002)),
+        (Some(18), Some(18)),
+        "neither was sent"
+    );
+    let going = device.encode(&[0.002], 1e-3).unwrap();
+    say(&port, "ERR 3 7F3A BUSY");
+    let refused = device.start(&going).unwrap_err();
+    assert!(refused.to_string().contains("still moving"), "{refused}");
+    assert_eq!(
+        (id(&mut device, 0.002), id(&mut device, 0.003)),
+        (Some(18), Some(19)),
+        "the rig may know 18 by its target"
+    );
+    let going = device.encode(&[0.003], 1e-3).unwrap();
+    say(&port, "ACK 4 7F3A MOVING");
+    device.start(&going).unwrap();
+    assert_eq!(id(&mut device, 0.003), Some(20), "a move accepted is over");
+}
+
+#[test]
+fn a_move_is_sent_as_it_was_made_or_not_at_all() {
+    let (mut device, port) = identified();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
+    say(&port, &reading(3, "1.0"));
+    device.sample().unwrap();
+    assert!(matches!(device.start(&going), Err(DeviceFault::Unfit(_))));
+    assert_eq!(sent(&port).last().unwrap(), "MEAS 3 1");
+}
+
+#[test]
+fn a_lost_frame_is_sent_again_as_it_was_and_a_doubled_reply_used_once() {
+    let (mut device, port) = identified();
+    port.reply(&[]);
+    port.reply(&[Say::After(
+        0.01,
+        [line(&reading(3, "1.0")), line(&reading(3, "1.0"))].concat(),
+    )]);
+    assert_eq!(force(&device.sample().unwrap()), 1.0);
+    say(&port, &reading(4, "2.0"));
+    assert_eq!(force(&device.sample().unwrap()), 2.0);
+    assert_eq!(sent(&port)[2..], ["MEAS 3 1", "MEAS 3 1", "MEAS 4 1"]);
+    assert_eq!(
+        device.tally(),
+        Tally {
+            resent: 1,
+            ignored: 1,
+            reread: 0
+        }
+    );
+}
+
+#[test]
+fn a_reply_to_another_request_is_ignored_and_without_the_guard_it_would_pass() {
+    let late = |device: &mut NativeDevice, port: &ScriptedPort| {
+        port.reply(&[
+            Say::After(0.01, line(&reading(2, "666.0"))),
+            Say::After(0.01, line(&reading(3, "1.0"))),
+        ]);
+        force(&device.sample().unwrap())
+    };
+    let (mut device, port) = identified();
+    assert_eq!(late(&mut device, &port), 1.0);
+    assert_eq!(device.tally().ignored, 1);
+    let (mut device, port) = identified();
+    assert_eq!(
+        without(Guarding::Sequence, || late(&mut device, &port)),
+        666.0
+    );
+}
+
+#[test]
+fn a_broken_reply_is_asked_for_again_and_without_the_guard_it_would_pass() {
+    let broken = |device: &mut NativeDevice, port: &ScriptedPort| {
+        let mut wrong = line(&reading(3, "512.375"));
+        let at = wrong.windows(3).position(|part| part == b"512").unwrap();
+        wrong[at] = b'9';
+        port.reply(&[Say::After(0.01, wrong)]);
+        port.reply(&[Say::After(0.01, line(&reading(3, "512.375")))]);
+        force(&device.sample().unwrap())
+    };
+    let (mut device, port) = identified();
+    assert_eq!(broken(&mut device, &port), 512.375);
+    assert_eq!(
+        device.tally(),
+        Tally {
+            resent: 1,
+            ignored: 1,
+            reread: 0
+        }
+    );
+    let (mut device, port) = identified();
+    assert_eq!(
+        without(Guarding::Checksum, || broken(&mut device, &port)),
+        912.375
+    );
+}
+
+#[test]
+fn a_new_power_up_is_seen_in_any_reply_and_without_the_guard_it_would_pass() {
+    let anew = "DATA 3 0001 12 0.000000 0.000 0 0x0000 IDLE";
+    let (mut device, port) = identified();
+    say(&port, anew);
+    let rebooted = DeviceFault::Rebooted {
+        was: "7F3A".to_owned(),
+        is: "0001".to_owned(),
+    };
+    assert_eq!(device.sample(), Err(rebooted.clone()));
+    say(&port, "ERR 3 0001 SEQ");
+    assert_eq!(device.sample(), Err(rebooted), "whatever number it answers");
+    let (mut device, port) = identified();
+    say(&port, anew);
+    assert_eq!(
+        without(Guarding::Reboot, || device.sample())
+            .unwrap()
+            .displacement,
+        Some(0.0)
+    );
+}
+
+/// What a fault of one reply leaves of a reading: the reply kept by the rig comes to the frame sent again.
+fn after_fault(pieces: &[Say]) -> (f64, Tally) {
+    let (mut device, port) = identified();
+    port.reply(pieces);
+    for _ in 0..3 {
+        say(&port, &reading(3, "512.375"));
+    }
+    (force(&device.sample().unwrap()), device.tally())
+}
+
+#[test]
+fn every_bit_flipped_and_every_truncation_gives_the_reading_or_asks_again() {
+    let whole = line(&reading(3, "512.375"));
+    for bit in 0..whole.len() * 8 {
+        let mut flipped = whole.clone();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        let (force, tally) = after_fault(&[Say::After(0.01, flipped)]);
+        assert_eq!(force, 512.375, "bit {bit}");
+        assert!(
+            tally.resent >= 1 && tally.ignored >= 1,
+            "bit {bit}: {tally:?}"
+        );
+    }
+    for length in 1..whole.len() {
+        let (force, tally) = after_fault(&[Say::After(0.01, whole[..length].to_vec())]);
+        assert_eq!(force, 512.375, "{length} bytes");
+        assert!(tally.resent >= 1, "{length} bytes");
+    }
+}
+
+#[test]
+fn bytes_one_at_a_time_and_noise_around_are_read_through() {
+    let whole = line(&reading(3, "512.375"));
+    let pieces: Vec<Say> = whole
+        .iter()
+        .map(|byte| Say::After(0.001, vec![*byte]))
+        .collect();
+    assert_eq!(after_fault(&pieces), (512.375, Tally::default()));
+    let noise = [b"\0\xff<<>\n".to_vec(), whole.clone()].concat();
+    assert_eq!(
+        after_fault(&[Say::After(0.0, noise)]),
+        (
+            512.375,
+            Tally {
+                ignored: 1,
+                ..Tally::default()
+            }
+        )
+    );
+    let endless = [vec![b'x'; 512], b"\n".to_vec(), whole].concat();
+    assert_eq!(
+        after_fault(&[Say::After(0.0, endless)]),
+        (
+            512.375,
+            Tally {
+                ignored: 1,
+                ..Tally::default()
+            }
+        )
+    );
+}
+
+#[test]
+fn a_whole_reply_with_a_field_missing_is_no_reading() {
+    for body in [
+        "DATA 3 7F3A 118203 1.249871 812344 0x0000 IDLE",
+        "DATA 3 7F3A 118203 1.249871 nan 812344 0x0000 IDLE",
+    ] {
+        let (mut device, port) = identified();
+        say(&port, body);
+        assert!(
+            matches!(device.sample(), Err(DeviceFault::Impossible { .. })),
+            "{body}"
+        );
+        say(&port, &reading(4, "1.0"));
+        assert!(device.sample().is_ok(), "asked again it is a new request");
+    }
+}
+
+#[test]
+fn after_silence_the_conversation_is_taken_up_before_anything_else() {
+    let (mut device, port) = identified();
+    say(&port, "ACK 3 7F3A IDLE");
+    device.narrow_limits(&[Limits::NONE]).unwrap();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
+    assert_eq!(
+        device.start(&going),
+        Err(DeviceFault::Silent { seconds: 2.0 })
+    );
+    assert!(
+        device.encode(&[0.001], 1e-3).is_err() && device.start(&going).is_err(),
+        "first the rig is read"
+    );
+    say(
+        &port,
+        &format!("ACK 5 7F3A {}", WHO.replace("17 1.25", "18 1.00")),
+    );
+    say(&port, "ACK 6 7F3A IDLE");
+    say(&port, &reading(7, "1.0"));
+    device.sample().unwrap();
+    let sent = sent(&port);
+    assert_eq!(sent[3..7], vec!["MOVE 4 18 1.000000 1.000000"; 4]);
+    assert_eq!(
+        sent[7..],
+        [
+            "HELLO 5",
+            "LIM 6 -2.000000 25.000000 -2000.000 12000.000 120.000000",
+            "MEAS 7 1"
+        ]
+    );
+    assert_eq!(
+        device.encode(&[0.001], 1e-3).unwrap().id,
+        Some(18),
+        "said again under its number, it is not done twice"
+    );
+}
+
+#[test]
+fn a_hold_is_said_at_once_and_let_go_of_only_with_the_next_move() {
+    let (mut device, port) = identified();
+    port.reply(&[]);
+    say(&port, "ACK 3 7F3A HELD");
+    device.hold().unwrap();
+    assert_eq!(sent(&port)[2..], ["!", "STOP 3"]);
+    let going = device.encode(&[0.0], 1e-3).unwrap();
+    say(&port, "ACK 4 7F3A IDLE");
+    say(&port, "ACK 5 7F3A MOVING");
+    device.start(&going).unwrap();
+    assert_eq!(sent(&port)[4..], ["CLR 4", "MOVE 5 18 0.000000 1.000000"]);
+    assert_eq!(device.emergency(), b"!");
+}
+
+#[test]
+fn a_hold_by_the_rig_itself_is_not_let_go_of() {
+    let (mut device, port) = identified();
+    let going = device.encode(&[0.001], 1e-3).unwrap();
+    say(&port, "ERR 3 7F3A HELD");
+    assert!(matches!(
+        device.start(&going),
+        Err(DeviceFault::Refused { .. })
+    ));
+    assert_eq!(device.encode(&[0.001], 1e-3).unwrap().frames.len(), 1);
+}

@@ -1,0 +1,396 @@
+//! NEES "LabVIEW plugin" ASCII as the coordinator: one session over one TCP connection. In: metres and metres a second.
+//! Out: a proposal that the rig may refuse, its execution, the reading of the control point. The rig answers an
+//! execution when its motion is done, and hears nothing before: `start` waits that long. There is no stop out of band:
+//! holding is `cancel`, heard when the rig next listens. The protocol has no speed: the rig's own is to be below it.
+//! Several axes are several control points of one session: proposed, executed and refused together in one transaction, and
+//! asked for one after the other.
+
+use crate::rig::Tally;
+use crate::rig::controllers::nees;
+use crate::rig::controllers::nees::codec::Reply;
+use crate::rig::controllers::{
+    Answer, Channel, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk,
+};
+
+/// What the session is called.
+const SESSION: &str = "psd";
+/// Steps announced when a session opens: a coordinator must say a number, and rigs only show it.
+const ANNOUNCED_STEPS: u32 = 1_000_000;
+
+/// The site at the other end of a line.
+pub struct Nees {
+    talk: Talk,
+    /// One an axis.
+    control_points: Vec<String>,
+    /// Longest time that the rig takes to settle after its motion, s.
+    settling: f64,
+    /// Begins every transaction of this session, so that none is one of an earlier session.
+    prefix: String,
+    transactions: u64,
+    /// Where the axes were read last, m; nothing before.
+    last: Vec<f64>,
+    /// The transaction that was sent to be executed and has not been answered.
+    executing: Option<String>,
+    open: bool,
+}
+
+impl Nees {
+    /// A control point is `MDL-00-01` or `MDL-00-01:name`, one an axis; an execution is waited for twice as long as its way takes,
+    /// and `settling` s more.
+    #[must_use]
+    pub const fn new(talk: Talk, control_points: Vec<String>, settling: f64) -> Self {
+        let prefix = String::new();
+        let last = Vec::new();
+        Self {
+            talk,
+            control_points,
+            settling,
+            prefix,
+            transactions: 0,
+            last,
+            executing: None,
+            open: false,
+        }
+    }
+
+    /// Displacement and force at a control point, and the reply that says so.
+    fn ask(&mut self, control_point: &str) -> Result<(f64, f64, Vec<u8>), DeviceFault> {
+        let transaction = self.next_transaction();
+        let wait = self.talk.reply_timeout();
+        let question = nees::codec::get_control_point(&transaction, control_point);
+        let (fields, raw) = self.request(&question, Some(&transaction), wait)?;
+        match measured(&fields, control_point) {
+            Some((displacement, force)) => Ok((displacement, force, raw)),
+            None => Err(DeviceFault::NoReading {
+                raw,
+                reason: "no displacement and force along x".to_owned(),
+            }),
+        }
+    }
+
+    fn next_transaction(&mut self) -> String {
+        self.transactions += 1;
+        format!("{SESSION}{}-{:06}", self.prefix, self.transactions)
+    }
+
+    /// Sends a request once and waits for the reply to it. A reply to another transaction is counted and left.
+    fn request(
+        &mut self,
+        line: &[u8],
+        transaction: Option<&str>,
+        wait: f64,
+    ) -> Result<(Vec<String>, Vec<u8>), DeviceFault> {
+        self.talk.send(line)?;
+        self.answered(transaction, wait)
+    }
+
+    /// Waits for the reply to what was sent.
+    fn answered(
+        &mut self,
+        transaction: Option<&str>,
+        wait: f64,
+    ) -> Result<(Vec<String>, Vec<u8>), DeviceFault> {
+        let deadline = self.talk.now() + wait;
+        let executing = self.executing.clone();
+        let mut ended = false;
+        let mut accept = |line: &[u8]| match (nees::codec::reply(line), transaction) {
+            (Reply::Done(fields), Some(ours))
+                if fields.first().map(String::as_str) != Some(ours) =>
+            {
+                ended |= fields.first() == executing.as_ref();
+                Answer::Ignore
+            }
+            (Reply::Done(fields), _) => Answer::Take((fields, line.to_vec())),
+            (
+                Reply::Refused {
+                    transaction: Some(other),
+                    ..
+                },
+                Some(ours),
+            ) if other != ours && other.starts_with(SESSION) => {
+                ended |= Some(&other) == executing.as_ref();
+                Answer::Ignore
+            }
+            (Reply::Refused { reason, .. }, _) => Answer::Fault(DeviceFault::Refused { reason }),
+        };
+        let answer = self.talk.answer(nees::codec::ENDING, deadline, &mut accept);
+        if ended {
+            // The late answer to an execution: whatever it says, nothing moves any more.
+            self.executing = None;
+        }
+        answer?.ok_or(DeviceFault::Silent { seconds: wait })
+    }
+
+    /// An execution that is cancelled may first be answered itself, with the same transaction and a `NOT OK`.
+    fn cancel(&mut self) -> Result<(), DeviceFault> {
+        let Some(transaction) = self.executing.clone() else {
+            return Ok(());
+        };
+        self.talk.send(&nees::codec::cancel(&transaction))?;
+        let wait = self.talk.reply_timeout();
+        let deadline = self.talk.now() + wait;
+        let mut refusal = None;
+        let mut accept = |line: &[u8]| match nees::codec::reply(line) {
+            Reply::Done(fields) if fields.first() == Some(&transaction) => Answer::Take(()),
+            Reply::Done(_) => Answer::Ignore,
+            Reply::Refused { reason, .. } => {
+                refusal = Some(reason);
+                Answer::Ignore
+            }
+        };
+        if self
+            .talk
+            .answer(nees::codec::ENDING, deadline, &mut accept)?
+            .is_none()
+        {
+            return Err(
+                refusal.map_or(DeviceFault::Silent { seconds: wait }, |reason| {
+                    DeviceFault::Refused { reason }
+                }),
+            );
+        }
+        self.executing = None;
+        Ok(())
+    }
+}
+
+impl Device for Nees {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        if !self
+            .control_points
+            .iter()
+            .all(|name| nees::codec::is_field(name))
+        {
+            return Err(DeviceFault::Unfit(
+                "the name of a control point has no blanks and no control characters".to_owned(),
+            ));
+        }
+        self.prefix = self
+            .talk
+            .clock()
+            .wall()
+            .unwrap_or_default()
+            .chars()
+            .filter(char::is_ascii_digit)
+            .collect();
+        let wait = self.talk.reply_timeout();
+        self.talk.drain()?;
+        let (_, welcome) = self.request(&nees::codec::open_session(SESSION), None, wait)?;
+        self.open = true;
+        let transaction = self.next_transaction();
+        self.request(
+            &nees::codec::steps(&transaction, ANNOUNCED_STEPS),
+            None,
+            wait,
+        )?;
+        self.sample()?;
+        let strange = || DeviceFault::Unfit("it does not say that the session is open".to_owned());
+        introduced(&self.control_points, &welcome).ok_or_else(strange)
+    }
+
+    fn axes(&self) -> usize {
+        self.control_points.len()
+    }
+
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+        if targets.len() != self.control_points.len() {
+            let (points, targets) = (self.control_points.len(), targets.len());
+            return Err(DeviceFault::Unfit(format!(
+                "{targets} targets for {points} control points"
+            )));
+        }
+        if !(speed > 0.0 && speed.is_finite()) {
+            return Err(DeviceFault::Unfit(format!("nothing moves at {speed} m/s")));
+        }
+        let transaction = self.next_transaction();
+        let points: Vec<(&str, f64)> = self
+            .control_points
+            .iter()
+            .map(String::as_str)
+            .zip(targets.iter().copied())
+            .collect();
+        let (proposal, targets) = nees::codec::propose(&transaction, &points)
+            .ok_or_else(|| DeviceFault::Unfit(format!("{targets:?} m are no targets")))?;
+        Ok(Move {
+            frames: vec![proposal, nees::codec::execute(&transaction)],
+            targets,
+            speed,
+            id: None,
+        })
+    }
+
+    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        self.offer(going)?;
+        self.begin(going)?;
+        self.finish(going)
+    }
+
+    fn offer(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let (proposal, _, transaction) = proposed(going)?;
+        let wait = self.talk.reply_timeout();
+        self.request(proposal, Some(&transaction), wait).map(drop)
+    }
+
+    fn withdraw(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let (.., transaction) = proposed(going)?;
+        let wait = self.talk.reply_timeout();
+        self.request(&nees::codec::cancel(&transaction), Some(&transaction), wait)
+            .map(drop)
+    }
+
+    fn begin(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let (_, execution, transaction) = proposed(going)?;
+        self.executing = Some(transaction);
+        self.talk.send(execution)
+    }
+
+    fn finish(&mut self, going: &Move) -> Result<(), DeviceFault> {
+        let (.., transaction) = proposed(going)?;
+        let wait = self.talk.reply_timeout();
+        let way = going
+            .targets
+            .iter()
+            .zip(&self.last)
+            .map(|(to, from)| (to - from).abs())
+            .fold(0.0, f64::max);
+        let motion = 2.0 * way / going.speed + self.settling.max(wait);
+        self.answered(Some(&transaction), motion)?;
+        self.executing = None;
+        Ok(())
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        let (mut points, mut raw) = (Vec::new(), Vec::new());
+        for control_point in self.control_points.clone() {
+            let (displacement, force, reply) = self.ask(&control_point)?;
+            points.push((displacement, force));
+            raw.push(reply);
+        }
+        self.last = points
+            .iter()
+            .map(|(displacement, _)| *displacement)
+            .collect();
+        Ok(Sample {
+            moving: Some(self.executing.is_some()),
+            ..sample_of(&points, raw)
+        })
+    }
+
+    /// Cancels what is being executed; at rest there is nothing to say.
+    fn hold(&mut self) -> Result<(), DeviceFault> {
+        self.cancel()
+    }
+
+    fn emergency(&self) -> Vec<u8> {
+        self.executing
+            .as_deref()
+            .map(nees::codec::cancel)
+            .unwrap_or_default()
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+/// Who a site is that answers the opening of a session with this line.
+pub(crate) fn introduced(control_points: &[String], welcome: &[u8]) -> Option<DeviceIdentity> {
+    let Reply::Done(said) = nees::codec::reply(welcome) else {
+        return None;
+    };
+    let model = said
+        .first()
+        .filter(|text| !text.is_empty())
+        .map_or_else(String::new, |text| format!(": {text}"));
+    let points = if control_points.len() == 1 {
+        "control point"
+    } else {
+        "control points"
+    };
+    let model = format!("NEES {points} {}{model}", control_points.join(", "));
+    Some(DeviceIdentity {
+        model,
+        raw: vec![welcome.to_vec()],
+        ..DeviceIdentity::default()
+    })
+}
+
+/// Displacement (m) and force (N) of a control point, from the fields of a reply.
+fn measured(fields: &[String], control_point: &str) -> Option<(f64, f64)> {
+    let at = nees::codec::measured(fields.get(1..)?, control_point)?;
+    at.displacement.zip(at.force)
+}
+
+/// The same from the reply itself.
+pub(crate) fn decoded(reply: &[u8], control_point: &str) -> Option<(f64, f64)> {
+    match nees::codec::reply(reply) {
+        Reply::Done(fields) => measured(&fields, control_point),
+        Reply::Refused { .. } => None,
+    }
+}
+
+/// The reading of all control points, from displacement (m) and force (N) of each.
+pub(crate) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
+    let mut channels = points.iter().map(|(displacement, force)| Channel {
+        displacement: Some(*displacement),
+        force: Some(Force::Newtons(*force)),
+        flags: Flags::default(),
+    });
+    let Channel {
+        displacement,
+        force,
+        flags,
+    } = channels.next().unwrap_or_default();
+    Sample {
+        displacement,
+        force,
+        flags,
+        others: channels.collect(),
+        raw,
+        ..Sample::default()
+    }
+}
+
+/// Whether these are the bytes of a proposal of these places (m), and of its execution.
+pub(crate) fn sends(wire: &[u8], control_points: &[String], targets: &[f64]) -> bool {
+    let Some(transaction) = nees::codec::transaction(
+        wire.split_inclusive(|byte| *byte == b'\n')
+            .next()
+            .unwrap_or_default(),
+    ) else {
+        return false;
+    };
+    let points: Vec<(&str, f64)> = control_points
+        .iter()
+        .map(String::as_str)
+        .zip(targets.iter().copied())
+        .collect();
+    let again = nees::codec::propose(transaction, &points);
+    again.is_some_and(|(proposal, said)| {
+        said == targets && [proposal, nees::codec::execute(transaction)].concat() == wire
+    })
+}
+
+/// Proposal, execution and name of a transaction.
+fn proposed(going: &Move) -> Result<(&[u8], &[u8], String), DeviceFault> {
+    let ours = |frame: &[u8]| nees::codec::transaction(frame).map(str::to_owned);
+    match (
+        going.frames.as_slice(),
+        going.frames.first().and_then(|frame| ours(frame)),
+    ) {
+        ([proposal, execution], Some(transaction)) => Ok((proposal, execution, transaction)),
+        _ => Err(DeviceFault::Unfit("this is no proposal".to_owned())),
+    }
+}
+
+impl Drop for Nees {
+    /// Whether the rig hears it or not, the line is closed after it.
+    fn drop(&mut self) {
+        if self.open {
+            self.talk.send(&nees::codec::close_session(SESSION)).ok();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,343 @@
+//! A transducer that is asked `READ?`. In: nothing. Out: a force, by the plan's N per reading unit. After a silence it is
+//! asked who it is until it says so: whatever was late has then come before. It moves nothing.
+
+use crate::rig::Tally;
+use crate::rig::controllers::scpi;
+use crate::rig::controllers::{
+    Answer, Channel, DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk,
+};
+
+/// How often a question is put before it is given up.
+const ATTEMPTS: u32 = 3;
+
+/// The meter at the other end of a line.
+pub struct ScpiDevice {
+    talk: Talk,
+    /// One a channel.
+    newtons_per_unit: Vec<f64>,
+    /// As it says who it is.
+    name: Vec<u8>,
+    /// An earlier answer may still come.
+    doubtful: bool,
+}
+
+impl ScpiDevice {
+    #[must_use]
+    pub const fn new(talk: Talk, newtons_per_unit: Vec<f64>) -> Self {
+        Self {
+            talk,
+            newtons_per_unit,
+            name: Vec::new(),
+            doubtful: false,
+        }
+    }
+
+    /// Asks who it is; every other line is thrown away.
+    fn say_name(&mut self) -> Result<Vec<u8>, DeviceFault> {
+        let expected = std::mem::take(&mut self.name);
+        let named = self.talk.exchange(scpi::codec::IDENTIFY, b"\n", |line| {
+            let line = stripped(line);
+            let fits = scpi::codec::identification(line).is_some()
+                && (expected.is_empty() || line == expected);
+            if fits {
+                Answer::Take(line.to_vec())
+            } else {
+                Answer::Ignore
+            }
+        });
+        self.name = named.as_ref().map_or(expected, Clone::clone);
+        named
+    }
+
+    /// Of several questions one answer came: the others are waited for no longer than a time-out.
+    fn catch_up(&mut self) -> Result<(), DeviceFault> {
+        self.talk.drain()?;
+        let before = self.talk.tally().resent;
+        self.say_name()?;
+        if self.talk.tally().resent > before {
+            self.talk.until_quiet(self.talk.reply_timeout())?;
+        }
+        self.doubtful = false;
+        Ok(())
+    }
+
+    /// The answer to a question put now.
+    fn read(&mut self) -> Result<Vec<u8>, DeviceFault> {
+        let began = self.talk.now();
+        for attempt in 0..ATTEMPTS {
+            if attempt > 0 {
+                self.talk.tally_mut().resent += 1;
+            }
+            if self.doubtful {
+                self.catch_up()?;
+            }
+            self.talk.drain()?;
+            let name = &self.name;
+            let accept = |line: &[u8]| {
+                let line = stripped(line);
+                if line == name {
+                    Answer::Ignore
+                } else {
+                    Answer::Take(line.to_vec())
+                }
+            };
+            match self.talk.exchange_once(scpi::codec::READ, b"\n", accept) {
+                Ok(line) => return Ok(line),
+                Err(DeviceFault::Silent { .. }) => self.doubtful = true,
+                Err(fault) => {
+                    // An interrupted question may be answered yet.
+                    self.doubtful = true;
+                    return Err(fault);
+                }
+            }
+        }
+        Err(DeviceFault::Silent {
+            seconds: self.talk.now() - began,
+        })
+    }
+}
+
+fn stripped(line: &[u8]) -> &[u8] {
+    line.strip_suffix(b"\r").unwrap_or(line)
+}
+
+/// Who a meter is that says this of itself.
+pub(crate) fn introduced(name: &[u8]) -> Option<DeviceIdentity> {
+    let who = scpi::codec::identification(name)?;
+    let simulated = who.maker.starts_with(crate::rig::controllers::SIMULATED)
+        || who.model.starts_with(crate::rig::controllers::SIMULATED);
+    let model = format!("{} {}", who.maker, who.model);
+    Some(DeviceIdentity {
+        model,
+        serial: who.serial,
+        firmware: who.firmware,
+        boot: None,
+        simulated,
+        raw: vec![name.to_vec()],
+    })
+}
+
+/// The forces of an answer, one a channel, by the N of a unit of each.
+pub(crate) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample, DeviceFault> {
+    let words: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
+    if words.len() != newtons_per_unit.len() {
+        let reason = format!(
+            "it has {} numbers, and the meter {} channels",
+            words.len(),
+            newtons_per_unit.len()
+        );
+        return Err(DeviceFault::NoReading { raw: line, reason });
+    }
+    let mut channels = Vec::with_capacity(words.len());
+    for (place, (word, newtons)) in words.iter().zip(newtons_per_unit).enumerate() {
+        let (value, saturated) = match scpi::codec::answer(if words.len() > 1 {
+            word.trim_ascii()
+        } else {
+            word
+        }) {
+            Ok(scpi::codec::Answer::Number(value)) => (value, false),
+            // Past every limit.
+            Ok(scpi::codec::Answer::Overload { negative }) => (
+                if negative {
+                    f64::NEG_INFINITY
+                } else {
+                    f64::INFINITY
+                },
+                true,
+            ),
+            Err(reason) => {
+                let of = if words.len() > 1 {
+                    format!("channel {}: {reason}", place + 1)
+                } else {
+                    reason.to_owned()
+                };
+                return Err(DeviceFault::NoReading {
+                    raw: line.clone(),
+                    reason: of,
+                });
+            }
+        };
+        let force = Some(Force::Newtons(value * newtons));
+        channels.push(Channel {
+            displacement: None,
+            force,
+            flags: Flags {
+                saturated,
+                ..Flags::default()
+            },
+        });
+    }
+    let others = channels.split_off(1.min(channels.len()));
+    let Channel { force, flags, .. } = channels.pop().unwrap_or_default();
+    Ok(Sample {
+        force,
+        flags,
+        others,
+        raw: vec![line],
+        ..Sample::default()
+    })
+}
+
+impl Gauge for ScpiDevice {
+    fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
+        self.name = Vec::new();
+        self.catch_up()?;
+        introduced(&self.name)
+            .ok_or_else(|| DeviceFault::Unfit("it does not say who it is".to_owned()))
+    }
+
+    fn axes(&self) -> usize {
+        self.newtons_per_unit.len()
+    }
+
+    fn sample(&mut self) -> Result<Sample, DeviceFault> {
+        decoded(self.read()?, &self.newtons_per_unit)
+    }
+
+    fn tally(&self) -> Tally {
+        self.talk.tally()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+
+    const NAME: &str = "PSD-SIM,DMM 7,1234,A.02";
+
+    fn device() -> (ScpiDevice, ScriptedPort) {
+        let clock = VirtualClock::default();
+        let port = ScriptedPort::new(&clock);
+        (
+            ScpiDevice::new(
+                Talk::new(Box::new(port.clone()), Box::new(clock), 0.5),
+                vec![-100.0],
+            ),
+            port,
+        )
+    }
+
+    fn reply(port: &ScriptedPort, seconds: f64, line: &str) {
+        port.reply(&[Say::After(seconds, format!("{line}\r\n").into_bytes())]);
+    }
+
+    fn identified() -> (ScpiDevice, ScriptedPort) {
+        let (mut device, port) = device();
+        reply(&port, 0.1, NAME);
+        device.identify().unwrap();
+        (device, port)
+    }
+
+    fn sent(port: &ScriptedPort) -> Vec<Vec<u8>> {
+        port.sent().into_iter().map(|(_, bytes)| bytes).collect()
+    }
+
+    #[test]
+    fn it_says_who_it_is_and_what_it_reads() {
+        let (mut device, port) = device();
+        reply(&port, 0.1, NAME);
+        let identity = device.identify().unwrap();
+        assert_eq!(
+            (
+                identity.model.as_str(),
+                identity.serial.as_str(),
+                identity.simulated
+            ),
+            ("PSD-SIM DMM 7", "1234", true)
+        );
+        reply(&port, 0.1, "+5.12375E+00");
+        let sample = device.sample().unwrap();
+        assert_eq!(sample.force, Some(Force::Newtons(-512.375)));
+        assert_eq!(
+            (sample.raw, sent(&port)),
+            (
+                vec![b"+5.12375E+00".to_vec()],
+                vec![b"*IDN?\n".to_vec(), b"READ?\n".to_vec()]
+            )
+        );
+    }
+
+    #[test]
+    fn overload_is_saturated_and_what_is_no_number_no_reading() {
+        let (mut device, port) = identified();
+        for (line, force) in [("9.9E37", f64::NEG_INFINITY), ("-9.9E37", f64::INFINITY)] {
+            reply(&port, 0.1, line);
+            let sample = device.sample().unwrap();
+            assert_eq!(
+                (sample.force, sample.flags.saturated),
+                (Some(Force::Newtons(force)), true),
+                "turned by the plan's sign"
+            );
+        }
+        for line in ["9.91E37", "1e400", "nan", "OVL", "1,5", ""] {
+            reply(&port, 0.1, line);
+            assert!(
+                matches!(device.sample(), Err(DeviceFault::NoReading { .. })),
+                "{line}"
+            );
+        }
+    }
+
+    #[test]
+    fn after_a_silence_what_is_late_comes_before_its_name_and_is_thrown_away() {
+        let (mut device, port) = identified();
+        reply(&port, 0.8, "6.66");
+        // The name is asked for while the old answer is still on its way; it comes behind it.
+        reply(&port, 0.1, NAME);
+        reply(&port, 0.1, "1.5");
+        assert_eq!(device.sample().unwrap().force, Some(Force::Newtons(-150.0)));
+        assert_eq!(sent(&port)[1..], [&b"READ?\n"[..], b"*IDN?\n", b"READ?\n"]);
+        assert_eq!(
+            device.tally(),
+            Tally {
+                resent: 1,
+                ignored: 1,
+                reread: 0
+            }
+        );
+    }
+
+    #[test]
+    fn a_meter_of_several_channels_gives_each_its_own_force() {
+        let (mut device, port) = identified();
+        device.newtons_per_unit = vec![-100.0, 2.0];
+        reply(&port, 0.1, "+1.5E+00, 9.9E37");
+        let sample = device.sample().unwrap();
+        let forces: Vec<Option<Force>> = sample.axes().map(|channel| channel.force).collect();
+        assert_eq!(
+            forces,
+            [
+                Some(Force::Newtons(-150.0)),
+                Some(Force::Newtons(f64::INFINITY))
+            ]
+        );
+        assert_eq!(
+            sample
+                .axes()
+                .map(|channel| channel.flags.saturated)
+                .collect::<Vec<_>>(),
+            [false, true]
+        );
+        assert_eq!(device.axes(), 2);
+        for (said, why) in [
+            ("+1.5E+00", "it has 1 numbers, and the meter 2 channels"),
+            ("1.0,OVL", "channel 2: it is no number"),
+            ("1,5,2,5", "it has 4 numbers, and the meter 2 channels"),
+        ] {
+            reply(&port, 0.1, said);
+            assert!(
+                matches!(device.sample(), Err(DeviceFault::NoReading { reason, .. }) if reason == why),
+                "{why}"
+            );
+        }
+    }
+
+    #[test]
+    fn silence_ends_within_a_bounded_time() {
+        let (mut device, _) = identified();
+        let began = device.talk.now();
+        assert!(matches!(device.sample(), Err(DeviceFault::Silent { .. })));
+        assert!(device.talk.now() - began < 10.0 * 0.5);
+    }
+}

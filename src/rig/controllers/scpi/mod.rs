@@ -1,0 +1,5 @@
+//! SCPI transducers: `codec` turns bytes into meaning, `driver` samples them. It commands no
+//! motion.
+
+pub mod codec;
+pub(crate) mod driver;

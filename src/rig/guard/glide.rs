@@ -1,0 +1,143 @@
+//! The guard of a rig that moves without stopping. In: smooth paths, one after the other. Out: readings on the way, each
+//! inside every limit. A path is judged whole before it begins, at its turning points too, and must go on from where, and
+//! as fast as, the last one ended.
+
+use super::outside;
+use super::read::is_finite;
+use crate::physics::tracking::trajectory::Path;
+use crate::rig::safety::failpoint::{Guarding, on};
+use crate::rig::{Guard, LimitedQuantity, RigFault, Traversed};
+
+impl Guard<'_> {
+    /// Follows `paths`, one a degree of freedom, reading at up to `samples` times on the way, the last at the end, or
+    /// where it broke a limit.
+    pub fn glide(&mut self, paths: &[Path], samples: usize) -> Traversed {
+        let refused = |fault| Traversed {
+            readings: Vec::new(),
+            fault: Some(fault),
+        };
+        if let Err(fault) = self.judge(paths) {
+            return refused(fault);
+        }
+        self.leave();
+        self.speed = paths.iter().map(Path::fastest).reduce(f64::max);
+        let (limits, own) = (self.limits, self.own.clone());
+        let mut readings = Vec::with_capacity(samples);
+        let (mut heard, mut broken) = (self.heard, None);
+        let glided = self.rig.glide(paths, samples, &mut |reading| {
+            heard = reading.time;
+            if let Some(fault) = outside(&limits, &own, &reading) {
+                broken = Some(reading).filter(is_finite);
+                return Err(fault);
+            }
+            readings.push(reading);
+            Ok(())
+        });
+        self.heard = heard;
+        readings.extend(broken.clone());
+        self.broken = broken;
+        let fault = self.or_hold(glided).err();
+        if fault.is_none() {
+            self.commanded = paths.iter().map(|path| path.to).collect();
+            self.going = paths.iter().map(|path| path.end_velocity).collect();
+        }
+        Traversed { readings, fault }
+    }
+
+    fn judge(&mut self, paths: &[Path]) -> Result<(), RigFault> {
+        let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
+        self.check_targets(&ends)?;
+        for (axis, path) in paths.iter().enumerate() {
+            let going = self.going.get(axis).copied().unwrap_or(0.0);
+            let smooth = path.from.to_bits() == self.commanded[axis].to_bits()
+                && (path.start_velocity - going).abs() <= 1e-12 * going.abs().max(path.fastest());
+            if !smooth {
+                self.hold();
+                let reason =
+                    "a path must begin where, and as fast as, the last one ended".to_owned();
+                return Err(RigFault::Device(reason));
+            }
+            let (low, high) = path.reach();
+            for place in [low, high]
+                .into_iter()
+                .filter(|_| on(Guarding::TargetLimits))
+            {
+                self.check_target(axis, place)?;
+            }
+            self.check(LimitedQuantity::Speed, self.limits.speed, path.fastest())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{Interval, Limits, Settle, VirtualLink};
+    use crate::rig::VirtualRig;
+
+    const AT_ONCE: Settle = Settle {
+        band: 0.0,
+        force_rate: 0.0,
+        dwell: 0.0,
+        timeout: 60.0,
+    };
+
+    fn glided(limits: Limits, paths: &[Path]) -> Option<RigFault> {
+        let mut rig = VirtualRig::new(VirtualLink::default(), AT_ONCE, None, 1.0);
+        let mut guard = Guard::new(&mut rig, limits).unwrap();
+        paths.iter().find_map(|path| guard.glide(&[*path], 5).fault)
+    }
+
+    fn quantity(fault: Option<&RigFault>) -> Option<LimitedQuantity> {
+        match fault {
+            Some(RigFault::LimitBreached { quantity, .. }) => Some(*quantity),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn paths_join_in_place_and_velocity() {
+        let first = Path::accelerated(0.0, 0.0, 1.0, 0.1);
+        let on = Path::accelerated(first.to, first.end_velocity, -1.0, 0.1);
+        assert_eq!(glided(Limits::NONE, &[first, on]), None);
+        let jumps = Path {
+            from: first.to + 1e-9,
+            ..on
+        };
+        let kinks = Path {
+            start_velocity: 0.0,
+            ..on
+        };
+        for broken in [jumps, kinks] {
+            assert!(
+                matches!(glided(Limits::NONE, &[first, broken]), Some(RigFault::Device(reason)) if reason.contains("begin"))
+            );
+        }
+    }
+
+    /// Out and back: both ends are at 0, the turn is at 2.5 mm; the speed is 0.1 m/s at its ends and more nowhere.
+    #[test]
+    fn the_whole_path_is_held_against_the_limits_before_it_begins() {
+        let first = Path::accelerated(0.0, 0.0, 1.0, 0.1);
+        let turn = Path::accelerated(first.to, 0.1, -2.0, 0.1);
+        let within = |high| Limits {
+            displacement: Interval { low: -0.01, high },
+            ..Limits::NONE
+        };
+        assert_eq!(glided(within(0.008), &[first, turn]), None);
+        assert_eq!(
+            quantity(glided(within(0.007), &[first, turn]).as_ref()),
+            Some(LimitedQuantity::TargetDisplacement)
+        );
+        let slow = |high| Limits {
+            speed: Interval { low: 0.0, high },
+            ..Limits::NONE
+        };
+        assert_eq!(glided(slow(0.101), &[first, turn]), None);
+        assert_eq!(
+            quantity(glided(slow(0.099), &[first]).as_ref()),
+            Some(LimitedQuantity::Speed)
+        );
+    }
+}

@@ -1,0 +1,86 @@
+//! Readings at rest: each inside its limits, and where the rig has settled near its target. In: what a procedure asks for. Out: a reading,
+//! or the rig held.
+
+use super::outside;
+use crate::rig::safety::failpoint::{Guarding, on};
+use crate::rig::{Guard, LimitedQuantity, Reading, RigFault};
+
+impl Guard<'_> {
+    /// Reads once.
+    ///
+    /// # Errors
+    /// The reading lies outside a limit or is no number, or the rig fails.
+    pub fn read(&mut self) -> Result<Reading, RigFault> {
+        let reading = self.rig.read();
+        self.judged(reading)
+    }
+
+    /// The same, with when the rig went on its last move: begin and end of the even motion that stands for it, s.
+    ///
+    /// # Errors
+    /// As [`Guard::read`].
+    pub fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        let read = self.rig.read_moved();
+        let (reading, moved) = read.map_or_else(
+            |fault| (Err(fault), None),
+            |(reading, moved)| (Ok(reading), moved),
+        );
+        Ok((self.judged(reading)?, moved))
+    }
+
+    fn judged(&mut self, reading: Result<Reading, RigFault>) -> Result<Reading, RigFault> {
+        let reading = self.or_hold(reading)?;
+        self.heard = reading.time;
+        if let Err(fault) = self.judge_reading(&reading) {
+            self.broken = Some(reading).filter(is_finite);
+            return Err(fault);
+        }
+        Ok(reading)
+    }
+
+    fn judge_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
+        self.check_reading(reading)?;
+        if self.settled {
+            let errors: Vec<f64> = reading
+                .displacement
+                .iter()
+                .zip(&self.commanded)
+                .map(|(measured, target)| (measured - target).abs())
+                .collect();
+            let limit = self.limits.tracking_error;
+            if let Some(place) = errors.iter().position(|error| !limit.contains(*error)) {
+                return Err(self.breach(
+                    LimitedQuantity::TrackingError,
+                    Some(place),
+                    limit,
+                    errors[place],
+                ));
+            }
+            if let Some(holds) = &mut self.holds {
+                holds.see(&self.commanded, reading);
+            }
+        }
+        Ok(())
+    }
+
+    /// The reading that broke a limit, once: it was made all the same.
+    pub fn take_broken(&mut self) -> Option<Reading> {
+        self.broken.take()
+    }
+
+    fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
+        let found =
+            outside(&self.limits, &self.own, reading).filter(|_| on(Guarding::ReadingLimits));
+        let judged = found.map_or(Ok(()), Err);
+        self.or_hold(judged)
+    }
+}
+
+/// Whether a reading is of numbers: what is none is not kept.
+pub(crate) fn is_finite(reading: &Reading) -> bool {
+    reading
+        .displacement
+        .iter()
+        .chain(&reading.force)
+        .all(|value| value.is_finite())
+}

@@ -1,0 +1,76 @@
+//! How fast the rig went last. In: what the bytes of a move said, and what was seen of it. Out: a speed for who watches. It
+//! judges nothing: before a move leaves, the guard has held its speed against the limit.
+
+use crate::rig::Guard;
+
+/// A share of the speed that was told, by which what is seen must be beyond it to count: the rounding of clocks and places is less.
+const BEYOND: f64 = 1e-3;
+
+impl Guard<'_> {
+    /// Speed of the last way, m/s: of a move what the rig was told, or more where it was there sooner; of a stroke what it was
+    /// told; of smooth paths the fastest place of the fastest. None before the first.
+    #[must_use]
+    pub const fn speed(&self) -> Option<f64> {
+        self.speed
+    }
+
+    /// A move is done that the rig was told this speed of, m/s.
+    pub(crate) fn went(&mut self, told: f64) {
+        let seen = self
+            .rig
+            .seen_speed()
+            .filter(|seen| *seen > told * (1.0 + BEYOND));
+        self.speed = Some(seen.unwrap_or(told));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::tracking::trajectory::Path;
+    use crate::plan::{Interval, Limits, Settle, VirtualLink};
+    use crate::rig::VirtualRig;
+
+    const AT_ONCE: Settle = Settle {
+        band: 0.0,
+        force_rate: 0.0,
+        dwell: 0.0,
+        timeout: 60.0,
+    };
+
+    #[test]
+    fn the_speed_is_that_of_the_last_way() {
+        let limits = Limits {
+            speed: Interval {
+                low: 0.0,
+                high: 0.02,
+            },
+            ..Limits::NONE
+        };
+        let mut rig = VirtualRig::new(VirtualLink::default(), AT_ONCE, None, 1.0);
+        let mut guard = Guard::new(&mut rig, limits).unwrap();
+        assert_eq!(guard.speed(), None, "nothing has moved");
+        guard.move_to(&[0.001], None).unwrap();
+        assert_eq!(
+            guard.speed(),
+            Some(0.02),
+            "none was asked for: as fast as allowed"
+        );
+        guard.move_to(&[0.002], Some(0.005)).unwrap();
+        assert_eq!(guard.speed(), Some(0.005));
+        assert!(guard.move_to(&[0.003], Some(0.03)).is_err());
+        assert_eq!(guard.speed(), Some(0.005), "what was refused is no way");
+        assert!(guard.traverse(&[0.001], -0.004, 4).fault.is_none());
+        assert_eq!(guard.speed(), Some(0.004));
+        assert!(
+            guard
+                .glide(&[Path::accelerated(0.001, 0.0, 0.1, 0.1)], 2)
+                .fault
+                .is_none()
+        );
+        assert!(
+            (guard.speed().unwrap() - 0.01).abs() < 1e-12,
+            "0.1 m/s² for 0.1 s, fastest at its end"
+        );
+    }
+}

@@ -1,0 +1,71 @@
+//! How a piston went on its last move, told as an even motion. In: when it went, in closed form or by places in time. Out: when an even
+//! motion with the same mean instant and the same spread about it begins and ends: to what relaxes slowly the two are one.
+
+/// Begin and end of an even motion of that mean instant (s) and variance about it (s²), no sooner than `start` (s): then the mean counts.
+pub(super) fn even(start: f64, mean: f64, variance: f64) -> [f64; 2] {
+    let from = (mean - (3.0 * variance.max(0.0)).sqrt()).max(start);
+    [from, 2.0 * mean - from]
+}
+
+/// The same by places (m) in time (s), from before the motion to after it, between which it went evenly; None where it went nowhere.
+pub(super) fn of_places(places: &[(f64, f64)]) -> Option<[f64; 2]> {
+    let (start, from) = *places.first()?;
+    let way = places.last()?.1 - from;
+    let (mut once, mut twice) = (0.0, 0.0);
+    for pair in places.windows(2) {
+        let [(before, at), (after, to)] = [pair[0], pair[1]];
+        let (moved, [early, late]) = (to - at, [before - start, after - start]);
+        once += moved * 0.5 * (early + late);
+        twice += moved * (early * early + early * late + late * late) / 3.0;
+    }
+    let mean = once / way;
+    (way != 0.0).then(|| even(start, start + mean, twice / way - mean * mean))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_even_motion_is_itself_and_rest_is_none() {
+        let places: Vec<(f64, f64)> = [1.0, 1.05, 1.13, 1.2, 1.4, 1.7]
+            .map(|time: f64| (time, 2e-3 * ((time - 1.0) / 0.2).min(1.0)))
+            .to_vec();
+        let [from, to] = of_places(&places).unwrap();
+        assert!(
+            (from - 1.0).abs() < 1e-12 && (to - 1.2).abs() < 1e-12,
+            "{from} s to {to} s"
+        );
+        assert_eq!(of_places(&[(0.0, 1.0), (1.0, 1.0)]), None);
+        assert_eq!(of_places(&[]), None);
+    }
+
+    /// A first-order lag delays a ramp of T by its time constant, and adds its square to the variance T²/12.
+    #[test]
+    fn a_lag_is_later_and_longer() {
+        let (lag, way) = (0.05, 0.4);
+        let behind = |time: f64| {
+            lag * (1.0 - (-time.min(way) / lag).exp()) * (-(time - way).max(0.0) / lag).exp()
+        };
+        let places: Vec<(f64, f64)> = (0..=4000)
+            .map(|index| f64::from(index) * 3e-4)
+            .map(|t| (t, t.min(way) - behind(t)))
+            .collect();
+        let found = of_places(&places).unwrap();
+        let wanted = even(0.0, 0.5 * way + lag, way * way / 12.0 + lag * lag);
+        assert!(
+            found
+                .iter()
+                .zip(wanted)
+                .all(|(found, wanted)| (found - wanted).abs() < 1e-6),
+            "{found:?}, not {wanted:?}"
+        );
+    }
+
+    /// A motion shorter than its lag is even from where it began, with the same mean.
+    #[test]
+    fn no_motion_begins_before_it_does() {
+        assert_eq!(even(2.0, 2.5, 1.0), [2.0, 3.0]);
+        assert_eq!(even(2.0, 2.5, 0.0), [2.5, 2.5]);
+    }
+}

@@ -1,0 +1,137 @@
+//! A way of a real rig along smooth paths, read as it goes and not stopped at its end. In: a path an axis, how many readings
+//! are wanted. Out: as many as the line can carry, each with its own time and place, the last at the end of the way or
+//! right after it. When a way ends is the rig's word, so that two clocks do not part over a long run.
+
+use super::RealRig;
+use super::{Part, WIRE_ROUNDING};
+use crate::physics::tracking::trajectory::Path;
+use crate::rig::safety::failpoint::{Guarding, on};
+use crate::rig::{EachReading, Reading, Rig as _, RigFault, named_axis};
+
+impl RealRig {
+    /// Follows `paths` and reads at up to `samples` equal times, the last at their end. A time that has passed while a reading
+    /// was on the line is left out.
+    pub(super) fn follow(
+        &mut self,
+        paths: &[Path],
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.proposed = None;
+        self.axes.iter_mut().for_each(|axis| axis.way = None);
+        if let Some(reason) = &self.untrusted {
+            return Err(RigFault::Device(format!("not moved any more: {reason}")));
+        }
+        let seconds = paths.first().map_or(0.0, |path| path.seconds);
+        let together = paths
+            .iter()
+            .all(|path| path.seconds.to_bits() == seconds.to_bits());
+        if samples == 0
+            || paths.len() != self.axes.len()
+            || !together
+            || !(seconds > 0.0 && seconds.is_finite())
+        {
+            let reason = format!(
+                "{} paths of {seconds} s with {samples} readings lead nowhere",
+                paths.len()
+            );
+            return Err(RigFault::Device(reason));
+        }
+        let end = self.begin(paths)?;
+        let mut sample = 1;
+        loop {
+            #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+            let due = end - seconds * (samples - sample) as f64 / samples as f64;
+            self.stay_until(due)?;
+            let reading = self.reading_now()?;
+            if sample == samples {
+                self.keeps_up(paths, &reading)?;
+                return each(reading);
+            }
+            each(reading)?;
+            #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+            let passed = (self.clock.now() - (end - seconds)) / seconds * samples as f64;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "saturates, and ends the way"
+            )]
+            let passed = passed.floor() as usize;
+            sample = (passed + 1).max(sample + 1).min(samples);
+        }
+    }
+
+    /// What is left of a way that was cut off. The rig went on past it, or holds on it, and cannot be set on it again as fast as it
+    /// was: it goes to the end of the way as to any target, and one reading is made there, late and at rest, if any is left.
+    pub(super) fn rest_of_way(
+        &mut self,
+        paths: &[Path],
+        left: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
+        self.propose(&ends, None)?;
+        self.carry_out()?;
+        if left > 0 {
+            each(self.reading_now()?)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Sends the way. When it ends, s by the clock.
+    fn begin(&mut self, paths: &[Path]) -> Result<f64, RigFault> {
+        let turned = |(axis, path): (&super::Axis, &Path)| Path {
+            from: axis.coordinate.at_device(path.from),
+            to: axis.coordinate.at_device(path.to),
+            start_velocity: axis.coordinate.turned(path.start_velocity),
+            end_velocity: axis.coordinate.turned(path.end_velocity),
+            seconds: path.seconds,
+        };
+        let turned: Vec<Path> = self.axes.iter().zip(paths).map(turned).collect();
+        let going = self
+            .actuator
+            .encode_way(&turned)
+            .map_err(|fault| self.told(Part::Actuator, &fault))?;
+        let ends = going.targets.iter().zip(&turned);
+        let apt = |(axis, (said, path)): (&super::Axis, (&f64, &Path))| {
+            (said - path.to).abs() <= WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6)
+        };
+        if on(Guarding::WireNumber)
+            && (going.targets.len() != paths.len() || !self.axes.iter().zip(ends).all(apt))
+        {
+            return Err(RigFault::Device(format!(
+                "asked for {turned:?}, the bytes say {:?} m: not sent",
+                going.targets
+            )));
+        }
+        self.moved = true;
+        let left = self
+            .actuator
+            .set_out(&going)
+            .map_err(|fault| self.told(Part::Actuator, &fault))?;
+        (self.deaf, self.settled) = (false, None);
+        self.look_up()?;
+        Ok(self.clock.now() + left)
+    }
+
+    /// Whether every axis is where it passes, as near as a moving one can be told to be: one that is farther behind than all it
+    /// went on this way and the one before does not follow. What a lag does to the test is for the limits of tracking.
+    fn keeps_up(&mut self, paths: &[Path], reading: &Reading) -> Result<(), RigFault> {
+        let count = self.axes.len();
+        for (place, (axis, path)) in self.axes.iter_mut().zip(paths).enumerate() {
+            let (low, high) = path.reach();
+            let span = high - low;
+            let band = self.settle.band + span + std::mem::replace(&mut axis.span, span);
+            let error = (reading.displacement[place] - path.to).abs();
+            if on(Guarding::Following) && (error.is_nan() || error > band) {
+                return Err(RigFault::Following {
+                    error,
+                    band,
+                    axis: named_axis(place, count),
+                });
+            }
+        }
+        Ok(())
+    }
+}

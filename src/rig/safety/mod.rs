@@ -1,0 +1,283 @@
+//! The last resort: the rig receives a hold command whatever happens to the program. In: lines that
+//! can still send, and a heartbeat of the driving thread. Out: hold commands, after a panic or when
+//! the heartbeat stops. It waits for no reply and knows no protocol. A killed program sends
+//! nothing: the rig's own watchdog and the wired stop are for that.
+
+pub mod failpoint;
+pub(crate) mod final_hold;
+pub(crate) mod live;
+pub(crate) mod stop_request;
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Mutex, MutexGuard, Once, TryLockError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use super::safety::failpoint::{Guarding, on};
+use super::transport::{Clock as _, Emergency, MonotonicClock};
+
+/// Lines, each with the bytes that stop what is on it.
+pub type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
+
+/// A line that is armed.
+struct Line {
+    /// Number of who armed it.
+    owner: u64,
+    sender: Box<dyn Emergency>,
+    bytes: Vec<u8>,
+}
+
+/// All that is armed.
+static LINES: Mutex<Vec<Line>> = Mutex::new(Vec::new());
+static NEXT: AtomicU64 = AtomicU64::new(0);
+static BEATS: AtomicU64 = AtomicU64::new(0);
+static TRIPPED: AtomicBool = AtomicBool::new(false);
+
+/// How often the watch looks, and a panic tries for the lines, s.
+const LOOK: Duration = Duration::from_millis(50);
+const TRIES: u32 = 20;
+
+/// The lines are armed as long as it lives.
+#[must_use = "dropping it disarms the lines"]
+pub struct Armed {
+    number: u64,
+    watch: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+/// Arms lines: from now on a panic in any thread sends their bytes. Lines without bytes are left out.
+pub fn arm(lines: Lines) -> Armed {
+    hook();
+    let number = NEXT.fetch_add(1, Ordering::SeqCst);
+    TRIPPED.store(false, Ordering::SeqCst);
+    if let Some(mut armed) = take_lines() {
+        let able = lines.into_iter().filter(|(_, bytes)| !bytes.is_empty());
+        armed.extend(able.map(|(sender, bytes)| Line {
+            owner: number,
+            sender,
+            bytes,
+        }));
+    }
+    Armed {
+        number,
+        watch: None,
+    }
+}
+
+impl Armed {
+    /// Also sends the bytes, once, when no [`beat`] came for `watchdog` seconds.
+    pub fn watched(mut self, watchdog: f64) -> Self {
+        let (stop, stopped) = channel();
+        let guarded = on(Guarding::HostWatchdog);
+        let thread = std::thread::spawn(move || {
+            let clock = MonotonicClock::start();
+            let mut pulse = Pulse::new(watchdog, BEATS.load(Ordering::SeqCst), clock.now());
+            while stopped.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+                if guarded && pulse.stopped(BEATS.load(Ordering::SeqCst), clock.now()) {
+                    hold_everything();
+                    TRIPPED.store(true, Ordering::SeqCst);
+                }
+            }
+        });
+        self.watch = Some((stop, thread));
+        self
+    }
+}
+
+impl Drop for Armed {
+    fn drop(&mut self) {
+        if let Some((stop, thread)) = self.watch.take() {
+            drop(stop);
+            thread.join().ok();
+        }
+        if let Some(mut lines) = take_lines() {
+            lines.retain(|line| line.owner != self.number);
+        }
+    }
+}
+
+/// Sends the bytes of every armed line, without waiting for an answer.
+pub fn hold_everything() {
+    if let Some(mut lines) = take_lines() {
+        for Line { sender, bytes, .. } in lines.iter_mut() {
+            sender.send(bytes);
+        }
+    }
+}
+
+/// A sign of life of whoever drives the rig.
+pub fn beat() {
+    BEATS.fetch_add(1, Ordering::SeqCst);
+}
+
+/// Whether the beats stayed away since the lines were armed, so that the rig was told to hold.
+#[must_use]
+pub fn tripped() -> bool {
+    TRIPPED.load(Ordering::SeqCst)
+}
+
+/// The lines; None where somebody keeps them, as a panic in the middle of a sending does.
+fn take_lines() -> Option<MutexGuard<'static, Vec<Line>>> {
+    for _ in 0..TRIES {
+        match LINES.try_lock() {
+            Ok(lines) => return Some(lines),
+            Err(TryLockError::Poisoned(poisoned)) => return Some(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => std::thread::sleep(LOOK / TRIES),
+        }
+    }
+    None
+}
+
+/// Before anything else a panic holds the rig.
+fn hook() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let before = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            if on(Guarding::PanicHook) {
+                hold_everything();
+            }
+            before(info);
+        }));
+    });
+}
+
+/// Tells from counted beats and a clock when they stop.
+struct Pulse {
+    watchdog: f64,
+    beats: u64,
+    /// s
+    last: f64,
+    told: bool,
+}
+
+impl Pulse {
+    const fn new(watchdog: f64, beats: u64, now: f64) -> Self {
+        Self {
+            watchdog,
+            beats,
+            last: now,
+            told: false,
+        }
+    }
+
+    /// Whether they have just stopped; said once.
+    fn stopped(&mut self, beats: u64, now: f64) -> bool {
+        if beats != self.beats {
+            (self.beats, self.last) = (beats, now);
+        }
+        let late = now - self.last > self.watchdog;
+        late && !std::mem::replace(&mut self.told, late)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::safety::failpoint::without;
+    use std::sync::Arc;
+    use std::thread::{ThreadId, current, spawn};
+
+    /// What was sent, and which thread sent it: other tests panic and hold too, and theirs reach every armed line.
+    #[derive(Clone, Default)]
+    struct Recorder(Arc<Mutex<Vec<Sent>>>);
+
+    type Sent = (ThreadId, Vec<u8>);
+
+    impl Emergency for Recorder {
+        fn send(&mut self, bytes: &[u8]) {
+            self.0
+                .lock()
+                .unwrap()
+                .push((current().id(), bytes.to_vec()));
+        }
+    }
+
+    impl Recorder {
+        fn sent_by(&self, thread: ThreadId) -> Vec<u8> {
+            let sent = self.0.lock().unwrap();
+            sent.iter()
+                .filter(|(by, _)| *by == thread)
+                .flat_map(|(_, bytes)| bytes.clone())
+                .collect()
+        }
+    }
+
+    /// A thread that ends by a panic in `what`.
+    fn panicked(what: impl FnOnce() + Send + 'static) -> ThreadId {
+        let thread = spawn(what);
+        let id = thread.thread().id();
+        assert!(thread.join().is_err());
+        id
+    }
+
+    #[test]
+    fn a_panic_in_any_thread_stops_every_armed_line_and_no_other() {
+        let (first, second, without_words) = (
+            Recorder::default(),
+            Recorder::default(),
+            Recorder::default(),
+        );
+        let armed = arm(vec![
+            (Box::new(first.clone()), b"!".to_vec()),
+            (Box::new(second.clone()), b"\x85".to_vec()),
+            (Box::new(without_words.clone()), Vec::new()),
+        ]);
+        let thread = panicked(|| panic!("on purpose, to see the rig held"));
+        assert_eq!(
+            (first.sent_by(thread), second.sent_by(thread)),
+            (b"!".to_vec(), b"\x85".to_vec())
+        );
+        assert!(without_words.0.lock().unwrap().is_empty());
+        let unguarded = panicked(|| {
+            without(Guarding::PanicHook, || {
+                panic!("on purpose, to see nothing held")
+            });
+        });
+        assert!(
+            first.sent_by(unguarded).is_empty(),
+            "it is the hook that holds"
+        );
+        drop(armed);
+        hold_everything();
+        assert!(first.sent_by(current().id()).is_empty(), "disarmed");
+    }
+
+    #[test]
+    fn beats_that_stay_away_are_told_once() {
+        let mut pulse = Pulse::new(3.0, 7, 0.0);
+        assert!(!pulse.stopped(7, 2.9));
+        assert!(!pulse.stopped(8, 3.5), "it lives");
+        assert!(!pulse.stopped(8, 6.5));
+        assert!(pulse.stopped(8, 6.6));
+        assert!(!pulse.stopped(8, 60.0));
+    }
+
+    /// Lines whose watch takes any silence for too long, what they are sent, and the thread of the watch.
+    fn nobody_beats() -> (Armed, Recorder, ThreadId) {
+        let recorder = Recorder::default();
+        let armed = arm(vec![(Box::new(recorder.clone()), b"!".to_vec())]).watched(-1.0);
+        let watch = armed
+            .watch
+            .as_ref()
+            .map(|(_, thread)| thread.thread().id())
+            .unwrap();
+        (armed, recorder, watch)
+    }
+
+    #[test]
+    fn the_watch_sends_the_bytes_when_nobody_beats() {
+        let (armed, recorder, watch) = nobody_beats();
+        while !(tripped() && recorder.sent_by(watch) == b"!") {
+            std::thread::yield_now();
+        }
+        drop(armed);
+        let (armed, recorder, watch) = without(Guarding::HostWatchdog, nobody_beats);
+        std::thread::sleep(LOOK * 4);
+        drop(armed);
+        assert!(
+            recorder.sent_by(watch).is_empty(),
+            "it is the watch that holds"
+        );
+    }
+}

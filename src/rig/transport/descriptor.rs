@@ -1,0 +1,127 @@
+//! Bytes through a descriptor that never blocks, with a time-out on every call. In: a descriptor and bytes. Out: bytes,
+//! or `TimedOut`, or `BrokenPipe` once what came before a hangup has been read.
+
+use std::io::{self, ErrorKind};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
+
+use super::Emergency;
+
+/// How long an emergency may take to be sent, s.
+const EMERGENCY_TIMEOUT: Duration = Duration::from_millis(200);
+
+/// Sends all the bytes to a descriptor that does not block.
+pub(super) fn write(
+    descriptor: BorrowedFd<'_>,
+    mut bytes: &[u8],
+    timeout: Duration,
+) -> io::Result<()> {
+    let deadline = Instant::now() + timeout;
+    while !bytes.is_empty() {
+        match rustix::io::write(descriptor, bytes) {
+            Ok(0) => return Err(ErrorKind::BrokenPipe.into()),
+            Ok(count) => bytes = &bytes[count..],
+            Err(Errno::INTR) => {}
+            Err(Errno::AGAIN) => wait(descriptor, PollFlags::OUT, deadline)?,
+            Err(errno) => return Err(gone(errno)),
+        }
+    }
+    Ok(())
+}
+
+/// What there is, at least one byte. A line that hung up still gives what came before: it is read, whatever `poll` says.
+pub(super) fn read(
+    descriptor: BorrowedFd<'_>,
+    buffer: &mut [u8],
+    timeout: Duration,
+) -> io::Result<usize> {
+    let deadline = Instant::now() + timeout;
+    loop {
+        match rustix::io::read(descriptor, &mut *buffer) {
+            Ok(0) => return Err(ErrorKind::BrokenPipe.into()),
+            Ok(count) => return Ok(count),
+            Err(Errno::INTR) => {}
+            Err(Errno::AGAIN) => wait(descriptor, PollFlags::IN, deadline)?,
+            Err(errno) => return Err(gone(errno)),
+        }
+    }
+}
+
+/// Waits until something can be done, or the line is gone.
+fn wait(descriptor: BorrowedFd<'_>, flags: PollFlags, deadline: Instant) -> io::Result<()> {
+    loop {
+        let left = deadline.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(ErrorKind::TimedOut.into());
+        }
+        let left =
+            Timespec::try_from(left).map_err(|_| io::Error::from(ErrorKind::InvalidInput))?;
+        match poll(&mut [PollFd::new(&descriptor, flags)], Some(&left)) {
+            Ok(0) => return Err(ErrorKind::TimedOut.into()),
+            Ok(_) => return Ok(()),
+            Err(Errno::INTR) => {}
+            Err(errno) => return Err(gone(errno)),
+        }
+    }
+}
+
+/// One word for all the ways in which the other side goes away.
+fn gone(errno: Errno) -> io::Error {
+    match errno {
+        Errno::IO | Errno::PIPE | Errno::CONNRESET | Errno::NXIO | Errno::NODEV => {
+            ErrorKind::BrokenPipe.into()
+        }
+        other => other.into(),
+    }
+}
+
+/// A descriptor of its own on the same line.
+pub(super) struct Sender(OwnedFd);
+
+impl Sender {
+    pub(super) fn of(descriptor: &OwnedFd) -> io::Result<Box<dyn Emergency>> {
+        Ok(Box::new(Self(descriptor.try_clone()?)))
+    }
+}
+
+impl Emergency for Sender {
+    fn send(&mut self, bytes: &[u8]) {
+        // There is nobody left to tell.
+        write(self.0.as_fd(), bytes, EMERGENCY_TIMEOUT).ok();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rustix::fs::OFlags;
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+
+    #[test]
+    fn a_terminal_that_hung_up_after_a_line_gives_the_line_then_a_broken_pipe() {
+        let near = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&near).unwrap();
+        unlockpt(&near).unwrap();
+        rustix::fs::fcntl_setfl(&near, OFlags::NONBLOCK).unwrap();
+        let flags = OFlags::RDWR | OFlags::NOCTTY;
+        let far = rustix::fs::open(
+            ptsname(&near, Vec::new()).unwrap(),
+            flags,
+            rustix::fs::Mode::empty(),
+        )
+        .unwrap();
+        write(far.as_fd(), b"last", Duration::ZERO).unwrap();
+        drop(far);
+        let (mut buffer, mut got) = ([0; 64], Vec::new());
+        let end = loop {
+            match read(near.as_fd(), &mut buffer, Duration::from_secs(5)) {
+                Ok(count) => got.extend_from_slice(&buffer[..count]),
+                Err(error) => break error.kind(),
+            }
+        };
+        assert_eq!((got.as_slice(), end), (&b"last"[..], ErrorKind::BrokenPipe));
+    }
+}

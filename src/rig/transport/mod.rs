@@ -1,0 +1,75 @@
+//! Bytes to and from a device, with their times: serial lines, TCP, clocks. In: bytes and a
+//! time-out. Out: bytes, or the reason for none. It knows no protocol.
+
+mod clock;
+mod descriptor;
+mod port_lock;
+mod serial;
+mod tcp;
+
+use std::io;
+use std::time::Duration;
+
+use crate::plan::PortPlan;
+
+pub use clock::MonotonicClock;
+pub use serial::SerialPort;
+pub use tcp::TcpPort;
+
+/// Longest wait for a connection, s.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
+
+/// Opens the port of a plan. Nothing is sent.
+///
+/// # Errors
+/// It is not there, is no line, or is in use.
+pub fn open(port: &PortPlan) -> io::Result<Box<dyn Port>> {
+    Ok(match port {
+        PortPlan::Serial { path, baud } => Box::new(SerialPort::open(path, *baud)?),
+        PortPlan::Tcp { address } => Box::new(TcpPort::connect(address, CONNECT_TIMEOUT)?),
+    })
+}
+
+/// A line to one device. Every call ends within its time-out; `ErrorKind::TimedOut` says that it was used up.
+pub trait Port: Send {
+    /// Sends all the bytes.
+    ///
+    /// # Errors
+    /// Not all were taken in time, or the line is gone.
+    fn write(&mut self, bytes: &[u8], timeout: Duration) -> io::Result<()>;
+
+    /// Waits for bytes and gives what there is, at least one.
+    ///
+    /// # Errors
+    /// Nothing came in time, or the line is gone (`BrokenPipe`; bytes that came before are given first).
+    fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize>;
+
+    /// Throws away what has come and was not read.
+    ///
+    /// # Errors
+    /// The line is gone.
+    fn discard(&mut self) -> io::Result<()>;
+
+    /// A second hold on the line that can only send: for who must stop the rig whatever this one is doing.
+    ///
+    /// # Errors
+    /// The line is gone.
+    fn emergency(&self) -> io::Result<Box<dyn Emergency>>;
+}
+
+/// Sends without waiting for anybody.
+pub trait Emergency: Send {
+    /// Sends the bytes, within a fraction of a second or not at all.
+    fn send(&mut self, bytes: &[u8]);
+}
+
+/// Monotonic time, and waiting.
+pub trait Clock: Send {
+    /// s since some fixed moment.
+    fn now(&self) -> f64;
+
+    fn sleep(&mut self, seconds: f64);
+
+    /// Wall clock, for the record: UTC as `2026-05-31T12:00:00.000Z`. None where a run must read nothing of the machine.
+    fn wall(&self) -> Option<String>;
+}

@@ -1,0 +1,182 @@
+//! The virtual actuator. In: reference motion, s of rig time. Out: where the piston stands and how fast it moves.
+//! In closed form, so that a settling of minutes costs as much as none. It knows no specimen and no load cell.
+
+use crate::physics::relaxation::maxwell::Travel;
+use crate::physics::tracking::trajectory::Rate;
+
+/// A servo whose piston follows its reference with a first-order lag: ẋ = (reference − x) / lag.
+#[derive(Clone, Debug)]
+pub(crate) struct Actuator {
+    /// Time constant, s; 0: the piston is where the reference is.
+    lag: f64,
+    /// Fraction of each increment not reached.
+    tracking: f64,
+    /// m
+    reference: f64,
+    /// reference − position, m.
+    lagging: f64,
+    /// Velocity of the reference, m/s; 0 at rest.
+    reference_velocity: f64,
+}
+
+impl Actuator {
+    pub(crate) const fn new(lag: f64, tracking: f64) -> Self {
+        Self {
+            lag,
+            tracking,
+            reference: 0.0,
+            lagging: 0.0,
+            reference_velocity: 0.0,
+        }
+    }
+
+    /// Where the piston stands, m.
+    pub(crate) fn position(&self) -> f64 {
+        self.reference - self.lagging
+    }
+
+    /// Velocity of the piston, m/s.
+    pub(crate) fn velocity(&self) -> f64 {
+        if self.lag > 0.0 {
+            self.lagging / self.lag
+        } else {
+            self.reference_velocity
+        }
+    }
+
+    /// Where the reference ends when `target` is asked for: short by the tracking fraction of the increment, which an
+    /// actuator takes from where it stands, so that the error does not add up over steps in one direction.
+    pub(crate) fn aim(&self, target: f64) -> f64 {
+        target - self.tracking * (target - self.position())
+    }
+
+    /// m, from which the reference moves on.
+    pub(crate) const fn reference(&self) -> f64 {
+        self.reference
+    }
+
+    /// How far the piston is behind its reference, m, by size.
+    pub(crate) const fn lagging(&self) -> f64 {
+        self.lagging.abs()
+    }
+
+    pub(crate) const fn lag(&self) -> f64 {
+        self.lag
+    }
+
+    /// The reference moves evenly to `to` in `seconds`. With e = reference − x: ė = v − e/lag, so
+    /// e(t) = v·lag + (e₀ − v·lag)·exp(−t/lag). The reference goes on at this velocity until `stop`. How the piston went.
+    pub(crate) fn advance(&mut self, to: f64, seconds: f64) -> Travel {
+        if seconds <= 0.0 {
+            return Travel::rest(0.0);
+        }
+        let velocity = (to - self.reference) / seconds;
+        let mut travel = Travel::even(velocity, seconds);
+        if self.lag > 0.0 {
+            (travel.fading, travel.lag) = (self.lagging / self.lag - velocity, self.lag);
+            let steady = velocity * self.lag;
+            self.lagging = steady + (self.lagging - steady) * (-seconds / self.lag).exp();
+        }
+        self.reference = to;
+        self.reference_velocity = velocity;
+        travel
+    }
+
+    /// The reference stands where it is to be, and passes there at `velocity` (m/s): a way that was cut off is gone on with.
+    pub(crate) const fn pass(&mut self, velocity: f64) -> Travel {
+        self.reference_velocity = velocity;
+        Travel::rest(0.0)
+    }
+
+    /// The reference runs to `to` in `seconds`, its velocity a parabola in time with these ends. With e = reference − x:
+    /// ė = q − e/lag, so e = `e_p` + (e₀ − `e_p0`)·exp(−t/lag) with `e_p` = lag·q − lag²·q' + lag³·q''.
+    pub(crate) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) -> Travel {
+        let mut travel = Travel {
+            start: before,
+            fading: 0.0,
+            lag: 0.0,
+            seconds,
+        };
+        if self.lag > 0.0 {
+            let lag = self.lag;
+            // ẋ = e/lag, its first part a parabola again.
+            let Rate {
+                velocity,
+                acceleration,
+                jerk,
+            } = before;
+            let velocity = velocity - lag * (acceleration - lag * jerk);
+            travel.start = Rate {
+                velocity,
+                acceleration: acceleration - lag * jerk,
+                jerk,
+            };
+            (travel.fading, travel.lag) = (self.lagging / lag - velocity, lag);
+            let steady =
+                |rate: Rate| lag * (rate.velocity - lag * (rate.acceleration - lag * rate.jerk));
+            self.lagging = steady(after) + (self.lagging - steady(before)) * (-seconds / lag).exp();
+        }
+        self.reference = to;
+        self.reference_velocity = after.velocity;
+        travel
+    }
+
+    /// The reference stands; the piston goes on towards it.
+    pub(crate) const fn stop(&mut self) {
+        self.reference_velocity = 0.0;
+    }
+
+    /// `seconds` pass with the reference at rest.
+    pub(crate) fn rest(&mut self, seconds: f64) -> Travel {
+        self.stop();
+        let mut travel = Travel::rest(seconds);
+        if self.lag > 0.0 && self.lagging != 0.0 {
+            (travel.fading, travel.lag) = (self.lagging / self.lag, self.lag);
+            self.lagging *= (-seconds / self.lag).exp();
+        }
+        travel
+    }
+
+    /// Stays where it is.
+    pub(crate) fn hold(&mut self) {
+        self.reference = self.position();
+        self.lagging = 0.0;
+        self.stop();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lag_follows_a_ramp_by_v_tau_and_closes_exponentially() {
+        let mut actuator = Actuator::new(0.1, 0.0);
+        actuator.advance(2.0, 2.0);
+        let behind = 0.1 * (1.0 - (-20.0_f64).exp());
+        assert!((actuator.position() - (2.0 - behind)).abs() < 1e-15);
+        assert!((actuator.velocity() - 1.0).abs() < 1e-8);
+        actuator.rest(0.1);
+        assert!((actuator.lagging() - behind * (-1.0_f64).exp()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn tracking_leaves_its_fraction_of_the_increment() {
+        let mut actuator = Actuator::new(0.0, 0.1);
+        actuator.advance(actuator.aim(1.0), 1.0);
+        assert!((actuator.position() - 0.9).abs() < 1e-15);
+        actuator.advance(actuator.aim(2.0), 1.0);
+        assert!((actuator.position() - (2.0 - 0.1 * 1.1)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn hold_stops_the_piston_where_it_is() {
+        let mut actuator = Actuator::new(0.5, 0.0);
+        actuator.advance(1.0, 0.5);
+        let there = actuator.position();
+        actuator.hold();
+        actuator.rest(10.0);
+        assert_eq!(actuator.position(), there);
+        assert_eq!(actuator.velocity(), 0.0);
+    }
+}

@@ -1,0 +1,80 @@
+//! The virtual load cell. In: the force on it and the rig time. Out: what it shows, with drift, noise and quantum.
+//! Its generator is a named one (PCG-64-MCG), so that a seed gives the same readings on every version.
+
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+#[derive(Clone, Debug)]
+pub(crate) struct LoadCell {
+    /// Standard deviation of one reading, N.
+    noise: f64,
+    /// N
+    resolution: f64,
+    /// N/s of rig time.
+    drift: f64,
+    generator: Pcg64Mcg,
+}
+
+impl LoadCell {
+    pub(crate) fn new(noise: f64, resolution: f64, drift: f64, seed: u64) -> Self {
+        Self {
+            noise,
+            resolution,
+            drift,
+            generator: Pcg64Mcg::seed_from_u64(seed),
+        }
+    }
+
+    /// One reading at `time` (s of rig time) of `force` (N).
+    pub(crate) fn read(&mut self, force: f64, time: f64) -> f64 {
+        let deviation: f64 = if self.noise > 0.0 {
+            StandardNormal.sample(&mut self.generator)
+        } else {
+            0.0
+        };
+        to_quantum(
+            force + self.drift * time + self.noise * deviation,
+            self.resolution,
+        )
+    }
+}
+
+/// The nearest multiple of `quantum`; the value itself if the quantum is 0.
+pub(crate) fn to_quantum(value: f64, quantum: f64) -> f64 {
+    if quantum > 0.0 {
+        (value / quantum).round() * quantum
+    } else {
+        value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drift_grows_with_rig_time_and_the_quantum_rounds_to_the_nearest() {
+        let mut cell = LoadCell::new(0.0, 0.5, 0.25, 0);
+        assert_eq!(cell.read(10.0, 0.0), 10.0);
+        assert_eq!(cell.read(10.0, 4.0), 11.0);
+        assert_eq!(cell.read(10.2, 0.0), 10.0);
+        assert_eq!(cell.read(10.3, 0.0), 10.5);
+    }
+
+    #[test]
+    fn noise_has_the_stated_deviation_no_mean_and_repeats_by_seed() {
+        let readings = |seed| {
+            let mut cell = LoadCell::new(2.0, 0.0, 0.0, seed);
+            (0..10_000).map(|_| cell.read(0.0, 0.0)).collect::<Vec<_>>()
+        };
+        let first = readings(7);
+        let mean = first.iter().sum::<f64>() / 1e4;
+        let deviation = (first.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 9999.0).sqrt();
+        // Standard errors of mean and deviation are 0.02 and 0.014.
+        assert!(mean.abs() < 0.08, "{mean}");
+        assert!((deviation - 2.0).abs() < 0.06, "{deviation}");
+        assert_eq!(first, readings(7));
+        assert_ne!(first, readings(8));
+    }
+}

@@ -1,0 +1,492 @@
+//! The virtual rig: an actuator and a load cell per axis, with a specimen between them. In: one
+//! target per axis. Out: readings. Its time is simulated; it reads no clock and no file. Each load
+//! cell has its own seed.
+
+pub(crate) mod actuator;
+#[cfg(test)]
+mod frame_tests;
+pub(super) mod glide;
+pub(crate) mod load_cell;
+pub(crate) mod settling;
+mod springs;
+#[cfg(test)]
+mod tests;
+
+use self::glide::Course;
+use self::springs::Springs;
+use super::motion::even;
+use super::virtual_rig::actuator::Actuator;
+use super::virtual_rig::load_cell::{LoadCell, to_quantum};
+use super::virtual_rig::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
+use super::{CutOff, DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
+use crate::physics::relaxation::maxwell::Travel;
+use crate::physics::tracking::trajectory::Path;
+use crate::plan::{Frame, Plan, Settle, Specimen, VirtualLink};
+
+pub use crate::plan::VIRTUAL_SPEED as OWN_SPEED;
+
+/// One degree of freedom, or the floors of a frame from the ground up.
+pub struct VirtualRig {
+    name: String,
+    link: VirtualLink,
+    settle: Settle,
+    /// +1 or −1, of every axis: how displacement and force at the rig count in the plan. The specimen is at the rig.
+    sign: f64,
+    axes: Vec<Axis>,
+    springs: Springs,
+    /// s
+    time: f64,
+    /// Where the axes were last bent to (m), and their restoring forces there (N).
+    bent: Vec<f64>,
+    restoring_force: Vec<f64>,
+    /// Targets at the rig (m) and speed of the fastest axis (m/s).
+    proposed: Option<(Vec<f64>, f64)>,
+    /// When it went on its last move.
+    moved: Option<[f64; 2]>,
+    /// The paths that the axes follow, or were stopped on.
+    under_way: Vec<Course>,
+}
+
+struct Axis {
+    actuator: Actuator,
+    cell: LoadCell,
+}
+
+/// The seed of one load cell: the plan's own for the first.
+const fn seed_of(seed: u64, axis: u64) -> u64 {
+    // The odd number nearest to 2⁶⁴ over the golden ratio: no two axes of any two near seeds meet.
+    seed.wrapping_add(axis.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+}
+
+impl VirtualRig {
+    /// A rig that bends `specimen`, or nothing, on one axis; `sign` is +1 or −1.
+    #[must_use]
+    pub fn new(link: VirtualLink, settle: Settle, specimen: Option<&Specimen>, sign: f64) -> Self {
+        Self::of_springs(link, settle, Springs::of_specimen(specimen), sign)
+    }
+
+    /// A rig with a floor of the frame an axis.
+    #[must_use]
+    pub fn of_frame(link: VirtualLink, settle: Settle, frame: &Frame, sign: f64) -> Self {
+        Self::of_springs(link, settle, Springs::of_frame(frame), sign)
+    }
+
+    fn of_springs(link: VirtualLink, settle: Settle, mut springs: Springs, sign: f64) -> Self {
+        let axis = |number: u64| Axis {
+            actuator: Actuator::new(link.lag, link.tracking),
+            cell: LoadCell::new(
+                link.noise,
+                link.force_resolution,
+                link.drift,
+                seed_of(link.seed, number),
+            ),
+        };
+        let axes: Vec<Axis> = (0..).take(springs.order()).map(axis).collect();
+        let at_rest = vec![0.0; axes.len()];
+        let mut restoring_force = at_rest.clone();
+        springs.bend(
+            &vec![Travel::rest(0.0); axes.len()],
+            &at_rest,
+            &mut restoring_force,
+        );
+        Self {
+            name: "virtual".to_owned(),
+            link,
+            settle,
+            sign,
+            axes,
+            springs,
+            time: 0.0,
+            bent: at_rest,
+            restoring_force,
+            proposed: None,
+            moved: None,
+            under_way: Vec::new(),
+        }
+    }
+
+    /// The plan's rig with the plan's specimen on it: the one that the first procedure names. In place of a real rig an
+    /// ideal virtual one.
+    #[must_use]
+    pub fn of_plan(plan: &Plan) -> Self {
+        let link = plan.rig.link.as_virtual().copied().unwrap_or_default();
+        let specimen = Self::specimen_of(plan);
+        let (settle, sign) = (plan.rig.settle, plan.rig.sign);
+        let rig = match specimen.and_then(|specimen| specimen.frame.as_ref()) {
+            Some(frame) => Self::of_frame(link, settle, frame, sign),
+            None => Self::new(link, settle, specimen, sign),
+        };
+        Self {
+            name: plan.rig.name.clone(),
+            ..rig
+        }
+    }
+
+    /// The specimen that stands on the plan's rig: the one that the first procedure names, else the first.
+    #[must_use]
+    pub fn specimen_of(plan: &Plan) -> Option<&Specimen> {
+        plan.specimen_on_the_rig()
+    }
+
+    /// A number of axes that is not the rig's.
+    fn other_order(&self, found: usize) -> RigFault {
+        let own = match self.axes.len() {
+            1 => "one degree of freedom".to_owned(),
+            order => format!("{order} degrees of freedom"),
+        };
+        RigFault::Device(format!("this rig has {own}, not {found}"))
+    }
+
+    /// Targets at the rig, m.
+    fn at_rig(&self, targets: &[f64]) -> Result<Vec<f64>, RigFault> {
+        if targets.len() != self.axes.len() {
+            return Err(self.other_order(targets.len()));
+        }
+        match targets.iter().find(|target| !target.is_finite()) {
+            Some(target) => Err(RigFault::Device(format!(
+                "the target {target} m is no place"
+            ))),
+            None => Ok(targets.iter().map(|target| self.sign * target).collect()),
+        }
+    }
+
+    /// The only axis, for a motion at constant velocity, and the target there, m.
+    fn only(&mut self, targets: &[f64]) -> Result<(&mut Actuator, f64), RigFault> {
+        let target = self.at_rig(targets)?;
+        match (&mut self.axes[..], &target[..]) {
+            ([axis], [target]) => Ok((&mut axis.actuator, *target)),
+            _ => Err(RigFault::Device(
+                "the axes of a frame go to targets: they are not read on the way".to_owned(),
+            )),
+        }
+    }
+
+    /// The specimen, what relaxes with it and the friction on it follow the pistons.
+    fn follow(&mut self, travels: &[Travel]) {
+        let mut moved = false;
+        for (bent, axis) in self.bent.iter_mut().zip(&self.axes) {
+            let position = axis.actuator.position();
+            moved |= position != *bent;
+            *bent = position;
+        }
+        if moved {
+            let velocities = self.velocities();
+            self.springs.slide(&velocities);
+        }
+        self.springs
+            .bend(travels, &self.bent, &mut self.restoring_force);
+    }
+
+    /// Of the pistons, m/s.
+    fn velocities(&self) -> Vec<f64> {
+        self.axes
+            .iter()
+            .map(|axis| axis.actuator.velocity())
+            .collect()
+    }
+
+    /// `seconds` pass with the references at rest.
+    fn rest(&mut self, seconds: f64) {
+        let travels: Vec<Travel> = self
+            .axes
+            .iter_mut()
+            .map(|axis| axis.actuator.rest(seconds))
+            .collect();
+        self.time += seconds;
+        self.follow(&travels);
+    }
+
+    /// The readings of an even motion between two positions at the rig (m), of which some may be done.
+    fn stroke(
+        &mut self,
+        (from, aim): (f64, f64),
+        velocity: f64,
+        (samples, done): (usize, usize),
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        let seconds = (aim - from) / (self.sign * velocity);
+        if samples == 0 || !(seconds > 0.0 && seconds.is_finite()) {
+            return Err(RigFault::Device(format!(
+                "a traverse at {velocity} m/s with {samples} samples leads nowhere"
+            )));
+        }
+        #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+        let fraction = |sample: usize| sample as f64 / samples as f64;
+        #[expect(clippy::cast_precision_loss, reason = "the same")]
+        let each_takes = seconds / samples as f64;
+        let began = self.time - seconds * fraction(done);
+        for sample in done + 1..=samples {
+            let to = if sample == samples {
+                aim
+            } else {
+                from + (aim - from) * fraction(sample)
+            };
+            let actuator = &mut self.axes[0].actuator;
+            let travel = if sample == done + 1
+                && done_already(
+                    to,
+                    actuator.reference(),
+                    (aim - from) / seconds * each_takes,
+                ) {
+                actuator.pass((aim - from) / seconds)
+            } else {
+                actuator.advance(to, each_takes)
+            };
+            self.time = began + seconds * fraction(sample);
+            self.follow(&[travel]);
+            let reading = self.reading();
+            if let Err(refused) = each(reading) {
+                self.hold();
+                return Err(refused);
+            }
+        }
+        self.axes[0].actuator.stop();
+        Ok(())
+    }
+
+    fn reading(&mut self) -> Reading {
+        let (sign, time, resolution) = (self.sign, self.time, self.link.resolution);
+        let displacement = self
+            .bent
+            .iter()
+            .map(|bent| sign * to_quantum(*bent, resolution))
+            .collect();
+        let velocities = self.velocities();
+        let felt = self.springs.felt(&velocities, &self.restoring_force);
+        let force = self
+            .axes
+            .iter_mut()
+            .zip(felt)
+            .map(|(axis, force)| sign * axis.cell.read(force, time))
+            .collect();
+        Reading {
+            time,
+            displacement,
+            force,
+            raw: Vec::new(),
+        }
+    }
+
+    /// What moves at an axis that misses its target by so much, m.
+    fn unsettled(&self, axis: usize, miss: f64) -> Unsettled {
+        let actuator = &self.axes[axis].actuator;
+        let (stiffness, damping) = self.springs.rows(axis);
+        Unsettled {
+            lagging: actuator.lagging(),
+            lag: actuator.lag(),
+            miss: miss.abs(),
+            stiffness: stiffness
+                + self
+                    .springs
+                    .relaxing_at(axis)
+                    .iter()
+                    .map(|relaxing| relaxing.stiffness())
+                    .sum::<f64>(),
+            damping,
+            drift: self.link.drift,
+            rate: self.springs.rate(),
+        }
+    }
+
+    /// The longest of what each axis waits for, s; none if one does not settle within the timeout.
+    fn longest(
+        &self,
+        misses: &[f64],
+        wait: impl Fn(usize, &Unsettled) -> Option<f64>,
+    ) -> Option<f64> {
+        let mut axes = misses.iter().enumerate();
+        axes.try_fold(0.0, |longest: f64, (axis, miss)| {
+            Some(longest.max(wait(axis, &self.unsettled(axis, *miss))?))
+        })
+    }
+
+    /// Waits until every axis has settled, and every storey's own force with it; false if one does not within the timeout.
+    fn settle(&mut self, misses: &[f64]) -> bool {
+        let waited = self.longest(misses, |axis, unsettled| {
+            let relaxes = !self.springs.relaxing_at(axis).is_empty();
+            settling_time(&shared(&self.settle, unsettled, relaxes), unsettled)
+        });
+        let Some(waited) = waited else { return false };
+        self.rest(waited);
+        let more = self.longest(misses, |axis, unsettled| {
+            relaxing_time(
+                &self.settle,
+                unsettled,
+                &dying(&self.springs.relaxing_at(axis)),
+                waited,
+            )
+        });
+        if let Some(more) = more {
+            self.rest(more);
+        }
+        more.is_some()
+    }
+}
+
+impl Rig for VirtualRig {
+    fn identity(&self) -> Identity {
+        Identity {
+            name: self.name.clone(),
+            model: "virtual rig".to_owned(),
+            serial: String::new(),
+            firmware: env!("CARGO_PKG_VERSION").to_owned(),
+            boot: None,
+            simulated: true,
+        }
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.axes.len()
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+        let at_rig = self.at_rig(targets)?;
+        let speed = speed.unwrap_or(OWN_SPEED);
+        if !(speed > 0.0 && speed.is_finite()) {
+            return Err(RigFault::Device(format!(
+                "a move at {speed} m/s never arrives"
+            )));
+        }
+        self.proposed = Some((at_rig, speed));
+        Ok(Offer {
+            targets: targets.to_vec(),
+            speed,
+            wire: Vec::new(),
+            move_id: None,
+            at_the_rig: None,
+        })
+    }
+
+    /// All axes arrive at once; the one with the longest travel goes at the speed that was asked for.
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let (targets, speed) = self
+            .proposed
+            .take()
+            .ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
+        let aims: Vec<f64> = self
+            .axes
+            .iter()
+            .zip(&targets)
+            .map(|(axis, target)| axis.actuator.aim(*target))
+            .collect();
+        let travels = self
+            .axes
+            .iter()
+            .zip(&aims)
+            .map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
+        let seconds = travels.fold(0.0, f64::max) / speed;
+        let went = self
+            .axes
+            .iter_mut()
+            .zip(&aims)
+            .map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
+        let travels: Vec<Travel> = went.collect();
+        // A first-order lag delays a motion by its time constant, and adds the square of it to the variance.
+        let lag = self.link.lag;
+        self.moved = Some(even(
+            self.time,
+            self.time + 0.5 * seconds + lag,
+            seconds * seconds / 12.0 + lag * lag,
+        ));
+        self.time += seconds;
+        self.follow(&travels);
+        for axis in &mut self.axes {
+            axis.actuator.stop();
+        }
+        let arrived = self.time;
+        let misses: Vec<f64> = targets
+            .iter()
+            .zip(&aims)
+            .map(|(target, aim)| target - aim)
+            .collect();
+        if self.settle(&misses) {
+            return Ok(());
+        }
+        self.rest((arrived + self.settle.timeout - self.time).max(0.0));
+        self.hold();
+        Err(RigFault::NotSettled {
+            timeout: self.settle.timeout,
+            axis: None,
+        })
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        self.rest(seconds);
+        Ok(())
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        Ok(self.reading())
+    }
+
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        Ok((self.reading(), self.moved))
+    }
+
+    fn traverse(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        let (actuator, target) = self.only(targets)?;
+        let (from, aim) = (actuator.reference(), actuator.aim(target));
+        self.stroke((from, aim), velocity, (samples, 0), each)
+    }
+
+    fn traverse_on(
+        &mut self,
+        cut_off: &CutOff<'_>,
+        velocity: f64,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        let (_, from) = self.only(cut_off.from)?;
+        let (actuator, target) = self.only(cut_off.to)?;
+        let aim = actuator.aim(target);
+        self.stroke((from, aim), velocity, (cut_off.samples, cut_off.done), each)
+    }
+
+    fn glide(
+        &mut self,
+        paths: &[Path],
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.under_way.clear();
+        self.glide_on(paths, samples, 0, each)
+    }
+
+    fn glide_on(
+        &mut self,
+        paths: &[Path],
+        samples: usize,
+        done: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.glide_along(paths, (samples, done), each)
+    }
+
+    fn hold(&mut self) {
+        for axis in &mut self.axes {
+            axis.actuator.hold();
+        }
+        self.proposed = None;
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        DeclaredNoise {
+            force: self.link.noise,
+            resolution: self.link.resolution,
+        }
+    }
+}
+
+/// Whether a stroke was cut off just where its next reading is due, a step (m) after the one before: that it is read again, moving.
+fn done_already(to: f64, stands: f64, step: f64) -> bool {
+    (to - stands).abs() < 1e-6 * step.abs()
+}

@@ -1,0 +1,309 @@
+//! When the virtual rig counts as settled. In: the plan's criterion and how far the piston lags. Out: seconds to wait.
+
+use crate::physics::relaxation::maxwell::MaxwellBranch;
+use crate::physics::relaxation::state::Relaxing;
+use crate::physics::structure::damping::StrengthRate;
+use crate::plan::Settle;
+
+/// What moves after the reference has arrived.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unsettled {
+    /// Size of reference − position, m, dying away with `lag`.
+    pub(crate) lagging: f64,
+    /// s
+    pub(crate) lag: f64,
+    /// Size of target − reference, m: it stays.
+    pub(crate) miss: f64,
+    /// Stiffness (N/m) and viscous damping (N·s/m) that turn motion into a force rate.
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    /// N/s
+    pub(crate) drift: f64,
+    /// Restoring force (N) that grows with the speed, and how.
+    pub(crate) rate: Option<(f64, StrengthRate)>,
+}
+
+impl Unsettled {
+    /// |dF/dt| less the drift at a lag of `lagging` (m), N/s: with v = e/lag, K v + c v/lag and, of a force R that gains
+    /// (v/v₀)ⁿ, R n (v/v₀)ⁿ/lag.
+    fn force_rate(&self, lagging: f64) -> f64 {
+        let velocity = lagging / self.lag;
+        let steady = self.stiffness * velocity + self.damping * velocity / self.lag;
+        steady
+            + self.rate.map_or(0.0, |(force, rate)| {
+                force.abs() * rate.exponent * rate.gain(velocity) / self.lag
+            })
+    }
+}
+
+/// Seconds until displacement and force rate have both stayed inside their bounds for the dwell; None if that does not
+/// come within the timeout. A zero band asks for nothing and waits for nothing; a zero force rate leaves the band alone.
+///
+/// The lag e dies away as e·exp(−t/lag): |target − x| ≤ miss + |e| and |dF/dt| ≤ K·|e|/lag + c·|e|/lag² + |drift|, both
+/// falling, so that the time at which a bound on |e| is met is the whole answer: t = lag·ln(|e|/bound). Noise is not
+/// taken for a force rate: a real rig filters it.
+pub(crate) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f64> {
+    if settle.band == 0.0 {
+        return Some(0.0);
+    }
+    let mut bound = settle.band - unsettled.miss;
+    if settle.force_rate > 0.0 {
+        let left = settle.force_rate - unsettled.drift.abs();
+        if left < 0.0 {
+            return None;
+        }
+        if unsettled.lag > 0.0 {
+            let rate_per_lagging =
+                (unsettled.stiffness + unsettled.damping / unsettled.lag) / unsettled.lag;
+            bound = bound.min(left / rate_per_lagging);
+            if unsettled.rate.is_some() {
+                bound = largest_below(bound.min(unsettled.lagging), |lagging| {
+                    unsettled.force_rate(lagging) <= left
+                });
+            }
+        }
+    }
+    if bound < 0.0 {
+        return None;
+    }
+    let wait = if unsettled.lagging <= bound {
+        0.0
+    } else {
+        unsettled.lag * (unsettled.lagging / bound).ln()
+    };
+    let total = wait + settle.dwell;
+    (total <= settle.timeout).then_some(total)
+}
+
+/// All that dies away of what some specimens lose.
+pub(crate) fn dying(relaxing: &[&Relaxing]) -> Vec<MaxwellBranch> {
+    relaxing
+        .iter()
+        .flat_map(|relaxing| relaxing.dying())
+        .copied()
+        .collect()
+}
+
+/// The criterion with half of its force rate kept for what relaxes with the specimen; all of it is the lag's where nothing does.
+pub(crate) fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> Settle {
+    let left = settle.force_rate - unsettled.drift.abs();
+    if !relaxes || settle.force_rate <= 0.0 || left <= 0.0 || unsettled.lag == 0.0 {
+        return *settle;
+    }
+    Settle {
+        force_rate: settle.force_rate - 0.5 * left,
+        ..*settle
+    }
+}
+
+/// Seconds more, after the `waited` of the lag, until branches that relax change the force no faster than is left for them, and
+/// that for the dwell; None if that does not come within the timeout. Their rates fall, so that the first such instant is found by
+/// halving.
+pub(crate) fn relaxing_time(
+    settle: &Settle,
+    unsettled: &Unsettled,
+    branches: &[MaxwellBranch],
+    waited: f64,
+) -> Option<f64> {
+    if branches.is_empty() || settle.band == 0.0 || settle.force_rate <= 0.0 {
+        return Some(0.0);
+    }
+    let left =
+        (settle.force_rate - unsettled.drift.abs()) * if unsettled.lag == 0.0 { 1.0 } else { 0.5 };
+    let met = |seconds: f64| {
+        branches
+            .iter()
+            .map(|branch| branch.rate_after(seconds))
+            .sum::<f64>()
+            <= left
+    };
+    if met(0.0) {
+        return Some(0.0);
+    }
+    let (mut low, mut high) = (0.0, settle.timeout - waited - settle.dwell);
+    if high < 0.0 || !met(high) {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if met(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Some(high + settle.dwell)
+}
+
+/// The largest lag up to `most` at which `met` holds, which does so at all smaller ones: by halving, over a range of powers
+/// of two, for an exponent below 1 may need a lag far below the band.
+fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
+    if most <= 0.0 || met(most) {
+        return most;
+    }
+    let (mut low, mut high) = (-1000.0_f64, 0.0_f64);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if met(most * middle.exp2()) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    most * low.exp2()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::relaxation::maxwell::Travel;
+
+    const SETTLE: Settle = Settle {
+        band: 1e-5,
+        force_rate: 0.0,
+        dwell: 0.3,
+        timeout: 10.0,
+    };
+    const LAGGING: Unsettled = Unsettled {
+        lagging: 1e-3,
+        lag: 0.1,
+        miss: 0.0,
+        stiffness: 1e5,
+        damping: 0.0,
+        drift: 0.0,
+        rate: None,
+    };
+
+    #[test]
+    fn waits_for_the_band_then_for_the_force_rate_and_dwells() {
+        let band = settling_time(&SETTLE, &LAGGING).unwrap();
+        assert!((band - (0.1 * 100_f64.ln() + 0.3)).abs() < 1e-12);
+        // 5 N/s at 1e5 N/m and 0.1 s allows 5 µm of lag: later than the 10 µm band.
+        let rate = settling_time(
+            &Settle {
+                force_rate: 5.0,
+                ..SETTLE
+            },
+            &LAGGING,
+        )
+        .unwrap();
+        assert!((rate - (0.1 * 200_f64.ln() + 0.3)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_never_comes_inside_is_not_settled() {
+        assert_eq!(
+            settling_time(
+                &SETTLE,
+                &Unsettled {
+                    miss: 2e-5,
+                    ..LAGGING
+                }
+            ),
+            None
+        );
+        assert_eq!(
+            settling_time(
+                &Settle {
+                    timeout: 0.5,
+                    ..SETTLE
+                },
+                &LAGGING
+            ),
+            None
+        );
+        assert_eq!(
+            settling_time(
+                &Settle {
+                    force_rate: 5.0,
+                    ..SETTLE
+                },
+                &Unsettled {
+                    drift: 6.0,
+                    ..LAGGING
+                }
+            ),
+            None
+        );
+        assert_eq!(
+            settling_time(
+                &Settle {
+                    band: 0.0,
+                    ..SETTLE
+                },
+                &LAGGING
+            ),
+            Some(0.0)
+        );
+    }
+
+    /// R = 1000 N gains (v/v₀)^½, v₀ = 1 m/s, with no stiffness: dF/dt = R ½ √(e/0.1)/0.1 ≤ 50 N/s at e = 1e-5 m.
+    #[test]
+    fn a_strength_that_grows_with_speed_keeps_the_force_moving_longer() {
+        let rate = Some((
+            1000.0,
+            StrengthRate {
+                reference_velocity: 1.0,
+                exponent: 0.5,
+            },
+        ));
+        let unsettled = Unsettled {
+            stiffness: 0.0,
+            rate,
+            ..LAGGING
+        };
+        let settle = Settle {
+            band: 1e-3,
+            force_rate: 50.0,
+            dwell: 0.0,
+            timeout: 60.0,
+        };
+        let wait = settling_time(&settle, &unsettled).expect("it settles");
+        let by_hand = 0.1 * (1e-3_f64 / 1e-5).ln();
+        assert!((wait - by_hand).abs() < 1e-9, "{wait} s is not {by_hand} s");
+    }
+
+    /// 200 N that relax with 2 s change by 100 N/s at first: 5 N/s come after 2 ln 20 s.
+    #[test]
+    fn what_relaxes_keeps_the_rig_unsettled_until_it_is_slow() {
+        let mut branch = MaxwellBranch::new(1e5, 2.0);
+        branch.follow(&Travel::even(2e-3 / 1e-6, 1e-6));
+        let settle = Settle {
+            force_rate: 5.0,
+            ..SETTLE
+        };
+        let still = Unsettled {
+            lagging: 0.0,
+            lag: 0.0,
+            ..LAGGING
+        };
+        assert_eq!(shared(&settle, &still, true), settle);
+        let wait = relaxing_time(&settle, &still, &[branch], 0.3).unwrap();
+        assert!((wait - (2.0 * 20_f64.ln() + 0.3)).abs() < 1e-5, "{wait}");
+        assert_eq!(
+            relaxing_time(
+                &Settle {
+                    timeout: 5.0,
+                    ..settle
+                },
+                &still,
+                &[branch],
+                0.3
+            ),
+            None
+        );
+        assert_eq!(
+            relaxing_time(&SETTLE, &still, &[branch], 0.3),
+            Some(0.0),
+            "a band alone does not ask"
+        );
+        // Beside a lag either has half of what the drift leaves.
+        let drifting = Unsettled {
+            drift: 1.0,
+            ..LAGGING
+        };
+        assert_eq!(shared(&settle, &drifting, true).force_rate, 3.0);
+        let wait = relaxing_time(&settle, &drifting, &[branch], 0.3).unwrap();
+        assert!((wait - (2.0 * 50_f64.ln() + 0.3)).abs() < 1e-5, "{wait}");
+    }
+}

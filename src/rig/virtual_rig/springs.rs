@@ -1,0 +1,211 @@
+//! What gives the axes of a virtual rig their forces: a specimen, the storeys of a frame, or a matrix. In: where the pistons are,
+//! and how they went there. Out: forces, and what is still settling. It knows no actuator and no load cell.
+
+use crate::physics::frame::{SymmetricBand, drifts, floor_forces};
+use crate::physics::relaxation::maxwell::Travel;
+use crate::physics::relaxation::state::Relaxing;
+use crate::physics::specimen::{RestoringForce as _, SpecimenModel};
+use crate::physics::structure::damping::{CellDamping, StrengthRate};
+use crate::plan::{Behaviour, Frame, Specimen};
+
+/// Springs between the axes and the ground.
+pub(super) enum Springs {
+    /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift; one degree of freedom is one storey.
+    Storeys(Vec<Storey>),
+    /// R = K X.
+    Matrix {
+        stiffness: SymmetricBand,
+        rows: Vec<f64>,
+    },
+}
+
+/// One spring, and what is beside it.
+pub(super) struct Storey {
+    model: SpecimenModel,
+    /// What it resists more with the faster it is bent is felt by the cells, and gone at rest; its friction stays.
+    damper: CellDamping,
+    relaxing: Relaxing,
+    /// N/m, the initial one.
+    stiffness: f64,
+    /// m
+    drift: f64,
+    /// N
+    shear: f64,
+}
+
+impl Storey {
+    fn new(behaviour: &Behaviour, stiffness: f64, damping: f64, coulomb: f64) -> Self {
+        let mut model = SpecimenModel::new(behaviour);
+        Self {
+            shear: model.move_to(0.0),
+            model,
+            damper: CellDamping::new(damping, coulomb).with_rate_of(behaviour),
+            relaxing: Relaxing::of(behaviour),
+            stiffness,
+            drift: 0.0,
+        }
+    }
+}
+
+impl Springs {
+    /// One degree of freedom.
+    pub(super) fn of_specimen(specimen: Option<&Specimen>) -> Self {
+        let nothing = Behaviour::Elastic { stiffness: 0.0 };
+        let behaviour = specimen
+            .and_then(|specimen| specimen.behaviour.as_ref())
+            .unwrap_or(&nothing);
+        let (damping, coulomb) =
+            specimen.map_or((0.0, 0.0), |specimen| (specimen.damping, specimen.coulomb));
+        let stiffness = SpecimenModel::new(behaviour).initial_stiffness();
+        Self::Storeys(vec![Storey::new(behaviour, stiffness, damping, coulomb)])
+    }
+
+    pub(super) fn of_frame(frame: &Frame) -> Self {
+        if frame.storeys.is_empty() {
+            let order = frame.degrees_of_freedom();
+            let stiffness = SymmetricBand::from_dense(&frame.stiffness)
+                .unwrap_or_else(|_| SymmetricBand::zero(order, 0));
+            let rows = frame
+                .stiffness
+                .iter()
+                .map(|row| row.iter().map(|entry| entry.abs()).sum())
+                .collect();
+            return Self::Matrix { stiffness, rows };
+        }
+        let storeys = frame.storeys.iter();
+        Self::Storeys(
+            storeys
+                .map(|storey| {
+                    Storey::new(
+                        &storey.behaviour,
+                        storey.stiffness,
+                        storey.damping,
+                        storey.coulomb,
+                    )
+                })
+                .collect(),
+        )
+    }
+
+    /// Degrees of freedom.
+    pub(super) const fn order(&self) -> usize {
+        match self {
+            Self::Storeys(storeys) => storeys.len(),
+            Self::Matrix { rows, .. } => rows.len(),
+        }
+    }
+
+    /// The axes go to these displacements (m), each as its travel says.
+    pub(super) fn bend(
+        &mut self,
+        travels: &[Travel],
+        displacement: &[f64],
+        restoring_force: &mut [f64],
+    ) {
+        match self {
+            Self::Storeys(storeys) => {
+                let mut drift = vec![0.0; storeys.len()];
+                drifts(displacement, &mut drift);
+                let mut below = None;
+                for ((storey, axis), drift) in storeys.iter_mut().zip(travels).zip(drift) {
+                    let travel = below.map_or(*axis, |below| axis.less(below));
+                    storey.shear = storey.relaxing.bend(
+                        &mut storey.model,
+                        &travel,
+                        (storey.drift, drift),
+                        storey.shear,
+                    );
+                    storey.drift = drift;
+                    below = Some(axis);
+                }
+                let shears: Vec<f64> = storeys.iter().map(|storey| storey.shear).collect();
+                floor_forces(&shears, restoring_force);
+            }
+            Self::Matrix { stiffness, .. } => stiffness.mul_into(displacement, restoring_force),
+        }
+    }
+
+    /// The axes go on at these velocities, m/s: each storey's friction knows its direction.
+    pub(super) fn slide(&mut self, velocities: &[f64]) {
+        if let Self::Storeys(storeys) = self {
+            for (storey, velocity) in storeys.iter_mut().zip(of_drifts(velocities)) {
+                storey.damper.force(velocity);
+            }
+        }
+    }
+
+    /// What the cells feel of these forces at these velocities (m/s), N.
+    pub(super) fn felt(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
+        let mut felt = restoring_force.to_vec();
+        if let Self::Storeys(storeys) = self
+            && storeys
+                .iter()
+                .any(|storey| !storey.damper.is_none() || !storey.relaxing.is_none())
+        {
+            let storeys = storeys.iter_mut().zip(of_drifts(velocities));
+            let shears: Vec<f64> = storeys
+                .map(|(storey, velocity)| {
+                    storey.damper.felt(storey.shear, velocity) + storey.relaxing.force()
+                })
+                .collect();
+            floor_forces(&shears, &mut felt);
+        }
+        felt
+    }
+
+    /// The storey under an axis and the one above it.
+    fn beside(&self, axis: usize) -> impl Iterator<Item = &Storey> {
+        let storeys: &[Storey] = match self {
+            Self::Storeys(storeys) => storeys,
+            Self::Matrix { .. } => &[],
+        };
+        storeys.iter().skip(axis).take(2)
+    }
+
+    /// What relaxes in the force of an axis: in its own storey and in the one above. An axis's force is the difference of two shears, and
+    /// steady where both relax alike: they are taken by their sizes, so that no shear is on its way either.
+    pub(super) fn relaxing_at(&self, axis: usize) -> Vec<&Relaxing> {
+        self.beside(axis)
+            .map(|storey| &storey.relaxing)
+            .filter(|relaxing| !relaxing.is_none())
+            .collect()
+    }
+
+    /// How fast the force of an axis can change as the axes move: the sums of the sizes of a row of K (N/m) and of what damps the storeys
+    /// (N·s/m).
+    pub(super) fn rows(&self, axis: usize) -> (f64, f64) {
+        if let Self::Matrix { rows, .. } = self {
+            return (rows[axis], 0.0);
+        }
+        let sum = |of: fn(&Storey) -> f64| {
+            let mut beside = self.beside(axis).map(of);
+            let (own, above) = (beside.next().unwrap_or(0.0), beside.next().unwrap_or(0.0));
+            if axis > 0 {
+                2.0 * own + 2.0 * above
+            } else {
+                own + 2.0 * above
+            }
+        };
+        (
+            sum(|storey| storey.stiffness),
+            sum(|storey| storey.damper.viscous),
+        )
+    }
+
+    /// Force (N) and law of a specimen that resists more the faster it is bent; none of a frame, whose storeys are not read apart.
+    pub(super) fn rate(&self) -> Option<(f64, StrengthRate)> {
+        match self {
+            Self::Storeys(storeys) if storeys.len() == 1 => {
+                storeys[0].damper.rate.map(|rate| (storeys[0].shear, rate))
+            }
+            Self::Storeys(_) | Self::Matrix { .. } => None,
+        }
+    }
+}
+
+/// Velocities of the drifts, m/s.
+fn of_drifts(velocities: &[f64]) -> Vec<f64> {
+    let mut drift = vec![0.0; velocities.len()];
+    drifts(velocities, &mut drift);
+    drift
+}

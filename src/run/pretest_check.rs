@@ -1,0 +1,220 @@
+//! The gate of a real rig, before the first step: the readings at rest, and the stiffness that a tiny move shows. A
+//! wrong sign, unit or scale and a dead sensor are found here, while nothing can be broken. In: the rig, what the plan
+//! expects. Out: what was found, as a note of the record, or why the run does not begin.
+
+use super::motion::Motion;
+use super::session::Session;
+use super::start;
+use super::stop::Stop;
+use crate::plan::{Gate, Plan, RealLink};
+use crate::record::EventKind;
+use crate::rig::safety::failpoint;
+use crate::rig::safety::failpoint::Guarding;
+use crate::rig::{Reading, named_axis, of_axis};
+use crate::units::Dimension;
+use crate::units::display::{readable, stated};
+
+/// Time between the two readings at rest, s.
+const REST: f64 = 1.0;
+
+/// Asks for the release, then tries the rig, axis by axis. Nothing else has moved by then; `afterwards` says how it will.
+pub(crate) fn pass(
+    plan: &Plan,
+    link: &RealLink,
+    afterwards: &str,
+    session: &mut Session<'_>,
+) -> Result<(), Stop> {
+    let axes = session.guard.commanded().len();
+    let gates: Vec<Gate> = (0..axes).map(|axis| link.gate_of(axis)).collect();
+    let mut ways: Vec<String> = gates
+        .iter()
+        .map(|gate| stated(gate.probe, Dimension::LENGTH))
+        .collect();
+    ways.dedup();
+    let ways = ways.join(", ");
+    let by = if axes == 1 {
+        format!("by {ways}")
+    } else {
+        format!("each of its {axes} axes in turn, by {ways}")
+    };
+    // Nobody is asked to release a rig that stands elsewhere.
+    start::check(plan, link, session, session.guard.found())?;
+    let note = format!(
+        "release rig {}: it will move {by} to prove itself, then {afterwards}",
+        plan.rig.name
+    );
+    let does = format!("it moves {by} to check itself, then {afterwards}");
+    let stands = Some(start::told(session));
+    session.release(
+        &note,
+        &Motion {
+            stands,
+            ..Motion::of(plan, session.identity(), does)
+        },
+    )?;
+
+    let first = session.guard.read()?;
+    session.guard.pause(REST)?;
+    let at_rest = session.guard.read()?;
+    for reading in [&first, &at_rest] {
+        start::check(plan, link, session, (&reading.displacement, &reading.force))?;
+    }
+    start::tell(link, session);
+    for (axis, (gate, force)) in gates.iter().zip(&at_rest.force).enumerate() {
+        if failpoint::on(Guarding::GateZero) && !within(force.abs(), 0.0, gate.zero) {
+            return refuse(format!(
+                "{}{} at rest, {} is allowed: {}",
+                named_axis(axis, axes).map_or_else(String::new, |axis| format!("axis {axis}: ")),
+                readable(*force, Dimension::FORCE),
+                stated(gate.zero, Dimension::FORCE),
+                remedy(at_rest.displacement[axis], *force, gate)
+            ));
+        }
+    }
+    let mut before = at_rest.clone();
+    for (axis, gate) in gates.iter().enumerate() {
+        session.stop_if_requested()?;
+        // Each is held against the reading at rest before it: that after the one before it had come back.
+        let (column, back) = probe(axis, gate, &before, session)?;
+        before = back;
+        let force = readable(at_rest.force[axis], Dimension::FORCE);
+        let drift = readable(
+            (at_rest.force[axis] - first.force[axis]) / REST,
+            Dimension::FORCE,
+        );
+        let found = readable(column[axis], Dimension::STIFFNESS);
+        let probe = stated(gate.probe, Dimension::LENGTH);
+        let text =
+            format!("{force} at rest, drift {drift}/s, stiffness {found} in a move of {probe}");
+        let text = match named_axis(axis, axes) {
+            None => format!("gate passed: {text}"),
+            Some(axis) => format!(
+                "gate passed by axis {axis}: {text}; {}",
+                others(&column, axis)
+            ),
+        };
+        session.event(EventKind::Note, text);
+    }
+    Ok(())
+}
+
+/// What to do about a force at rest: a rig that stands where its specimen would carry about as much was left there by a run.
+pub(super) fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
+    let carried = force / displacement;
+    let bent = within(carried, 0.5 * gate.stiffness.low, 2.0 * gate.stiffness.high)
+        && displacement.abs() > gate.probe;
+    if bent {
+        let place = readable(displacement, Dimension::LENGTH);
+        format!(
+            "it stands at {place}, as a run without `unload` at its end leaves it: go back with `psd rig jog`, or start a stand-in anew"
+        )
+    } else {
+        "zero the cell, or take the load off".to_owned()
+    }
+}
+
+/// A tiny move of one axis alone, and back. Gives its column of the stiffness matrix, N/m: the forces that it raised in
+/// every axis, over its way; and the reading where it came back to.
+fn probe(
+    axis: usize,
+    gate: &Gate,
+    before: &Reading,
+    session: &mut Session<'_>,
+) -> Result<(Vec<f64>, Reading), Stop> {
+    let home = session.guard.commanded().to_vec();
+    let mut out = home.clone();
+    out[axis] += gate.probe;
+    session.go_to_all(&out, None)?;
+    let there = session.guard.read()?;
+    session.go_to_all(&home, None)?;
+    let back = session.guard.read()?;
+
+    let probe = stated(gate.probe, Dimension::LENGTH);
+    let of = of_axis(named_axis(axis, home.len()));
+    let moved = there.displacement[axis] - before.displacement[axis];
+    if moved == 0.0 {
+        return refuse(format!(
+            "the displacement{of} did not change in a move of {probe}: the transducer is dead, or too coarse"
+        ));
+    }
+    let column: Vec<f64> = there
+        .force
+        .iter()
+        .zip(&before.force)
+        .map(|(force, rest)| (force - rest) / moved)
+        .collect();
+    let stiffness = column[axis];
+    if failpoint::on(Guarding::GateSign) && (stiffness < 0.0 || moved * gate.probe < 0.0) {
+        return refuse(format!(
+            "displacement and force{of} have opposite signs: turn one of them, or the rig's `sign`"
+        ));
+    }
+    let (low, high) = (gate.stiffness.low, gate.stiffness.high);
+    let bound = |value| stated(value, Dimension::STIFFNESS);
+    let found = readable(stiffness, Dimension::STIFFNESS);
+    if failpoint::on(Guarding::GateStiffness) && !within(stiffness, low, high) {
+        let (low, high) = (bound(low), bound(high));
+        return refuse(format!(
+            "the move{of} of {probe} shows {found}, outside {low} .. {high}: look for a wrong unit or scale"
+        ));
+    }
+    Ok((column, back))
+}
+
+/// What the move of one axis (from 1) raised in the others.
+fn others(column: &[f64], axis: usize) -> String {
+    let felt = (1..).zip(column).filter(|(other, _)| *other != axis);
+    let told: Vec<String> = felt
+        .map(|(other, stiffness)| {
+            format!(
+                "{} in axis {other}",
+                readable(*stiffness, Dimension::STIFFNESS)
+            )
+        })
+        .collect();
+    format!("with {}", told.join(", "))
+}
+
+/// NaN is within nothing.
+pub(super) fn within(value: f64, low: f64, high: f64) -> bool {
+    low <= value && value <= high
+}
+
+fn refuse<T>(reason: String) -> Result<T, Stop> {
+    Err(Stop::Gate { reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Interval;
+
+    #[test]
+    fn a_bent_specimen_is_told_from_a_cell_without_its_zero() {
+        let gate = Gate {
+            probe: 1e-4,
+            stiffness: Interval {
+                low: 250e3,
+                high: 350e3,
+            },
+            zero: 20.0,
+        };
+        assert!(
+            remedy(7.86e-3, 2353.0, &gate).contains("stands at 7.860 mm"),
+            "{}",
+            remedy(7.86e-3, 2353.0, &gate)
+        );
+        assert!(remedy(-7.86e-3, -1500.0, &gate).contains("psd rig jog"));
+        for (displacement, force) in [
+            (0.0, 2353.0),
+            (1e-5, 3.0),
+            (7.86e-3, 40.0),
+            (7.86e-3, -2353.0),
+        ] {
+            assert!(
+                remedy(displacement, force, &gate).starts_with("zero the cell"),
+                "{displacement} m, {force} N"
+            );
+        }
+    }
+}

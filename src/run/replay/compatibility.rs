@@ -1,0 +1,118 @@
+//! What an older version did otherwise. In: a plan, a record of it. Out: the plan as the version that wrote the record ran it. It
+//! judges nothing, and changes nothing of what this version writes.
+
+use std::borrow::Cow;
+
+use super::entry::OperatorBody;
+use super::replayed::{Played, body};
+use crate::plan::{Plan, ProcedureKind};
+use crate::record::Event;
+use crate::record::journal::{EntryKind, Line};
+use crate::run::zero_drift::READINGS;
+
+/// The rules that this version computes a run by, as its records say in their header. 1: an `unload` may pass the place without load, and a
+/// `cycle` has ten targets a quarter unless it says another number. 2: neither, but the targets of a `cycle` stand evenly. 3: they do not.
+pub const RULES: u32 = 3;
+
+/// Targets between the middle and an amplitude where the plan gave no number, now and by the rules of 1.
+const POINTS: u32 = 25;
+const OLDER_POINTS: u32 = 10;
+
+/// The plan as the version ran it that wrote the record.
+pub(super) fn as_it_was_run<'a>(plan: &'a Plan, played: &Played) -> Cow<'a, Plan> {
+    let without_zeros = plan.rig.drift.is_some() && serves_without_zeros(played);
+    if !without_zeros && played.header.rules >= RULES {
+        return Cow::Borrowed(plan);
+    }
+    let mut plan = plan.clone();
+    // The first versions that served a rig which says how far its zeros may drift read none before the first client: their records go from
+    // the gate to the first request, and are played back so, with a drift that nobody looked at.
+    if without_zeros {
+        plan.rig.drift = None;
+    }
+    let first = played.header.rules < 2;
+    plan.unloads_at_once |= first;
+    let said = played.texts.iter().any(|text| text.contains("points"));
+    for procedure in &mut plan.procedures {
+        if let ProcedureKind::Cycle(cycle) = &mut procedure.kind {
+            cycle.evenly = played.header.rules < 3;
+            if first && cycle.points == POINTS && !said {
+                cycle.points = OLDER_POINTS;
+            }
+        }
+    }
+    Cow::Owned(plan)
+}
+
+/// Whether a client's first request is on record, and before it nowhere as many readings in a row as make a zero.
+fn serves_without_zeros(played: &Played) -> bool {
+    let Some(first) = played.lines.iter().position(is_request) else {
+        return false;
+    };
+    let mut in_a_row = 0;
+    for line in played.lines.iter().take(first) {
+        in_a_row = if line.kind == EntryKind::Sample {
+            in_a_row + 1
+        } else {
+            0
+        };
+        if in_a_row >= READINGS {
+            return false;
+        }
+    }
+    true
+}
+
+fn is_request(line: &Line) -> bool {
+    line.kind == EntryKind::Operator && matches!(body(line), Ok(OperatorBody::Asked { .. }))
+}
+
+/// Whether an event is the one on record. An input that cannot be used was said of in SI units, as a number without one.
+pub(super) fn is_recorded(event: &Event, recorded: &Event) -> bool {
+    const CAME_OUT: &str = " came out as ";
+    let field = |event: &Event| {
+        event
+            .text
+            .split_once(CAME_OUT)
+            .map(|(field, _)| field.to_owned())
+    };
+    let older = field(recorded).is_some() && recorded.text.contains(" in SI units, but must be ");
+    recorded == event
+        || older
+            && field(recorded) == field(event)
+            && Event {
+                text: event.text.clone(),
+                ..recorded.clone()
+            } == *event
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::EventKind;
+
+    #[test]
+    fn an_input_that_was_told_in_si_units_is_the_one_on_record() {
+        let told = |text: &str| Event {
+            time: 1.5,
+            procedure: None,
+            step: None,
+            kind: EventKind::Fault,
+            text: text.to_owned(),
+        };
+        let now = told("`damping` came out as \u{2212}0.33 N·s/m, but must be at least 0");
+        let older =
+            told("`damping` came out as -0.3284410318426494 in SI units, but must be at least 0");
+        assert!(is_recorded(&now, &now) && is_recorded(&now, &older));
+        for other in [
+            told("`stiffness` came out as -0.3284410318426494 in SI units, but must be at least 0"),
+            told("`damping` came out as \u{2212}0.34 N·s/m, but must be at least 0"),
+            Event {
+                time: 2.0,
+                ..older.clone()
+            },
+        ] {
+            assert!(!is_recorded(&now, &other), "{}", other.text);
+        }
+    }
+}

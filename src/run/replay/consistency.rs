@@ -1,0 +1,145 @@
+//! What a record says twice, held against itself: each record is one that psd writes and nothing more; its times and the
+//! numbers of its targets run on; the bytes that were sent and heard say the numbers beside them. In: the lines of a
+//! journal, what counts of them, the plan. Out: the first record that contradicts itself. What a replay finds it does not
+//! look for.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::entry::{
+    AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
+    RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
+};
+use super::raw_bytes::Bytes;
+use super::replayed::{Played, body};
+use crate::plan::Plan;
+use crate::record::Event;
+use crate::record::journal::{EntryKind, Line, Recovered};
+use crate::rig::Tally;
+
+/// Of a run that goes on the time is a sum of two clocks.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A record that says two things.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("record {seq} contradicts itself: {reason}")]
+pub struct Contradiction {
+    pub seq: u64,
+    pub reason: String,
+}
+
+/// Holds a record against itself.
+///
+/// # Errors
+/// The first of its lines that does not agree with itself or with those before it.
+pub fn agrees(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), Contradiction> {
+    recovered.lines.iter().try_for_each(is_ours)?;
+    let parts = recovered.lines.split(|line| line.kind == EntryKind::Resume);
+    parts
+        .into_iter()
+        .try_for_each(|part| runs_on(part.iter()))?;
+    counts_on(played)?;
+    let mut bytes = Bytes::of(plan);
+    recovered
+        .lines
+        .iter()
+        .try_for_each(|line| bytes.agree(line).map_err(|reason| at(line, reason)))
+}
+
+fn at(line: &Line, reason: impl Into<String>) -> Contradiction {
+    Contradiction {
+        seq: line.seq,
+        reason: reason.into(),
+    }
+}
+
+/// Whether psd would write the very same object, no field more and none less.
+fn is_ours(line: &Line) -> Result<(), Contradiction> {
+    match line.kind {
+        EntryKind::Header => written::<Header>(line, &["format"]),
+        EntryKind::Plan => written::<PlanBody>(line, &[]),
+        EntryKind::Rig => written::<RigBody>(line, &[]),
+        EntryKind::Intent => written::<IntentBody>(line, &[]),
+        EntryKind::Sample => written::<SampleBody>(line, &[]),
+        EntryKind::Stroke => written::<StrokeBody>(line, &[]),
+        EntryKind::Step => written::<StepBody>(line, &[]),
+        EntryKind::Operator => written::<OperatorEntry>(line, &[]),
+        EntryKind::Event => written::<Event>(line, &[]),
+        EntryKind::Fault => written::<FaultBody>(line, &[]),
+        EntryKind::Held => written::<HeldBody>(line, &[]),
+        EntryKind::Tally => written::<Tally>(line, &[]),
+        EntryKind::Recover => written::<RecoverBody>(line, &[]),
+        EntryKind::Amend => written::<AmendBody>(line, &[]),
+        EntryKind::Resume => written::<ResumeBody>(line, &[]),
+        EntryKind::End => written::<EndBody>(line, &["count", "head"]),
+    }
+}
+
+/// `own` are the fields of the journal itself.
+fn written<T: DeserializeOwned + Serialize>(
+    line: &Line,
+    own: &[&str],
+) -> Result<(), Contradiction> {
+    let read: T = body(line).map_err(|fault| at(line, fault.to_string()))?;
+    let again = serde_json::to_value(&read).unwrap_or_default();
+    let said = line.body();
+    let (Some(again), Some(said)) = (again.as_object(), said.as_object()) else {
+        return Ok(());
+    };
+    let mut names = said.keys().filter(|name| !own.contains(&name.as_str()));
+    if let Some(foreign) = names.find(|name| again.get(*name) != said.get(*name)) {
+        return Err(at(
+            line,
+            format!("psd writes no `{}` like this", foreign.escape_debug()),
+        ));
+    }
+    let missing = again.keys().find(|name| !said.contains_key(*name));
+    missing.map_or(Ok(()), |missing| {
+        Err(at(line, format!("it has no `{missing}`")))
+    })
+}
+
+/// Rig time goes forward only.
+fn runs_on<'a>(lines: impl Iterator<Item = &'a Line>) -> Result<(), Contradiction> {
+    let mut before = f64::NEG_INFINITY;
+    for line in lines {
+        let Some(time) = line.time() else { continue };
+        if time < before - ROUNDING * before.abs() {
+            return Err(at(
+                line,
+                format!("it is of {time} s, and the record before it of {before} s"),
+            ));
+        }
+        before = time;
+    }
+    Ok(())
+}
+
+/// Of the records that count: a target has the next number, and the time of the record before it.
+fn counts_on(played: &Played) -> Result<(), Contradiction> {
+    let mut targets = 0;
+    let mut time = played.rig.as_ref().map_or(0.0, |rig| rig.t);
+    for line in &played.lines {
+        if line.kind == EntryKind::Intent {
+            let intent: IntentBody = body(line).map_err(|fault| at(line, fault.to_string()))?;
+            targets += 1;
+            if intent.n != targets {
+                return Err(at(
+                    line,
+                    format!("it is target {}, and says {}", targets, intent.n),
+                ));
+            }
+            if intent.t.to_bits() != time.to_bits() {
+                return Err(at(
+                    line,
+                    format!(
+                        "it is of {} s, and the record before it of {time} s",
+                        intent.t
+                    ),
+                ));
+            }
+        }
+        time = line.time().unwrap_or(time);
+    }
+    runs_on(played.lines.iter())
+}

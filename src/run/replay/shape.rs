@@ -1,0 +1,220 @@
+//! The shape of a record, checked before anything replays it. In: the lines of a journal, and their plan. Out: the first record
+//! that is not where it may stand, or whose lists have another length than the rig has axes. It knows no number: what those say
+//! a replay compares.
+
+use serde::de::DeserializeOwned;
+
+use super::entry::{
+    Call, Doubt, FaultBody, HeldBody, IntentBody, ResumeBody, RigBody, SampleBody, StepBody,
+};
+use crate::plan::Plan;
+use crate::record::journal::{EntryKind, Line, Recovered};
+
+/// A record that no run of its plan can have written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("record {seq} ({}) is malformed: {reason}", .kind.word())]
+pub struct Malformed {
+    pub seq: u64,
+    pub kind: EntryKind,
+    pub reason: String,
+}
+
+/// Checks every line against the rig's axes and against the lines before it.
+///
+/// # Errors
+/// The first line that does not fit.
+pub fn well_formed(recovered: &Recovered, plan: &Plan) -> Result<(), Malformed> {
+    let mut shape = Shape { plan, rig: None };
+    let malformed = |line: &Line, reason| Malformed {
+        seq: line.seq,
+        kind: line.kind,
+        reason,
+    };
+    recovered
+        .lines
+        .iter()
+        .try_for_each(|line| shape.take(line).map_err(|reason| malformed(line, reason)))
+}
+
+struct Shape<'a> {
+    plan: &'a Plan,
+    /// Who answered first.
+    rig: Option<FirstRig>,
+}
+
+#[derive(Clone, Copy)]
+struct FirstRig {
+    axes: usize,
+    /// Number of its record.
+    seq: u64,
+    /// No pause of it fails.
+    is_virtual: bool,
+}
+
+impl Shape<'_> {
+    fn take(&mut self, line: &Line) -> Result<(), String> {
+        match line.kind {
+            EntryKind::Rig => self.answered(&said(line)?, line.seq),
+            EntryKind::Intent => self.sent(&said(line)?),
+            EntryKind::Sample => {
+                let SampleBody { x, r, .. } = said(line)?;
+                self.moves(&[("x", &x), ("r", &r)])
+            }
+            EntryKind::Step => self.ended(&said(line)?),
+            EntryKind::Held => {
+                let held: HeldBody = said(line)?;
+                held.found
+                    .map_or(Ok(()), |(x, r)| self.moves(&[("found", &x), ("found", &r)]))
+            }
+            EntryKind::Fault => self.failed(&said(line)?),
+            EntryKind::Resume => self.resumed(&said(line)?, line.seq),
+            EntryKind::Stroke | EntryKind::Operator | EntryKind::Event | EntryKind::Tally => {
+                self.rig().map(drop)
+            }
+            EntryKind::Header
+            | EntryKind::Plan
+            | EntryKind::Amend
+            | EntryKind::Recover
+            | EntryKind::End => Ok(()),
+        }
+    }
+
+    fn rig(&self) -> Result<FirstRig, String> {
+        self.rig.ok_or_else(|| "no RIG stands before it".to_owned())
+    }
+
+    /// Each list has an entry for every axis of the rig, and the plan moves as many.
+    fn moves(&self, lists: &[(&str, &[f64])]) -> Result<(), String> {
+        let FirstRig { axes, .. } = self.rig()?;
+        let planned = self.plan.degrees_of_freedom();
+        if axes != planned {
+            return Err(format!(
+                "the plan moves {}, and the rig has {axes}",
+                counted(planned)
+            ));
+        }
+        match lists.iter().find(|(_, list)| list.len() != axes) {
+            Some((name, list)) => Err(format!(
+                "its `{name}` has {}, and the rig has {}",
+                entries(list.len()),
+                counted(axes)
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn answered(&mut self, rig: &RigBody, seq: u64) -> Result<(), String> {
+        let is_virtual = rig.identity.simulated && self.plan.rig.link.as_real().is_none();
+        let first = *self.rig.get_or_insert(FirstRig {
+            axes: rig.axes,
+            seq,
+            is_virtual,
+        });
+        if rig.axes != first.axes {
+            return Err(format!(
+                "it has {}, and the rig of record {} has {}",
+                counted(rig.axes),
+                first.seq,
+                first.axes
+            ));
+        }
+        match &rig.last_move {
+            Some(last) if last.targets.len() != rig.axes => Err(format!(
+                "its `last_move` has {}, and the rig has {}",
+                entries(last.targets.len()),
+                counted(rig.axes)
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    fn sent(&self, intent: &IntentBody) -> Result<(), String> {
+        self.moves(&[
+            ("to", &intent.to),
+            ("said", intent.said.as_ref().unwrap_or(&intent.to)),
+        ])?;
+        let paths = intent.path.as_ref().map_or(intent.to.len(), Vec::len);
+        if paths == intent.to.len() {
+            return Ok(());
+        }
+        Err(format!(
+            "its `path` has {}, and the rig has {}",
+            entries(paths),
+            counted(intent.to.len())
+        ))
+    }
+
+    fn ended(&self, step: &StepBody) -> Result<(), String> {
+        let FirstRig { axes, .. } = self.rig()?;
+        if step.axes.is_empty() || step.axes.len() + 1 == axes {
+            return Ok(());
+        }
+        Err(format!(
+            "its `axes` has {}, and the rig has {}",
+            entries(step.axes.len()),
+            counted(axes)
+        ))
+    }
+
+    /// What the journal itself failed at may be said before any rig answered.
+    fn failed(&self, fault: &FaultBody) -> Result<(), String> {
+        if fault.call == Call::Record {
+            return Ok(());
+        }
+        if self.rig()?.is_virtual && fault.call == Call::Pause {
+            return Err("no pause of a virtual rig fails".to_owned());
+        }
+        Ok(())
+    }
+
+    fn resumed(&self, resume: &ResumeBody, seq: u64) -> Result<(), String> {
+        let FirstRig { seq: first, .. } = self.rig()?;
+        if resume.from <= first || resume.from > seq {
+            return Err(format!(
+                "it goes on from record {}, which is none of this run before it",
+                resume.from
+            ));
+        }
+        let found = Some(&resume.found);
+        for (name, measured) in [
+            ("found", found),
+            ("recorded", resume.recorded.as_ref()),
+            ("held", resume.held.as_ref()),
+        ] {
+            let Some((x, r)) = measured else { continue };
+            self.moves(&[(name, x), (name, r)])?;
+        }
+        match &resume.doubt {
+            Doubt::None | Doubt::Executed | Doubt::NotExecuted | Doubt::HeldOnTheWay => Ok(()),
+            Doubt::RestOfTheWay { from } => self.moves(&[("from", from)]),
+            Doubt::Stroke { back_to, others } => {
+                let back: Vec<f64> = std::iter::once(*back_to)
+                    .chain(others.iter().copied())
+                    .collect();
+                self.moves(&[("back_to", &back)])
+            }
+        }
+    }
+}
+
+fn said<T: DeserializeOwned>(line: &Line) -> Result<T, String> {
+    line.read().map_err(|fault| fault.to_string())
+}
+
+/// `1 axis`, `2 axes`
+fn counted(axes: usize) -> String {
+    if axes == 1 {
+        "1 axis".to_owned()
+    } else {
+        format!("{axes} axes")
+    }
+}
+
+/// `1 entry`, `2 entries`
+fn entries(count: usize) -> String {
+    if count == 1 {
+        "1 entry".to_owned()
+    } else {
+        format!("{count} entries")
+    }
+}

@@ -1,0 +1,153 @@
+//! How a run ends early: the rig held for good, where that left it, and whether it may take the load off. In: why the run does not go
+//! on. Out: events. Where a person stopped the run, or may stand at the specimen, nothing moves without their yes.
+
+use super::session::{Session, signed};
+use super::stop::Stop;
+use super::{Extent, Inspection, Motion, UNLOADING};
+use crate::plan::{Interval, Plan, SafeState};
+use crate::record::{EventKind, Outcome};
+use crate::rig::Halted;
+use crate::units::Dimension;
+use crate::units::display::{plain, readable};
+
+impl Session<'_> {
+    /// Holds the rig, and takes the load off: where that is its safe state and nobody stands at it, or where a person wants it.
+    pub(super) fn end_as_declared(&mut self, stop: &Stop, plan: &Plan) -> Outcome {
+        let halted = self.end(stop);
+        let Some(link) = plan.rig.link.as_real() else {
+            return stop.outcome();
+        };
+        let held = halted.as_ref().is_none_or(Halted::is_held);
+        let declared = link.safe_state == SafeState::Unload && stop.leaves_the_rig_sound();
+        let alone = declared && !self.attended && !stop.is_a_persons();
+        // A rig that a person held in the middle of a move was seen at rest since: it may move again for who sees it.
+        let sound = stop.leaves_the_rig_sound() || stop.is_a_persons();
+        if held && sound && (alone || self.may_unload(plan, halted.as_ref())) {
+            self.unload();
+        }
+        stop.outcome()
+    }
+
+    /// Records why the run ends here, and where the rig is held.
+    pub(crate) fn end(&mut self, stop: &Stop) -> Option<Halted> {
+        let halted = self.guard.halt();
+        self.event(stop.event_kind(), stop.to_string());
+        self.tell(halted.as_ref());
+        self.leave();
+        halted
+    }
+
+    /// Where the rig holds, or that nobody knows whether it does.
+    fn tell(&mut self, halted: Option<&Halted>) {
+        if let Some(halted) = halted {
+            let kind = if halted.is_held() {
+                EventKind::Held
+            } else {
+                EventKind::NotHeld
+            };
+            self.event(kind, halted.to_string());
+        }
+    }
+
+    /// Whether a person wants the load off.
+    fn may_unload(&mut self, plan: &Plan, halted: Option<&Halted>) -> bool {
+        let place = |places: &[f64]| {
+            places
+                .iter()
+                .map(|place| readable(*place, Dimension::LENGTH))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let found = halted.and_then(|halted| halted.found.as_ref());
+        let at =
+            place(found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice()));
+        let home = place(&self.home);
+        let motion = self.unloading(plan, halted);
+        let speed = self.guard.own_speed();
+        let speed = speed.map_or_else(String::new, |speed| {
+            format!(" at {}", plain(speed, Dimension::VELOCITY, 4))
+        });
+        let question = format!(
+            "unload? The rig holds at {at}; with a yes it moves to {home}{speed}, where the run began"
+        );
+        loop {
+            match self.observer.may_unload(&question, &motion) {
+                None => return false,
+                Some(Inspection::GoOn { note, by }) => {
+                    // Older versions asked nobody.
+                    if by.is_some() {
+                        let note = note.map_or_else(String::new, |note| format!(": {note}"));
+                        self.event(
+                            EventKind::Inspection,
+                            format!("{question}: yes{note}{}", signed(by.as_deref())),
+                        );
+                    }
+                    return true;
+                }
+                Some(Inspection::Stop { reason, by }) => {
+                    self.event(
+                        EventKind::Inspection,
+                        format!("{question}: {reason}{}", signed(by.as_deref())),
+                    );
+                    return false;
+                }
+                Some(Inspection::Wait) => {
+                    if let Err(stop) = self.breathe() {
+                        let halted = self.guard.halt();
+                        self.event(stop.event_kind(), stop.to_string());
+                        self.tell(halted.as_ref());
+                        return false;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The motion that takes the load off.
+    fn unloading(&self, plan: &Plan, halted: Option<&Halted>) -> Motion {
+        let found = halted.and_then(|halted| halted.found.as_ref());
+        let from = found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice());
+        let over = |values: &mut dyn Iterator<Item = f64>| {
+            values
+                .map(|value| Interval {
+                    low: value,
+                    high: value,
+                })
+                .reduce(|a, b| Interval {
+                    low: a.low.min(b.low),
+                    high: a.high.max(b.high),
+                })
+        };
+        let way = from
+            .iter()
+            .zip(&self.home)
+            .map(|(from, to)| (to - from).abs())
+            .fold(0.0, f64::max);
+        let speed = self.guard.own_speed();
+        let expected = Extent {
+            travel: over(&mut from.iter().chain(&self.home).copied()),
+            force: found.and_then(|(_, force)| over(&mut force.iter().copied().chain([0.0]))),
+            speed,
+            duration: speed.map(|speed| way / speed),
+        };
+        let does = "it goes back to where the run began".to_owned();
+        Motion {
+            expected,
+            ..Motion::of(plan, self.identity(), does)
+        }
+    }
+
+    /// Takes the load off after a stop, inside the same limits; what stands in the way is one more event.
+    fn unload(&mut self) {
+        self.event(EventKind::Hold, UNLOADING.to_owned());
+        let home = self.home.clone();
+        let unloaded = self
+            .go_to_all(&home, None)
+            .and_then(|()| Ok(self.guard.read()?));
+        if let Err(stop) = unloaded {
+            self.event(stop.event_kind(), format!("not unloaded: {stop}"));
+        }
+        let halted = self.guard.halt();
+        self.tell(halted.as_ref());
+    }
+}

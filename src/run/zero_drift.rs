@@ -1,0 +1,130 @@
+//! The zeros of a rig, read before the first procedure and after the last. In: how far they may drift, and how the force is
+//! known again. Out: a [`Drift`] of the record, told as notes. It judges no requirement.
+
+use super::session::Session;
+use super::stop::Stop;
+use crate::physics::identification::fit_line;
+use crate::plan::{DriftCheck, ZeroAfter};
+use crate::procedures::samples::mean;
+use crate::record::{AxisDrift, Drift, EventKind, Zero};
+use crate::rig::{Held, Reading, named_axis};
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+/// Readings that make a zero.
+pub(super) const READINGS: u32 = 10;
+
+/// What a person does before the zero of a free cell is read.
+const TAKE_OFF: &str = "take the specimen off the load cell: its zero is read, and nothing moves";
+
+/// Nothing loads the specimen: reads the zeros, and has holds told from here on.
+pub(crate) fn before(check: DriftCheck, session: &mut Session<'_>) -> Result<Drift, Stop> {
+    let axes = zeros(check.over, session)?
+        .into_iter()
+        .map(|before| AxisDrift {
+            before,
+            after: None,
+        })
+        .collect();
+    session.guard.watch_holds(check.over);
+    let drift = Drift {
+        check,
+        axes,
+        held: Held::default(),
+    };
+    let said = drift.axes.iter().map(|axis| told(&axis.before));
+    session.event(
+        EventKind::Note,
+        format!("zero before the test: {}", listed(said)),
+    );
+    Ok(drift)
+}
+
+/// The zeros once more. Where they are read with the specimen on, the rig goes back to where they were read before: `home`, m.
+pub(crate) fn after(
+    drift: &mut Drift,
+    home: &[f64],
+    session: &mut Session<'_>,
+) -> Result<(), Stop> {
+    match drift.check.after {
+        ZeroAfter::Start => session.go_to_all(home, None)?,
+        ZeroAfter::Free => session.inspect(TAKE_OFF)?,
+        ZeroAfter::Nowhere => return Ok(()),
+    }
+    for (axis, zero) in drift.axes.iter_mut().zip(zeros(drift.check.over, session)?) {
+        axis.after = Some(zero);
+    }
+    let said = drift
+        .axes
+        .iter()
+        .filter_map(|axis| axis.after.as_ref().zip(axis.change()));
+    let said = said.map(|(zero, (by, _))| {
+        format!(
+            "{}, {} from that before",
+            told(zero),
+            readable(by, Dimension::FORCE)
+        )
+    });
+    session.event(
+        EventKind::Note,
+        format!("zero after the test: {}", listed(said)),
+    );
+    Ok(())
+}
+
+/// `2 mN, drift 0.1 mN/s`
+fn told(zero: &Zero) -> String {
+    let slope = readable(zero.force_slope, Dimension::FORCE);
+    format!(
+        "{} at rest, drift {slope}/s",
+        readable(zero.force, Dimension::FORCE)
+    )
+}
+
+/// Several axes by their numbers.
+fn listed(said: impl Iterator<Item = String>) -> String {
+    let said: Vec<String> = said.collect();
+    let axes = said.len();
+    let named = |(place, said): (usize, &String)| {
+        named_axis(place, axes).map_or(said.clone(), |axis| format!("axis {axis}: {said}"))
+    };
+    said.iter()
+        .enumerate()
+        .map(named)
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
+/// Readings over some seconds, where the rig stands.
+fn zeros(over: f64, session: &mut Session<'_>) -> Result<Vec<Zero>, Stop> {
+    let mut readings = vec![session.guard.read()?];
+    for _ in 1..READINGS {
+        session.guard.pause(over / f64::from(READINGS - 1))?;
+        readings.push(session.guard.read()?);
+    }
+    let targets = session.guard.commanded().to_vec();
+    Ok(targets
+        .iter()
+        .enumerate()
+        .map(|(axis, target)| zero_of(axis, *target, &readings))
+        .collect())
+}
+
+fn zero_of(axis: usize, target: f64, readings: &[Reading]) -> Zero {
+    let time = readings.last().map_or(0.0, |reading| reading.time);
+    let times: Vec<f64> = readings.iter().map(|reading| reading.time).collect();
+    let forces: Vec<f64> = readings.iter().map(|reading| reading.force[axis]).collect();
+    let places: Vec<f64> = readings
+        .iter()
+        .map(|reading| reading.displacement[axis] - target)
+        .collect();
+    let slope = |values: &[f64]| fit_line(&times, values).map_or(0.0, |fit| fit.slope);
+    let mean = |values: &[f64]| mean(values.iter().copied());
+    Zero {
+        time,
+        force: mean(&forces),
+        displacement: mean(&places),
+        force_slope: slope(&forces),
+        displacement_slope: slope(&places),
+    }
+}

@@ -1,0 +1,15 @@
+//! The blocks of the language with their fields, one file per subject. They are data, without a
+//! reader.
+
+pub(crate) mod behaviours;
+pub(crate) mod curves;
+pub(crate) mod declarations;
+pub(crate) mod devices;
+pub(crate) mod frames;
+pub(crate) mod golden;
+pub(crate) mod limits;
+pub(crate) mod methods;
+pub(crate) mod plan_block;
+pub(crate) mod procedures;
+pub(crate) mod report;
+pub(crate) mod rig;

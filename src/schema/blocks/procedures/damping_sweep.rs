@@ -1,0 +1,76 @@
+//! `damping sweep`: its block and its results.
+
+use super::SPECIMEN;
+use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
+use crate::units::Dimension;
+
+pub(crate) const DAMPING: ResultKind = ResultKind::measured(
+    "damping",
+    Dimension::DAMPING,
+    "slope of damping force on velocity",
+);
+
+pub(crate) const COULOMB_FORCE: ResultKind = ResultKind::measured(
+    "coulomb_force",
+    Dimension::FORCE,
+    "friction: damping force of the fit at no velocity",
+);
+
+pub(crate) const R_SQUARED: ResultKind = ResultKind::new(
+    "r_squared",
+    Dimension::NUMBER,
+    "coefficient of determination of the fit",
+);
+
+pub(crate) const DAMPING_RATIO: ResultKind = ResultKind::measured(
+    "damping_ratio",
+    Dimension::NUMBER,
+    "damping over critical damping, c / (2 sqrt(K M))",
+);
+
+pub(crate) const MAX_VELOCITY: ResultKind = ResultKind::new(
+    "max_velocity",
+    Dimension::VELOCITY,
+    "largest velocity of the sweep",
+);
+
+/// What it leaves, in the order of the tables and of `summary.json`.
+pub(crate) const RESULTS: &[ResultKind] = &[
+    DAMPING,
+    COULOMB_FORCE,
+    R_SQUARED,
+    DAMPING_RATIO,
+    MAX_VELOCITY,
+];
+
+pub(crate) const BLOCK: BlockKind = BlockKind {
+    kind: Kind::DampingSweep,
+    keyword: &["damping", "sweep"],
+    naming: Naming::Named,
+    procedure: true,
+    fields: &[
+        SPECIMEN,
+        Field::quantities("velocities", Dimension::VELOCITY, "speeds of the ramps")
+            .required("velocities = [0.5, 1, 2, 5, 10] mm/s")
+            .above_zero(),
+        Field::quantity("stroke", Dimension::LENGTH, "length of each ramp")
+            .required("stroke = 1 mm")
+            .above_zero(),
+        Field::quantity("about", Dimension::LENGTH, "the middle of the strokes")
+            .or_said("they begin where the actuator is"),
+        Field::quantity(
+            "stiffness",
+            Dimension::STIFFNESS,
+            "K of the damping force R − K·X",
+        )
+        .required("stiffness = 300 kN/m")
+        .above_zero(),
+        Field::quantity("rate", Dimension::FREQUENCY, "sampling rate")
+            .above_zero()
+            .or_said("at least 50 samples on the steady part"),
+    ],
+    exports: &[],
+    results: RESULTS,
+    example: "damping sweep c {\n  velocities = [1, 2, 5] mm/s\n  stroke = 1 mm\n  stiffness = 300 kN/m\n}",
+    doc: "Ramps at rising constant velocity: the damping by least squares",
+};

@@ -1,0 +1,293 @@
+//! The paper's beam, `plans/beam.psd`, on a stand-in of every dialect: in one process and on the stand's own time, for on a line it
+//! would take its minutes. In: the plan and its libraries, of which only the devices of the rig, what they resolve and their noise
+//! are others. Out: the ideal virtual run's results, within what the rig resolves. The plan as it stands runs on the one dialect that
+//! reads displacement and force at one instant; of every other the sweep is refused, and its result given.
+
+use super::stage::{header, open, stand};
+use crate::emulator::Log;
+use crate::language::check::{Checked, LoadFault, Loader, Options, check};
+use crate::plan::Plan;
+use crate::plan::formula::ResultValue;
+use crate::record::journal::testing::PowerLoss;
+use crate::record::journal::{Durability, Journal};
+use crate::record::{Outcome, Record};
+use crate::rig::virtual_rig;
+use crate::run::{Unwatched, replay, run};
+use crate::text::diagnostic::Code;
+
+/// Of the beam, N/m.
+const STIFFNESS: f64 = 3e5;
+
+/// A rig and what it resolves.
+struct Case {
+    devices: &'static str,
+    /// m
+    resolution: f64,
+    /// Half the quantum of its force readings, N.
+    force_error: f64,
+    /// Whether it reads displacement and force at one instant.
+    sweeps: bool,
+}
+
+const fn case(devices: &'static str, force_error: f64) -> Case {
+    Case {
+        devices,
+        resolution: 1e-6,
+        force_error,
+        sweeps: false,
+    }
+}
+
+const CASES: &[Case] = &[
+    // Six decimals of a millimetre, three of a newton.
+    Case {
+        resolution: 1e-9,
+        sweeps: true,
+        ..case("link = serial(port: \"/a\", dialect: native)", 5e-4)
+    },
+    case(
+        "link = tcp(address: \"rig:1\", dialect: nees(\"MDL-00-01\"))",
+        1e-3,
+    ),
+    case("link = serial(port: \"/a\", dialect: instron)", 1e-4),
+    Case {
+        resolution: 1e-5,
+        ..case("link = serial(port: \"/a\", dialect: mark10)", 0.05)
+    },
+    case(
+        "link = serial(port: \"/a\", dialect: modbus(unit: 1, number: float32(high_word_first), target: 100, position: 102, \
+         length_unit: 1 mm, force: 104, force_unit: 1 kN, speed: 106, speed_unit: 1 mm/s, status: 108, moving_mask: 1, \
+         command: 109, start_word: 1, stop_word: 2))",
+        1e-3,
+    ),
+    case(
+        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: hx711)\n  \
+         force_per_count = 0.01 N\n  zero_count = 8123\n  sign = negative\n  datum = here",
+        5e-3,
+    ),
+    case(
+        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: indicator)\n  sign = negative\n  datum = here",
+        0.05,
+    ),
+    case(
+        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: scpi(1 N))\n  sign = negative\n  datum = here",
+        0.05,
+    ),
+    case(
+        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: mark10_gauge)\n  sign = negative\n  datum = here",
+        0.05,
+    ),
+];
+
+/// The libraries of the plan, with the devices of a case.
+struct Libraries<'a>(&'a Case);
+
+impl Loader for Libraries<'_> {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        match path {
+            "lib/instron_frame.psd" => {
+                Ok(include_str!("../../../plans/lib/instron_frame.psd").to_owned())
+            }
+            "lib/gfrp_beam.psd" => Ok(include_str!("../../../plans/lib/gfrp_beam.psd").to_owned()),
+            "lib/real_frame.psd" => Ok(self.0.frame()),
+            _ => Err(LoadFault::NotFound),
+        }
+    }
+}
+
+impl Case {
+    /// `lib/real_frame.psd`, noiseless.
+    fn frame(&self) -> String {
+        let frame = include_str!("../../../plans/lib/real_frame.psd");
+        let link = frame
+            .lines()
+            .find(|line| line.starts_with("  link "))
+            .unwrap();
+        let micrometres = self.resolution / 1e-6;
+        let others = [
+            (link, format!("  {}", self.devices)),
+            (
+                "resolution      = 1 um",
+                format!("resolution = {micrometres} um"),
+            ),
+            (
+                "within(0.005 mm",
+                format!("within({} um", (1.5 * micrometres).max(5.0)),
+            ),
+            ("noise           = 2 N", "noise = 0 N".to_owned()),
+        ];
+        others.iter().fold(frame.to_owned(), |text, (was, is)| {
+            assert!(text.contains(was), "{was}");
+            text.replace(was, is)
+        })
+    }
+
+    /// What the plan comes to, as it stands or without its sweep.
+    fn checked(&self, rig: &str, sweep: bool) -> Checked {
+        let text = include_str!("../../../plans/beam.psd");
+        let begins = text.find("damping sweep c {").unwrap();
+        let ends = begins + text[begins..].find("\n}\n").unwrap() + 3;
+        let without = format!("{}{}", &text[..begins], &text[ends..])
+            .replace("c.damping", "6 N*s/m")
+            .replace("    damping_fit(c),\n", "");
+        let options = Options {
+            rig: Some(rig.to_owned()),
+            ..Options::default()
+        };
+        check(
+            "beam.psd",
+            if sweep { text } else { &without },
+            &Libraries(self),
+            &options,
+        )
+    }
+
+    fn plan(&self, rig: &str) -> Plan {
+        let checked = self.checked(rig, self.sweeps);
+        checked
+            .plan
+            .unwrap_or_else(|| panic!("{}: {:?}", self.devices, checked.diagnostics))
+    }
+
+    fn run(&self) -> Record {
+        let plan = self.plan("bench");
+        let stand = stand(&plan, "", Log::none(), 1);
+        let mut rig =
+            open(&plan, &stand).unwrap_or_else(|fault| panic!("{}: {fault}", self.devices));
+        let mut journal = Journal::create(Box::new(PowerLoss::new()), Durability::EveryPromise);
+        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        let record =
+            replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None)).record;
+        assert!(
+            stand.stand().bench().violations().is_empty(),
+            "{}",
+            self.devices
+        );
+        assert_eq!(record.outcome, Outcome::Completed, "{}", self.devices);
+        record
+    }
+}
+
+fn number(record: &Record, procedure: &str, name: &str) -> f64 {
+    let procedure = record
+        .procedures
+        .iter()
+        .find(|other| other.name == procedure)
+        .unwrap();
+    match procedure.result(name).map(|result| &result.value) {
+        Some(ResultValue::Number {
+            value: Some(value), ..
+        }) => *value,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// By how much a result of the two runs differs, which must be at most `allowed`.
+fn near(
+    case: &Case,
+    (ideal, real): (&Record, &Record),
+    (procedure, name): (&str, &str),
+    allowed: f64,
+) -> f64 {
+    let (expected, found) = (
+        number(ideal, procedure, name),
+        number(real, procedure, name),
+    );
+    let off = (found - expected).abs();
+    assert!(
+        off <= allowed,
+        "{}: {procedure}.{name} {found} is not within {allowed} of {expected}",
+        case.devices
+    );
+    off
+}
+
+/// Holds the results of a rig against those of the ideal one.
+///
+/// A target is rounded by at most half the resolution r, and so is the reading of where it ended: the force read lies within
+/// e = K·r/2 + q of that of the ideal rig, q being half a quantum of the force.
+/// - K of the ramp's line: Σ|x − m|/Σ(x − m)² of 0.1 to 1 mm by 0.1 mm is 3031/m, and the displacements err by r/2 too.
+/// - c of five velocities: each mean errs by at most e; Σ|v − m|/Σ(v − m)² of 5 to 100 mm/s is 24.6 s/m.
+/// - The blow: K foretells one increment of at most 1.1 mm, and c adds c·v. A beam that vibrates freely, at ω = 641/s, answers a force
+///   error with at most (2/π)·ωt·e/K until the striker stops, t = 13.5 ms; the work of e is along the way, at most v·t, and the
+///   spring's is K·X times the error of X. The striker stops one step of 0.5 ms sooner or later.
+fn compare(case: &Case, runs: (&Record, &Record)) {
+    const STOP: f64 = 0.0135;
+    const VELOCITY: f64 = 2.2;
+    const LARGEST: f64 = 7.9e-3;
+    let rounded = STIFFNESS * case.resolution / 2.0;
+    let mut error = rounded + case.force_error;
+    error += near(case, runs, ("k0", "stiffness"), (error + rounded) * 3031.0) * 1.1e-3;
+    if case.sweeps {
+        error += near(case, runs, ("c", "damping"), error * 24.6) * VELOCITY;
+    }
+    let displacement =
+        std::f64::consts::FRAC_2_PI * 641.0 * STOP * error / STIFFNESS + case.resolution;
+    near(case, runs, ("hit", "max_displacement"), displacement);
+    near(
+        case,
+        runs,
+        ("hit", "absorbed_energy"),
+        error * VELOCITY * STOP + STIFFNESS * LARGEST * displacement,
+    );
+    near(case, runs, ("hit", "stop_time"), 0.5e-3 * 1.001);
+    let found = number(runs.1, "hit", "max_displacement");
+    assert!(
+        (found - LARGEST).abs() < 0.1e-3,
+        "{}: {found} m is not the paper's 7.9 mm",
+        case.devices
+    );
+}
+
+#[test]
+fn the_papers_beam_itself_gives_the_ideal_runs_results_in_every_dialect() {
+    for case in CASES {
+        let refused: Vec<Code> = case
+            .checked("bench", true)
+            .diagnostics
+            .iter()
+            .filter(|it| it.is_error())
+            .map(|it| it.code)
+            .collect();
+        assert_eq!(
+            refused,
+            if case.sweeps {
+                vec![]
+            } else {
+                vec![Code::ReadApart]
+            },
+            "{}",
+            case.devices
+        );
+        let plan = case.plan("ideal");
+        let ideal = run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched);
+        compare(case, (&ideal, &case.run()));
+    }
+}
+
+/// Why the sweep is refused: with the guard of the check gone round, the way between two readings is a damper of many times the beam's.
+#[test]
+fn a_sweep_whose_readings_are_apart_would_take_the_way_between_them_for_damping() {
+    let case = Case {
+        sweeps: true,
+        ..case("link = serial(port: \"/a\", dialect: native)", 5e-4)
+    };
+    let apart = &CASES[4];
+    let mut plan = case.plan("bench");
+    super::stage::link(&mut plan).actuator = apart
+        .plan("bench")
+        .rig
+        .link
+        .as_real()
+        .unwrap()
+        .actuator
+        .clone();
+    let stand = stand(&plan, "", Log::none(), 1);
+    let mut rig = open(&plan, &stand).unwrap();
+    let record = run(&plan, &mut rig, &mut Unwatched);
+    assert!(
+        number(&record, "c", "damping") > 100.0 * 6.0,
+        "{}",
+        number(&record, "c", "damping")
+    );
+}

@@ -1,0 +1,114 @@
+//! A run killed at one write of its record, and gone on with. In: a plan, a stand, the disk of the record. Out: whether psd died
+//! there; the run as it was brought to its end, on the same stand.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::axes::played;
+use super::stage::{header, open, stand};
+use crate::emulator::{InProcess, Log};
+use crate::plan::Plan;
+use crate::record::journal::testing::{Killed, PowerLoss};
+use crate::record::journal::{Durability, EntryKind, Journal};
+use crate::record::{Outcome, Record};
+use crate::rig::Rig as _;
+use crate::run::Unwatched;
+use crate::run::replay;
+use crate::run::replay::{Bands, RigBody};
+
+/// Runs the plan until this write or sync of its record, at which psd dies, before it or `after` it; whether it did.
+pub(super) fn killed(
+    plan: &Plan,
+    stand: &InProcess,
+    disk: &PowerLoss,
+    (call, after): (usize, bool),
+) -> bool {
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        let mut rig = open(plan, stand).unwrap();
+        let mut journal = Journal::create(
+            Box::new(Killed::at(disk, call, after)),
+            Durability::EveryPromise,
+        );
+        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
+    }));
+    ended.is_err()
+}
+
+/// What became of a run that was cut off.
+pub(super) enum GoneOn {
+    ToItsEnd(Box<Record>),
+    /// The record had its end.
+    Ended,
+    /// Of the rig nothing was recorded.
+    NeverBegun,
+}
+
+/// Goes on with the run that this disk holds, as its record and the rig say.
+pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: usize) -> GoneOn {
+    let (recovered, before) = played(disk);
+    if before.ended {
+        return GoneOn::Ended;
+    }
+    let datum = before.rig.as_ref().and_then(|rig| rig.datum.clone());
+    let at_its_datum = Plan {
+        rig: plan.rig.with_recorded_datum(datum.as_deref()),
+        ..plan.clone()
+    };
+    let mut rig = open(&at_its_datum, stand).unwrap();
+    let (found, about) = (rig.read().unwrap(), RigBody::of(&rig));
+    let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
+    let decision = match replay::decide(&before, &about, &found, &bands, false) {
+        Err(replay::Refusal::NothingRecorded) => return GoneOn::NeverBegun,
+        decided => decided.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
+    };
+    let resumption = decision.resumption("A. Witness", "power", &found, before.time);
+    let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
+    journal
+        .append(
+            EntryKind::Rig,
+            &RigBody {
+                t: before.time,
+                ..about
+            },
+        )
+        .unwrap();
+    journal.append(EntryKind::Resume, &resumption).unwrap();
+    let goes_on = || {
+        Ok::<_, replay::Refusal>(replay::GoesOn {
+            rig: &mut rig,
+            journal,
+            played: played(disk).1,
+        })
+    };
+    let resumed =
+        replay::resume(plan, &before, &mut Unwatched, Box::new(|| None), goes_on).unwrap();
+    assert_eq!(
+        (resumed.mismatch, resumed.record.outcome.clone()),
+        (None, Outcome::Completed),
+        "call {call}"
+    );
+    GoneOn::ToItsEnd(Box::new(resumed.record))
+}
+
+/// The run is cut off at every third write or sync of its record from `first` on, left to `meanwhile`, and gone on with: each record, and
+/// its disk, is held to `whole`.
+pub(super) fn cut_off_anywhere(
+    plan: &Plan,
+    first: usize,
+    meanwhile: impl Fn(&InProcess),
+    whole: impl Fn(&Record, &PowerLoss),
+) {
+    for (kills, call) in (first..).step_by(3).enumerate() {
+        let (stand, disk) = (stand(plan, "", Log::none(), 1), PowerLoss::new());
+        if !killed(plan, &stand, &disk, (call, call % 2 == 0)) {
+            assert!(kills > 10, "{kills}");
+            return;
+        }
+        meanwhile(&stand);
+        match gone_on(plan, &stand, &disk, call) {
+            GoneOn::ToItsEnd(record) => whole(&record, &disk),
+            GoneOn::Ended => {}
+            GoneOn::NeverBegun => panic!("call {call}: the rig was opened before it"),
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! What a forger who knows the format changes in the record of a real rig, and what finds it: numbers against the bytes they
+//! were made of, times and numbers of targets against those before, END against what the run comes to.
+
+use serde_json::{Value, json};
+
+use super::stage::{Ended, link, plan, run};
+use super::two_axes::shaken;
+use crate::plan::Plan;
+use crate::record::journal::{EntryKind, Recovered};
+use crate::run::replay;
+use crate::run::replay::Played;
+
+/// The record with the `nth` record of a kind altered; what `psd verify` finds first.
+pub(super) fn found(
+    plan: &Plan,
+    ended: &Ended,
+    kind: EntryKind,
+    nth: usize,
+    alter: impl Fn(&mut Value),
+) -> Result<(), String> {
+    let mut forged = ended.recovered.clone();
+    let line = forged
+        .lines
+        .iter_mut()
+        .filter(|line| line.kind == kind)
+        .nth(nth)
+        .unwrap();
+    line.alter(alter);
+    judged(plan, &forged)
+}
+
+pub(super) fn judged(plan: &Plan, forged: &Recovered) -> Result<(), String> {
+    let played = Played::of(forged).map_err(|fault| fault.to_string())?;
+    replay::agrees(forged, &played, plan).map_err(|fault| fault.to_string())?;
+    let replayed = replay::replay(plan, played);
+    replayed
+        .mismatch
+        .map_or(Ok(()), |mismatch| Err(mismatch.to_string()))
+}
+
+#[test]
+fn a_record_that_says_two_things_is_found_out() {
+    for plan in [plan(), shaken("50 ms")] {
+        let ended = run(&plan, "");
+        assert!(ended.completed());
+        assert_eq!(judged(&plan, &ended.recovered), Ok(()));
+        let cases: [(EntryKind, usize, &str, Value, &str); 18] = [
+            (
+                EntryKind::Intent,
+                3,
+                "/wire",
+                json!(">MOVE 99 1 999.0*0000\\n"),
+                "bytes that were sent",
+            ),
+            (
+                EntryKind::Intent,
+                3,
+                "/wire",
+                ended.body(EntryKind::Intent, 4)["wire"].clone(),
+                "bytes that were sent",
+            ),
+            (
+                EntryKind::Intent,
+                3,
+                "/id",
+                json!(77),
+                "bytes that were sent",
+            ),
+            (
+                EntryKind::Intent,
+                3,
+                "/rate",
+                json!(0.5),
+                "bytes that were sent",
+            ),
+            (EntryKind::Intent, 3, "/n", json!(9), "it is target 4"),
+            (
+                EntryKind::Intent,
+                3,
+                "/t",
+                json!(0.001),
+                "the record before it",
+            ),
+            (
+                EntryKind::Sample,
+                3,
+                "/raw",
+                json!(["nonsense"]),
+                "bytes that came",
+            ),
+            (
+                EntryKind::Sample,
+                3,
+                "/raw",
+                ended.body(EntryKind::Sample, 9)["raw"].clone(),
+                "bytes that came",
+            ),
+            (
+                EntryKind::Sample,
+                3,
+                "/x/0",
+                json!(0.123),
+                "bytes that came",
+            ),
+            (
+                EntryKind::Sample,
+                3,
+                "/r/0",
+                json!(0.123),
+                "bytes that came",
+            ),
+            (
+                EntryKind::Sample,
+                9,
+                "/t",
+                json!(0.001),
+                "the record before it",
+            ),
+            (
+                EntryKind::Rig,
+                0,
+                "/identity/simulated",
+                json!(false),
+                "who it is",
+            ),
+            (
+                EntryKind::Rig,
+                0,
+                "/identity/model",
+                json!("INSTRON"),
+                "who it is",
+            ),
+            (
+                EntryKind::Rig,
+                0,
+                "/identity/serial",
+                json!("0147"),
+                "who it is",
+            ),
+            (
+                EntryKind::Rig,
+                0,
+                "/identity/boot",
+                json!("0000"),
+                "who it is",
+            ),
+            (
+                EntryKind::Rig,
+                0,
+                "/said/0",
+                json!("<ACK 1 7F3A x*0000"),
+                "who it is",
+            ),
+            (EntryKind::End, 0, "/outcome", json!("aborted"), "aborted"),
+            (EntryKind::Header, 0, "/psd", json!(7), "invalid type"),
+        ];
+        for (kind, nth, place, value, why) in cases {
+            let alter = |body: &mut Value| *body.pointer_mut(place).expect(place) = value.clone();
+            let fault = found(&plan, &ended, kind, nth, alter).expect_err(place);
+            assert!(fault.contains(why), "{kind:?} {place}: {fault}");
+        }
+    }
+}
+
+#[test]
+fn a_field_that_psd_does_not_write_is_found_in_every_record() {
+    let plan = plan();
+    let ended = run(&plan, "");
+    let kinds = EntryKind::ALL
+        .into_iter()
+        .filter(|kind| ended.count(*kind) > 0);
+    for kind in kinds.clone() {
+        let fault =
+            found(&plan, &ended, kind, 0, |body| body["zzz"] = json!(5)).expect_err(kind.word());
+        assert!(fault.contains("`zzz`"), "{fault}");
+    }
+    assert!(kinds.count() >= 8);
+}
+
+#[test]
+fn what_is_taken_out_of_an_ended_record_is_missed() {
+    let mut plan = plan();
+    link(&mut plan).gate.zero = 5.0;
+    let ended = run(&plan, "");
+    let of_kind = |kind| {
+        ended
+            .recovered
+            .lines
+            .iter()
+            .rposition(|line| line.kind == kind)
+    };
+    for kind in [
+        EntryKind::Event,
+        EntryKind::Step,
+        EntryKind::Sample,
+        EntryKind::Intent,
+    ] {
+        let mut forged = ended.recovered.clone();
+        forged.lines.remove(of_kind(kind).unwrap());
+        assert!(judged(&plan, &forged).is_err(), "{kind:?}");
+    }
+    // All from the last event on, but END.
+    let mut forged = ended.recovered.clone();
+    let end = forged.lines.pop().unwrap();
+    forged.lines.truncate(of_kind(EntryKind::Step).unwrap());
+    forged.lines.push(end);
+    assert!(judged(&plan, &forged).is_err());
+}

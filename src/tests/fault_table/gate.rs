@@ -1,0 +1,102 @@
+//! What the gate finds before the first step: a wrong sign, unit, scale or offset, a dead sensor, a drift. In: runs on
+//! rigs that are wrong from the start. Out: only the tiny move of the probe is made.
+
+use super::stage::{Ended, plan, run, run_without};
+use crate::record::{EventKind, Outcome};
+use crate::rig::safety::failpoint::Guarding;
+
+/// The gate refuses: nothing of the plan was done.
+fn refused(script: &str, why: &str, most_moves: usize) {
+    let ended = run(&plan(), script);
+    let Outcome::Faulted { reason } = &ended.record.outcome else {
+        panic!("{script}: {:?}", ended.record.outcome)
+    };
+    assert!(
+        reason.contains("did not pass the gate") && reason.contains(why),
+        "{script}: {reason}"
+    );
+    let stand = ended.stand.stand();
+    assert!(
+        ended.record.procedures.is_empty() && stand.bench().moves().len() <= most_moves,
+        "{script}"
+    );
+    assert!(
+        stand
+            .bench()
+            .targets()
+            .iter()
+            .all(|target| target.abs() <= 5.1e-5)
+            && !stand.bench().moving()
+    );
+    assert!(ended.log.contains("actuator > !"), "{script}: held");
+}
+
+#[test]
+fn a_wrong_sign_unit_or_scale_is_refused_before_the_first_step() {
+    refused("at 0 s: scale force by -1", "opposite signs", 2);
+    // kN for N, a hundred times too much, kg for N, a dead cell.
+    for scale in ["0.001", "100", "9.80665", "0"] {
+        refused(
+            &format!("at 0 s: scale force by {scale}"),
+            "look for a wrong unit or scale",
+            2,
+        );
+    }
+    // N for kN is beyond the cell itself.
+    let saturated = run(&plan(), "at 0 s: scale force by 1000");
+    saturated.held();
+    assert!(!past(&saturated));
+}
+
+#[test]
+fn a_displacement_in_another_unit_never_gets_past_the_probe() {
+    for scale in ["25.4", "0.03937", "1000", "-1"] {
+        let ended = run(&plan(), &format!("at 0 s: scale displacement by {scale}"));
+        ended.held();
+        assert!(!past(&ended), "{scale}: {}", ended.reason());
+        assert_eq!(
+            ended.stand.stand().bench().moves().len(),
+            1,
+            "{scale}: stopped at the first move, for it is not where it should be"
+        );
+    }
+}
+
+#[test]
+fn an_offset_is_refused_and_nothing_moves() {
+    // 6 N after the first second, where 5 N are allowed.
+    let offset = "at 0 s: drift force 6 N/s";
+    refused(offset, "at rest", 0);
+    assert!(past(&run_without(Guarding::GateZero, &plan(), offset)));
+}
+
+#[test]
+fn without_its_guards_the_gate_lets_them_through() {
+    let mirrored = "at 0 s: scale force by -1";
+    let mut wide = plan();
+    super::stage::link(&mut wide).gate.stiffness.low = f64::NEG_INFINITY;
+    assert!(
+        !past(&run(&wide, mirrored)) && past(&run_without(Guarding::GateSign, &wide, mirrored))
+    );
+    let small = "at 0 s: scale force by 0.001";
+    assert!(past(&run_without(Guarding::GateStiffness, &plan(), small)));
+}
+
+/// Whether the plan's own procedures began.
+fn past(ended: &Ended) -> bool {
+    !ended.record.procedures.is_empty()
+}
+
+#[test]
+fn the_drift_at_rest_is_told() {
+    let ended = run(&plan(), "at 0 s: drift force 0.5 N/s");
+    let notes = ended.events(EventKind::Note);
+    let gate = notes
+        .iter()
+        .find(|note| note.starts_with("gate passed"))
+        .unwrap();
+    assert!(
+        gate.contains("drift 0.5") || gate.contains("drift 500 mN"),
+        "{gate}"
+    );
+}

@@ -1,0 +1,226 @@
+//! What befalls the line of a rig whose frames are numbered and sealed: silence, pieces, garbage, flipped bits, replies out
+//! of turn. In: runs with such a line. Out: the same numbers as on a sound line, or a rig that is held.
+
+use super::stage::{Ended, REPLY_TIMEOUT, link, open, plan, plan_of, run, run_without, stand, to};
+use crate::emulator::Log;
+use crate::record::EventKind;
+use crate::rig::controllers::LONGEST_LINE;
+use crate::rig::safety::failpoint::{Guarding, without};
+use crate::rig::{Rig as _, Tally};
+
+/// Moments at which a frame left, with the frame, from the first that holds `part`.
+fn sent<'a>(ended: &'a Ended, part: &str) -> Vec<(f64, &'a str)> {
+    let frames = ended
+        .log
+        .lines()
+        .filter_map(|line| line.split_once(" actuator > "));
+    let frames = frames.map(|(time, frame)| (time.parse().unwrap(), frame));
+    frames
+        .skip_while(|(_, frame)| !frame.contains(part))
+        .collect()
+}
+
+#[test]
+fn a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held() {
+    let ended = run(&plan(), "after 3 moves: drop replies for ever");
+    ended.held();
+    assert!(
+        ended.reason().contains("no usable answer within 0.8 s"),
+        "{}",
+        ended.reason()
+    );
+    let frames = sent(&ended, "MOVE");
+    let third = frames
+        .iter()
+        .filter(|(_, frame)| frame.contains("MOVE"))
+        .nth(2)
+        .unwrap();
+    let same: Vec<f64> = frames
+        .iter()
+        .filter(|(_, frame)| frame == &third.1)
+        .map(|(time, _)| (time - third.0) / REPLY_TIMEOUT)
+        .collect();
+    for (at, expected) in same.iter().zip([0.0, 1.0, 2.0, 4.0]) {
+        assert!((at - expected).abs() < 0.1, "{same:?}");
+    }
+    assert_eq!(same.len(), 4);
+    // The first `!` after 8 T, whatever becomes of its answer.
+    let held = frames
+        .iter()
+        .find(|(_, frame)| frame.starts_with('!'))
+        .unwrap()
+        .0;
+    assert!(((held - third.0) / REPLY_TIMEOUT - 8.0).abs() < 0.2);
+    // Its answer is waited for as long: the last frame leaves after 12 T, the program after 16.
+    let last = frames.last().unwrap().0;
+    assert!(
+        ((last - third.0) / REPLY_TIMEOUT - 12.0).abs() < 0.3,
+        "{}",
+        (last - third.0) / REPLY_TIMEOUT
+    );
+    assert_eq!(
+        ended.stand.stand().bench().moves().len(),
+        3,
+        "the move itself was begun once"
+    );
+
+    // One lost reply is mended, and said on page one.
+    let once = run(&plan(), "after 3 moves: drop reply");
+    once.sound();
+    assert_eq!(
+        once.tally,
+        Tally {
+            resent: 1,
+            ..Tally::default()
+        }
+    );
+    assert_eq!(once.events(EventKind::Mended), ["1 frame sent again"]);
+    assert!(run(&plan(), "").events(EventKind::Mended).is_empty());
+    run_without(Guarding::Resend, &plan(), "after 3 moves: drop reply").held();
+}
+
+#[test]
+fn a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply() {
+    let short = plan_of(vec![to(2e-4)]);
+    for at in 1..60 {
+        let ended = run(
+            &short,
+            &format!(
+                "after 8 replies: split reply at {at} bytes\nafter 12 replies: split reply at {at} bytes"
+            ),
+        );
+        ended.sound();
+        assert_eq!(ended.tally, Tally::default(), "nothing was missing");
+    }
+    // At 20 ms a byte a reply takes more than a second.
+    let mut patient = short;
+    link(&mut patient).actuator.reply_timeout = 2.0;
+    run(&patient, "after 8 replies: split replies 5 every 1 bytes").sound();
+}
+
+#[test]
+fn a_reply_cut_anywhere_is_never_a_shorter_number() {
+    let short = plan_of(vec![to(2e-4)]);
+    for at in 1..60 {
+        let ended = run(
+            &short,
+            &format!("after 12 replies: cut reply at {at} bytes"),
+        );
+        ended.sound();
+        // What came of the cut reply spoils the next one, too, where no line's end stands between them.
+        assert!(ended.tally.resent <= 2);
+    }
+}
+
+#[test]
+fn garbage_of_any_kind_is_counted_and_none_of_it_is_used() {
+    for dirt in [
+        "garbage 40 bytes",
+        "fill 3 bytes of 00",
+        "fill 3 bytes of ff",
+        "fill 3 bytes of 0a",
+        "fill 600 bytes of 41",
+    ] {
+        for place in ["before", "inside", "after"] {
+            let ended = run(
+                &plan(),
+                &format!("after 10 replies: {dirt} {place}\nafter 20 replies: {dirt} {place}"),
+            );
+            ended.sound();
+            let Tally {
+                resent, ignored, ..
+            } = ended.tally;
+            assert!(
+                resent + ignored > 0 || dirt.contains("0a"),
+                "{dirt} {place}"
+            );
+        }
+    }
+    let megabyte = run(&plan(), "after 20 replies: fill 1048576 bytes of 41 before");
+    assert!(megabyte.log.len() > 1 << 20);
+    // At 115200 baud it takes a minute and a half to come: longer than any wait, so that the rig is held.
+    assert!(
+        megabyte.reason().contains("no usable answer"),
+        "{}",
+        megabyte.reason()
+    );
+    let raw = megabyte
+        .lines
+        .iter()
+        .map(|line| line.body().to_string().len())
+        .max()
+        .unwrap();
+    assert!(raw < 8 * LONGEST_LINE, "{raw}");
+}
+
+#[test]
+fn every_flipped_bit_of_a_reply_is_seen() {
+    let plan = plan_of(vec![to(2e-4)]);
+    // Of the reading of a rig at rest: the first byte to the last before the line's end.
+    let reading = |bit: Option<usize>| {
+        let text = crate::emulator::testing::SharedText::default();
+        let stand = stand(&plan, "", Log::to(Box::new(text.clone())), 1);
+        let mut rig = open(&plan, &stand).unwrap();
+        let replies = text.text().matches(" actuator < ").count();
+        drop(rig);
+        let script = bit.map_or_else(String::new, |bit| {
+            format!("after {replies} replies: flip bit {bit}")
+        });
+        let stand = self::stand(&plan, &script, Log::none(), 1);
+        rig = open(&plan, &stand).unwrap();
+        rig.propose(&[2e-4], None)
+            .and_then(|_| rig.execute())
+            .and_then(|()| rig.read())
+            .map(|reading| (reading, rig.tally()))
+    };
+    let (sound, tally) = reading(None).unwrap();
+    assert_eq!(tally, Tally::default());
+    let bits = 8 * (sound.raw[0].len() + 1);
+    let mut taken = 0;
+    for bit in 0..bits {
+        let (flipped, tally) =
+            reading(Some(bit)).unwrap_or_else(|fault| panic!("bit {bit}: {fault}"));
+        assert_eq!(
+            (&flipped.displacement, &flipped.force),
+            (&sound.displacement, &sound.force),
+            "bit {bit}"
+        );
+        assert!(tally.resent + tally.ignored > 0, "bit {bit} was not seen");
+        taken += without(Guarding::Checksum, || {
+            usize::from(reading(Some(bit)).is_ok_and(|(_, tally)| tally == Tally::default()))
+        });
+    }
+    assert!(
+        bits > 300 && taken > 30,
+        "without the checksum {taken} of {bits} are taken for good"
+    );
+}
+
+#[test]
+fn a_doubled_a_late_and_an_old_reply_are_ignored() {
+    for (fault, resent) in [
+        ("repeat replies 5", 0),
+        ("replay reply", 1),
+        ("delay reply 0.15 s", 1),
+        ("delay replies 3 0.25 s", 2),
+    ] {
+        let ended = run(&plan(), &format!("after 5 moves: {fault}"));
+        ended.sound();
+        assert!(
+            ended.tally.ignored > 0 && ended.tally.resent >= resent,
+            "{fault}: {:?}",
+            ended.tally
+        );
+    }
+    // A reply of one reading ago, taken for the present one.
+    let old = "after 40 readings: replay replies 9";
+    let seen = run(&plan(), old);
+    seen.sound();
+    let missed = run_without(Guarding::Sequence, &plan(), old);
+    assert!(
+        missed.tally.ignored < seen.tally.ignored,
+        "{:?}, {:?}",
+        missed.tally,
+        seen.tally
+    );
+}

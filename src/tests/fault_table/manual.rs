@@ -1,0 +1,92 @@
+//! The rigs of the manual, each against its own stand-in with the noise that it declares: every one passes its gate, whatever
+//! the dice say.
+
+use super::stage::{header, open, stand};
+use crate::emulator::Log;
+use crate::language::check::{LoadFault, Loader, Options, check};
+use crate::plan::Plan;
+use crate::record::Outcome;
+use crate::record::journal::testing::PowerLoss;
+use crate::record::journal::{Durability, Journal};
+use crate::run::{Unwatched, replay};
+
+/// The plans of the manual use no file but a ground motion.
+struct Ground;
+
+impl Loader for Ground {
+    fn load(&self, path: &str) -> Result<String, LoadFault> {
+        let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
+        if path == "ground.csv" {
+            Ok(ground.to_owned())
+        } else {
+            Err(LoadFault::NotFound)
+        }
+    }
+}
+
+/// Every rig of the page in the plan around it, of which nothing is left but the gate.
+fn rigs() -> Vec<Plan> {
+    let page = include_str!("../../../docs/rigs.md");
+    let plans: Vec<&str> = page
+        .split("```psd\n")
+        .skip(1)
+        .filter_map(|after| after.split("```").next())
+        .collect();
+    let (around, rigs): (Vec<&str>, Vec<&str>) = plans
+        .into_iter()
+        .partition(|plan| !plan.starts_with("rig "));
+    let plan = |rig: &&str| {
+        let name = rig.split_whitespace().nth(1).unwrap().to_owned();
+        let several = rig.contains("  axes ");
+        let around = around
+            .iter()
+            .find(|plan| plan.contains("storey(") == several)
+            .unwrap();
+        let options = Options {
+            rig: Some(name),
+            ..Options::default()
+        };
+        let mut plan = check("rigs.md", &format!("{around}\n{rig}"), &Ground, &options)
+            .plan
+            .unwrap();
+        plan.procedures.clear();
+        plan.requirements.clear();
+        plan.rig.drift = None;
+        plan
+    };
+    rigs.iter().map(plan).collect()
+}
+
+#[test]
+fn every_rig_of_the_manual_passes_its_gate() {
+    let rigs = rigs();
+    assert!(rigs.len() >= 13, "{}", rigs.len());
+    for plan in rigs {
+        for seed in 1..=5 {
+            let name = &plan.rig.name;
+            let stand = stand(&plan, "", Log::none(), seed);
+            let mut rig = open(&plan, &stand).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+            let mut journal = Journal::create(Box::new(PowerLoss::new()), Durability::EveryPromise);
+            replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+            let recorded =
+                replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
+            assert_eq!(
+                recorded.record.outcome,
+                Outcome::Completed,
+                "{name}, dice {seed}"
+            );
+            let passed = recorded
+                .record
+                .events
+                .iter()
+                .filter(|event| event.text.starts_with("gate passed"))
+                .count();
+            assert_eq!(
+                passed,
+                plan.rig.axes().unwrap_or(1),
+                "{name}: {:#?}",
+                recorded.record.events
+            );
+        }
+    }
+}

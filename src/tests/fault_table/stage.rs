@@ -1,0 +1,334 @@
+//! A whole run on a simulated stand. In: a plan and a script of faults. Out: all that was left of it, with the questions
+//! that the tests of faults ask of it.
+
+use crate::emulator::testing::SharedText;
+use crate::emulator::{InProcess, Log, Script, SimulatedPort, of_plan};
+use crate::plan::formula::Formula;
+use crate::plan::{
+    Behind, Datum, DeviceLink, Dialect, Gate, Interval, Limits, Link, Move, Plan, PortPlan,
+    ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
+};
+use crate::record::journal::testing::PowerLoss;
+use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered, recover};
+use crate::record::{EventKind, History, Outcome, Record};
+use crate::rig::real::RealRig;
+use crate::rig::safety::failpoint::{Guarding, without};
+use crate::rig::transport::Port;
+use crate::rig::{Rig as _, RigFault, Tally, Wish, controllers};
+use crate::run::replay;
+use crate::run::replay::Played;
+use crate::run::{Observer, Unwatched};
+pub(super) use crate::tests::testing::header;
+use crate::tests::testing::{elastic_plan, ramp};
+
+/// Of the specimen, N/m.
+pub(super) const STIFFNESS: f64 = 1e5;
+
+/// Silence after which a frame is sent again, s.
+pub(super) const REPLY_TIMEOUT: f64 = 0.1;
+
+/// A ramp of ten steps of 0.1 mm on a native rig, three readings each.
+pub(crate) fn plan() -> Plan {
+    plan_of(vec![ProcedureKind::StiffnessRamp(ramp(1e-4))])
+}
+
+pub(super) fn plan_of(procedures: Vec<ProcedureKind>) -> Plan {
+    let mut plan = elastic_plan(STIFFNESS, procedures);
+    plan.rig.name = "frame".to_owned();
+    plan.rig.settle = Settle {
+        band: 5e-6,
+        force_rate: 0.0,
+        dwell: 0.05,
+        timeout: 0.5,
+    };
+    plan.rig.link = Link::Real(RealLink {
+        actuator: device_link(Dialect::Native),
+        load_cell: None,
+        safe_state: SafeState::Hold,
+        datum: Datum::Machine,
+        gate: Gate {
+            zero: 5.0,
+            probe: 5e-5,
+            stiffness: Interval {
+                low: 5e4,
+                high: 2e5,
+            },
+        },
+        readings: ReadingRules {
+            samples: 3,
+            rate: 50.0,
+            resolution: 1e-6,
+            noise: 0.0,
+            force_range: Interval {
+                low: -2000.0,
+                high: 2000.0,
+            },
+            frozen_after: 6,
+        },
+        watchdog: 3.0,
+        own_speed: 0.01,
+        axes: Vec::new(),
+    });
+    plan.limits = Limits {
+        displacement: Interval {
+            low: -0.002,
+            high: 0.01,
+        },
+        force: Interval {
+            low: -1500.0,
+            high: 1500.0,
+        },
+        speed: Interval {
+            low: 0.0,
+            high: 0.01,
+        },
+        ..Limits::NONE
+    };
+    plan
+}
+
+/// The link of a plan of these tests.
+pub(super) const fn link(plan: &mut Plan) -> &mut RealLink {
+    match &mut plan.rig.link {
+        Link::Real(link) => link,
+        Link::Virtual(_) => panic!("a real rig"),
+    }
+}
+
+pub(super) const fn device_link(dialect: Dialect) -> DeviceLink {
+    let port = PortPlan::Serial {
+        path: String::new(),
+        baud: 115_200,
+    };
+    DeviceLink {
+        port,
+        dialect,
+        reply_timeout: REPLY_TIMEOUT,
+        serial_number: None,
+    }
+}
+
+pub(super) const fn to(place: f64) -> ProcedureKind {
+    ProcedureKind::Move(Move {
+        to: Formula::Constant(place),
+        speed: None,
+    })
+}
+
+/// What is left of a run.
+pub(super) struct Ended {
+    pub(super) record: Record,
+    pub(super) lines: Vec<Line>,
+    pub(super) recovered: Recovered,
+    /// Of the simulator.
+    pub(super) log: String,
+    pub(super) tally: Tally,
+    pub(super) trusted: bool,
+    pub(super) stand: InProcess,
+}
+
+/// Runs a plan on its stand, with this script of faults.
+pub(super) fn run(plan: &Plan, script: &str) -> Ended {
+    run_watched(plan, script, &mut Unwatched).unwrap_or_else(|fault| panic!("{fault}"))
+}
+
+pub(super) fn run_watched(
+    plan: &Plan,
+    script: &str,
+    observer: &mut dyn Observer,
+) -> Result<Ended, RigFault> {
+    let text = SharedText::default();
+    let stand = stand(plan, script, Log::to(Box::new(text.clone())), 1);
+    let mut rig = open(plan, &stand)?;
+    let disk = PowerLoss::new();
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let recorded = replay::record(plan, &mut rig, observer, journal, Box::new(|| None));
+    assert!(recorded.mismatch.is_none() && recorded.fault.is_none());
+    let recovered = recover(&disk.written()).unwrap();
+    // Whatever went wrong: the record alone gives the run again.
+    let played = Played::of(&recovered).unwrap();
+    assert_eq!(replay::agrees(&recovered, &played, plan), Ok(()));
+    let replayed = replay::replay(plan, played);
+    assert_eq!(replayed.mismatch, None);
+    let same = format!("{:?}", replayed.record) == format!("{:?}", recorded.record);
+    assert!(
+        same,
+        "{:?} became {:?}",
+        recorded.record.outcome, replayed.record.outcome
+    );
+    let (tally, trusted) = (rig.tally(), rig.trusted());
+    assert!(
+        stand.stand().bench().violations().is_empty()
+            || !crate::rig::safety::failpoint::on(Guarding::TargetLimits)
+    );
+    Ok(Ended {
+        record: recorded.record,
+        lines: recovered.lines.clone(),
+        recovered,
+        log: text.text(),
+        tally,
+        trusted,
+        stand,
+    })
+}
+
+pub(super) fn stand(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess {
+    let script = Script::parse(script).unwrap_or_else(|error| panic!("{error}"));
+    InProcess::new(of_plan(plan, &script, log, seed, Some(0x7f3a)).unwrap())
+}
+
+/// The plan's rig on a stand.
+pub(super) fn open(plan: &Plan, stand: &InProcess) -> Result<RealRig, RigFault> {
+    open_through(plan, stand, &|port| Box::new(port))
+}
+
+/// The same, with every line `through` something.
+pub(super) fn open_through(
+    plan: &Plan,
+    stand: &InProcess,
+    through: &dyn Fn(SimulatedPort) -> Box<dyn Port>,
+) -> Result<RealRig, RigFault> {
+    let link = plan.rig.link.as_real().unwrap();
+    let attach = |link: &DeviceLink, line: usize| {
+        controllers::open(
+            link,
+            through(stand.port(line)),
+            Box::new(stand.clock()),
+            Wish::default(),
+            plan.rig.settle.timeout,
+        )
+    };
+    let (actuators, cells) = (link.actuators(), link.load_cells());
+    let first_cell = actuators.len();
+    let of_role = |behind: Vec<Behind<'_>>, first: usize| {
+        let member = |(at, Behind { link, axes, .. }): (usize, Behind<'_>)| controllers::Member {
+            device: attach(link, first + at),
+            axes,
+            serial_number: link.serial_number.clone(),
+        };
+        controllers::together(
+            behind.into_iter().enumerate().map(member).collect(),
+            plan.rig.axes().unwrap_or(1),
+        )
+    };
+    let (actuator, load_cell) = (of_role(actuators, 0).unwrap(), of_role(cells, first_cell));
+    RealRig::open(
+        &plan.rig,
+        &plan.limits,
+        actuator,
+        load_cell,
+        Box::new(stand.clock()),
+        Wish::default(),
+    )
+}
+
+/// The same run with one guard off.
+pub(super) fn run_without(guard: Guarding, plan: &Plan, script: &str) -> Ended {
+    without(guard, || run(plan, script))
+}
+
+impl Ended {
+    pub(super) fn completed(&self) -> bool {
+        self.record.outcome == Outcome::Completed
+    }
+
+    pub(super) fn reason(&self) -> &str {
+        match &self.record.outcome {
+            Outcome::Completed => "",
+            Outcome::Aborted { reason }
+            | Outcome::NotReleased { reason }
+            | Outcome::Blocked { reason }
+            | Outcome::Faulted { reason } => reason,
+        }
+    }
+
+    /// The run came to its end with the numbers of a sound rig.
+    pub(super) fn sound(&self) {
+        assert!(
+            self.completed(),
+            "{:?}\n{}",
+            self.record.outcome,
+            self.tail()
+        );
+        for (command, force) in self.forces() {
+            assert!(
+                (force - STIFFNESS * command).abs() < 0.1,
+                "{force} N at {command} m"
+            );
+        }
+        assert_eq!(self.count(EntryKind::Fault), 0);
+    }
+
+    /// Told to hold, with the reason on record, and after that nothing moved and nothing was used.
+    pub(super) fn held(&self) {
+        assert!(!self.completed());
+        let held = self
+            .log
+            .find("actuator > !")
+            .expect("the rig was told to hold");
+        assert!(
+            !self.log[held..].contains(" bench move ") && !self.log[held..].contains(">MOVE"),
+            "{}",
+            self.tail()
+        );
+        assert!(!self.stand.stand().bench().moving());
+        let fault = self
+            .lines
+            .iter()
+            .position(|line| line.kind == EntryKind::Fault)
+            .expect("a FAULT record");
+        let used = [
+            EntryKind::Sample,
+            EntryKind::Intent,
+            EntryKind::Step,
+            EntryKind::End,
+        ];
+        assert!(
+            !self.lines[fault..]
+                .iter()
+                .any(|line| used.contains(&line.kind))
+        );
+    }
+
+    /// What the `nth` record of a kind says.
+    pub(super) fn body(&self, kind: EntryKind, nth: usize) -> serde_json::Value {
+        self.lines
+            .iter()
+            .filter(|line| line.kind == kind)
+            .nth(nth)
+            .unwrap()
+            .body()
+    }
+
+    pub(super) fn count(&self, kind: EntryKind) -> usize {
+        self.lines.iter().filter(|line| line.kind == kind).count()
+    }
+
+    /// Command (m) and force (N) of the ramps' and moves' steps.
+    pub(super) fn forces(&self) -> Vec<(f64, f64)> {
+        let steps = self
+            .record
+            .procedures
+            .iter()
+            .flat_map(|procedure| match &procedure.history {
+                History::Ramp(history) => history.steps.clone(),
+                History::Move(steps) => steps.clone(),
+                _ => Vec::new(),
+            });
+        steps
+            .map(|step| (step.command, step.restoring_force))
+            .collect()
+    }
+
+    pub(super) fn events(&self, kind: EventKind) -> Vec<&str> {
+        let events = self.record.events.iter().filter(|event| event.kind == kind);
+        events.map(|event| event.text.as_str()).collect()
+    }
+
+    /// The end of the simulator's log.
+    pub(super) fn tail(&self) -> String {
+        let lines: Vec<&str> = self.log.lines().collect();
+        lines[lines.len().saturating_sub(12)..].join("\n")
+    }
+}

@@ -1,0 +1,326 @@
+//! Where the rig stands when a run begins, and what it reads there. In: rigs that stand elsewhere than their zero, or whose numbers
+//! cannot be. Out: nothing moves, or everything counts from where they stand.
+
+use super::cut_off::{GoneOn, gone_on, killed};
+use super::forged::{found, judged};
+use super::stage::{
+    Ended, STIFFNESS, device_link, link, open, plan, plan_of, run, run_without, stand, to,
+};
+use super::two_axes::{results, shaken};
+use super::unnumbered::{grbl, modbus};
+use crate::emulator::Log;
+use crate::plan::{Datum, Dialect, ModbusMap, ModbusNumber, Plan};
+use crate::record::journal::EntryKind;
+use crate::record::journal::testing::PowerLoss;
+use crate::record::{EventKind, Outcome};
+use crate::rig::Rig as _;
+use crate::rig::safety::failpoint::Guarding;
+
+const AT_3_MM: &str = "stands at 3 mm";
+
+/// The rig was refused before anything was sent, for this reason.
+fn refused(plan: &Plan, script: &str, why: &str) -> Ended {
+    let ended = run(plan, script);
+    assert!(
+        !ended.completed() && ended.reason().contains(why),
+        "{script}: {}",
+        ended.reason()
+    );
+    let stand = ended.stand.stand();
+    assert!(
+        stand.bench().moves().is_empty() && !stand.bench().moving(),
+        "{script}"
+    );
+    drop(stand);
+    assert_eq!(ended.count(EntryKind::Intent), 0);
+    ended
+}
+
+fn here(mut plan: Plan) -> Plan {
+    link(&mut plan).datum = Datum::Here;
+    plan
+}
+
+#[test]
+fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
+    let ended = refused(
+        &plan(),
+        AT_3_MM,
+        "stands at 3.000 mm, and the plan begins at 0",
+    );
+    assert!(
+        ended.reason().contains("`datum = here`"),
+        "{}",
+        ended.reason()
+    );
+    // Nobody was asked to release it.
+    assert!(ended.events(EventKind::Inspection).is_empty());
+    // Nobody asked where it stands: it was sent 2.9 mm the other way by the first target of the plan.
+    let sent = run_without(Guarding::GateStart, &plan(), AT_3_MM);
+    let least = sent
+        .stand
+        .stand()
+        .bench()
+        .targets()
+        .iter()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    assert!(least < 0.2e-3, "{least}");
+    // As near as it settles at a target is near enough.
+    assert!(run(&plan(), "stands at 0.004 mm").completed());
+    refused(&plan(), "stands at -0.006 mm", "and the plan begins at 0");
+}
+
+#[test]
+fn what_a_specimen_carries_there_is_told() {
+    // The specimen of an earlier run is still bent: 0.1 mm of it are 10 N.
+    let bent = run(&plan_of(vec![to(1e-4)]), "").stand;
+    let mut rig = open(&plan(), &bent).unwrap();
+    let record = crate::run::run(&plan(), &mut rig, &mut crate::run::Unwatched);
+    let Outcome::Faulted { reason } = &record.outcome else {
+        panic!("{:?}", record.outcome)
+    };
+    assert!(reason.contains("as a run without `unload`"), "{reason}");
+    // Nor is it given another zero: it carries load where it stands.
+    let mut rig = open(&here(plan()), &bent).unwrap();
+    let record = crate::run::run(&here(plan()), &mut rig, &mut crate::run::Unwatched);
+    let Outcome::Faulted { reason } = &record.outcome else {
+        panic!("{:?}", record.outcome)
+    };
+    assert!(
+        reason.contains("10.00 N at rest, 5 N is allowed"),
+        "{reason}"
+    );
+    assert_eq!(bent.stand().bench().moves().len(), 3);
+}
+
+#[test]
+fn a_plan_whose_zero_is_where_the_rig_stands_counts_from_there() {
+    for sign in [1.0, -1.0] {
+        for place in [3.0, -41.7] {
+            let mut plan = here(plan());
+            plan.rig.sign = sign;
+            let ended = run(&plan, &format!("stands at {place} mm"));
+            ended.sound();
+            let own = place * 1e-3;
+            assert_eq!(
+                ended.body(EntryKind::Rig, 0)["datum"],
+                serde_json::json!([own])
+            );
+            assert!(
+                ended
+                    .events(EventKind::Note)
+                    .iter()
+                    .any(|note| note.starts_with("the plan's zero is where the rig stands"))
+            );
+            let stand = ended.stand.stand();
+            let targets = stand.bench().targets().to_vec();
+            assert!(
+                (targets[0] - own - sign * 5e-5).abs() < 1e-12,
+                "first the probe: {targets:?}"
+            );
+            assert!(
+                targets.iter().all(|target| (target - own).abs() < 1.1e-3),
+                "{targets:?}"
+            );
+            assert!(stand.bench().violations().is_empty());
+            drop(stand);
+            assert_eq!(judged(&plan, &ended.recovered), Ok(()));
+            // Its limits go with it.
+            let beyond = run(&here(plan_of(vec![to(0.0101)])), AT_3_MM);
+            assert!(
+                matches!(beyond.record.outcome, Outcome::Aborted { .. }),
+                "{}",
+                beyond.reason()
+            );
+        }
+    }
+}
+
+#[test]
+fn every_axis_of_several_counts_from_where_it_stands() {
+    let plan = shaken("0.1 s");
+    let ideal = run(&plan, "");
+    let ended = run(&here(plan), "stands at 30 mm\naxis 2 stands at -17 mm");
+    assert!(ended.completed(), "{}", ended.reason());
+    for ((name, here), (_, ideal)) in results(&ended.record).iter().zip(&results(&ideal.record)) {
+        assert!(
+            (here - ideal).abs() <= 1e-3 * ideal.abs().max(1e-6),
+            "{name}: {here} is not {ideal}"
+        );
+    }
+    refused(
+        &shaken("0.1 s"),
+        "axis 2 stands at 1 mm",
+        "axis 2 stands at −1.000 mm",
+    );
+}
+
+#[test]
+fn a_record_says_no_other_datum_than_its_bytes() {
+    let plan = here(plan());
+    let ended = run(&plan, AT_3_MM);
+    let moved = |value: serde_json::Value| {
+        found(&plan, &ended, EntryKind::Rig, 0, |body| {
+            *body.pointer_mut("/datum").unwrap() = value.clone();
+        })
+        .unwrap_err()
+    };
+    assert!(
+        moved(serde_json::json!([0.0031])).contains("bytes"),
+        "{}",
+        moved(serde_json::json!([0.0031]))
+    );
+    assert!(moved(serde_json::json!([0.003, 0.0])).contains("datum"));
+    let own = found(&plan, &ended, EntryKind::Intent, 2, |body| {
+        *body.pointer_mut("/own/0").unwrap() = 0.00301.into();
+    });
+    assert!(own.unwrap_err().contains("bytes that were sent"));
+    let at_zero = super::stage::plan();
+    assert!(
+        judged(&at_zero, &ended.recovered)
+            .unwrap_err()
+            .contains("datum"),
+        "the plan says the rig's own zero"
+    );
+}
+
+/// Killed at any write, it goes on from the same zero, although it stands elsewhere by then.
+#[test]
+fn a_run_goes_on_from_the_zero_on_record() {
+    let plan = here(plan());
+    let whole = run(&plan, AT_3_MM);
+    for call in (30..90).step_by(7) {
+        let (stand, disk) = (stand(&plan, AT_3_MM, Log::none(), 1), PowerLoss::new());
+        assert!(killed(&plan, &stand, &disk, (call, true)), "call {call}");
+        let GoneOn::ToItsEnd(record) = gone_on(&plan, &stand, &disk, call) else {
+            panic!("call {call}")
+        };
+        assert_eq!(results(&record), results(&whole.record), "call {call}");
+        let stand = stand.stand();
+        let farthest = stand.bench().targets().iter().copied().fold(0.0, f64::max);
+        assert!(
+            (farthest - 4e-3).abs() < 1e-9 && stand.bench().violations().is_empty(),
+            "call {call}: {farthest}"
+        );
+    }
+}
+
+/// A record of an older version, in which nobody asked where the rig stands, is played back as it was.
+#[test]
+fn a_record_that_says_no_datum_is_played_back_as_it_was() {
+    let sent = run_without(Guarding::GateStart, &plan(), AT_3_MM);
+    let alter = |body: &mut serde_json::Value| drop(body.as_object_mut().unwrap().remove("datum"));
+    assert_eq!(found(&plan(), &sent, EntryKind::Rig, 0, alter), Ok(()));
+}
+
+#[test]
+fn a_grbl_as_it_comes_is_run_from_where_it_was_homed() {
+    let ended = run(&grbl(), "");
+    ended.sound();
+    assert_eq!(
+        ended.body(EntryKind::Rig, 0)["datum"],
+        serde_json::json!([-1e-3]),
+        "1 mm off its end switch"
+    );
+    // Its own zero is the end switch, and all above it is beyond its travel.
+    let mut upwards = grbl();
+    upwards.rig.sign = 1.0;
+    upwards.procedures = plan_of(vec![to(1.1e-3)]).procedures;
+    let ended = run(&upwards, "");
+    assert!(ended.reason().contains("error:15"), "{}", ended.reason());
+    let mut own = grbl();
+    link(&mut own).datum = Datum::Machine;
+    refused(&own, "", "stands at 1.000 mm, and the plan begins at 0");
+}
+
+fn swapped(number: ModbusNumber) -> ModbusNumber {
+    match number {
+        ModbusNumber::Int16 => number,
+        ModbusNumber::Int32 { high_word_first } => ModbusNumber::Int32 {
+            high_word_first: !high_word_first,
+        },
+        ModbusNumber::Float32 { high_word_first } => ModbusNumber::Float32 {
+            high_word_first: !high_word_first,
+        },
+    }
+}
+
+/// A drive whose two words are the other way round than its plan says.
+#[test]
+fn a_drive_in_the_other_word_order_is_not_moved() {
+    let float = ModbusNumber::Float32 {
+        high_word_first: true,
+    };
+    let Dialect::Modbus(whole) = modbus()
+        .rig
+        .link
+        .as_real()
+        .unwrap()
+        .actuator
+        .dialect
+        .clone()
+    else {
+        panic!()
+    };
+    let shorts = ModbusMap {
+        number: float,
+        length_unit: 1e-3,
+        speed_unit: 1e-3,
+        force_unit: 1.0,
+        ..whole
+    };
+    for map in [whole, shorts] {
+        for (noise, start) in [
+            (1.0, ""),
+            (1.0, "stands at 0.0013 mm"),
+            (0.0, "stands at 0.0013 mm"),
+        ] {
+            let mut drive = plan();
+            link(&mut drive).actuator = device_link(Dialect::Modbus(map));
+            link(&mut drive).readings.noise = noise;
+            let mut asked = drive.clone();
+            link(&mut asked).actuator = device_link(Dialect::Modbus(ModbusMap {
+                number: swapped(map.number),
+                ..map
+            }));
+            let stand = stand(&drive, start, Log::none(), 1);
+            let outcome = match open(&asked, &stand) {
+                Err(fault) => fault.to_string(),
+                Ok(mut rig) => {
+                    let record = crate::run::run(&asked, &mut rig, &mut crate::run::Unwatched);
+                    let (Outcome::Faulted { reason } | Outcome::Aborted { reason }) =
+                        record.outcome
+                    else {
+                        panic!()
+                    };
+                    assert_eq!(rig.tally().reread, 0, "{reason}");
+                    reason
+                }
+            };
+            assert!(
+                outcome.contains("word order"),
+                "{:?}, noise {noise}: {outcome}",
+                map.number
+            );
+            assert!(
+                stand.stand().bench().moves().is_empty(),
+                "{:?}, noise {noise}: {outcome}",
+                map.number
+            );
+        }
+    }
+}
+
+#[test]
+fn a_number_that_cannot_be_is_refused_before_the_first_move_and_asked_again_after_it() {
+    let at_rest = "after 3 readings: number 9.91E37";
+    let ended = refused(&plan(), at_rest, "nothing has moved");
+    assert_eq!(ended.tally.reread, 0);
+    assert!(run_without(Guarding::AtRest, &plan(), at_rest).completed());
+    let later = run(&plan(), "after 3 moves: number 9.91E37");
+    later.sound();
+    assert_eq!(later.tally.reread, 1);
+    let (_, force) = *later.forces().last().unwrap();
+    assert!((force - STIFFNESS * 1e-3).abs() < 0.1);
+}

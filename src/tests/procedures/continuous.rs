@@ -1,0 +1,394 @@
+//! Continuous runs on the virtual rig: beside step and pause, against closed forms, and played back from their record.
+
+use crate::plan::formula::Formula::Constant;
+use crate::plan::{
+    Contact, Impact, Integrator, Interval, Link, Mode, Move, Plan, ProcedureKind, Stepping, Until,
+    VirtualLink,
+};
+use crate::record::{History, ImpactStep, Outcome, Record};
+use crate::tests::testing::{elastic_plan, every, impact, run_unwatched};
+
+const STIFFNESS: f64 = 300.0;
+const SCALE: f64 = 100.0;
+
+fn steps(record: &Record) -> &[ImpactStep] {
+    assert_eq!(record.outcome, Outcome::Completed);
+    match &record.procedures.last().unwrap().history {
+        History::Impact(impact) => &impact.steps,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Steps by explicit Newmark, corrected to the targets where the actuator does not stop.
+fn explicit(mode: Mode, time_step: f64) -> Stepping {
+    Stepping {
+        mode,
+        integrator: Integrator::Explicit,
+        i_modification: mode != Mode::StepAndPause,
+        ..every(time_step)
+    }
+}
+
+/// Let go at 10 mm from rest, with the striker out of reach, for half a second.
+fn let_go(mode: Mode, damping: f64, coulomb: f64, time_step: f64) -> Plan {
+    let blow = Impact {
+        stepping: explicit(mode, time_step),
+        duration: Constant(0.5),
+        until: Until::Duration,
+        ..impact(Constant(STIFFNESS))
+    };
+    let out = Move {
+        to: Constant(0.01),
+        speed: None,
+    };
+    let mut plan = elastic_plan(
+        STIFFNESS,
+        vec![ProcedureKind::Move(out), ProcedureKind::Impact(blow)],
+    );
+    plan.strikers[0].gap = 1000.0;
+    plan.specimens[0].damping = damping;
+    plan.specimens[0].coulomb = coulomb;
+    plan
+}
+
+const CONTINUOUS: Mode = Mode::Continuous { time_scale: SCALE };
+
+/// Energy that has gone out of the structure by the end, J: what it began with less what it has.
+fn lost(plan: &Plan) -> f64 {
+    let record = run_unwatched(plan);
+    let last = steps(&record).last().unwrap();
+    0.5 * STIFFNESS * (1e-4 - last.computed * last.computed) - 0.5 * last.velocity * last.velocity
+}
+
+/// A damper of c on the cell acts as C = c/scale: E(t) of d'' + (C/M)d' + (K/M)d = 0 in closed form, M = 1 kg.
+#[test]
+fn a_damper_takes_what_the_closed_form_says_and_step_and_pause_shows_none_of_it() {
+    let (damper, end) = (50.0, 0.5);
+    let rate = damper / SCALE / 2.0;
+    let damped = f64::sqrt(STIFFNESS - rate * rate);
+    let decay = 0.01 * f64::exp(-rate * end);
+    let (sine, cosine) = ((damped * end).sin(), (damped * end).cos());
+    let place = decay * (cosine + rate / damped * sine);
+    let velocity = -decay * (damped + rate * rate / damped) * sine;
+    let exact = 0.5 * STIFFNESS * (1e-4 - place * place) - 0.5 * velocity * velocity;
+    assert!(exact > 0.15 * 0.5 * STIFFNESS * 1e-4, "enough to be seen");
+    let error = |time_step| lost(&let_go(CONTINUOUS, damper, 0.0, time_step)) - exact;
+    let (coarse, fine) = (error(1e-3), error(5e-4));
+    assert!((coarse / fine).log2() > 0.9, "{coarse} J, {fine} J");
+    assert!(fine.abs() < 2e-3 * exact, "{fine} J of {exact} J");
+    assert!(lost(&let_go(Mode::StepAndPause, damper, 0.0, 5e-4)).abs() < 1e-4 * exact);
+}
+
+/// Friction takes F_c over all the way that was gone, in either mode: the cell keeps its sign through a pause.
+#[test]
+fn friction_takes_its_force_times_the_way() {
+    let friction = 0.05;
+    for mode in [CONTINUOUS, Mode::StepAndPause] {
+        let plan = let_go(mode, 0.0, friction, 5e-4);
+        let record = run_unwatched(&plan);
+        let way: f64 = steps(&record)
+            .windows(2)
+            .map(|pair| (pair[1].computed - pair[0].computed).abs())
+            .sum();
+        let found = lost(&plan);
+        assert!(
+            (found - friction * way).abs() < 0.02 * friction * way,
+            "{mode:?}: {found} J of {} J",
+            friction * way
+        );
+    }
+}
+
+/// Without damping an ideal rig is asked for the same targets, and reads the same forces there, in either mode: the paper's
+/// first example too, with its blows.
+#[test]
+fn without_damping_both_modes_are_the_same_run() {
+    let by = |mode| {
+        let blow = Impact {
+            stepping: explicit(mode, 1e-3),
+            ..impact(Constant(327.65))
+        };
+        run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(blow)]))
+    };
+    let (one, other) = (by(CONTINUOUS), by(Mode::StepAndPause));
+    assert_eq!(steps(&one).len(), steps(&other).len());
+    for (one, other) in steps(&one).iter().zip(steps(&other)) {
+        assert!(
+            (one.command - other.command).abs() < 1e-14
+                && (one.restoring_force - other.restoring_force).abs() < 1e-11
+        );
+        assert_eq!(one.state, other.state);
+    }
+    // A step takes the time scale times Δt of the rig's time, whatever way it goes.
+    let wall: Vec<f64> = steps(&one).iter().map(|step| step.wall_time).collect();
+    assert!(
+        wall.windows(2)
+            .all(|pair| (pair[1] - pair[0] - 0.1).abs() < 1e-9),
+        "{wall:?}"
+    );
+}
+
+/// What is read beside K·d̃ is the damper at the velocity with which the target is passed, right after a blow too, to the first
+/// order of the step: a blow is an impulse, and nothing of it lasts. (With the blow's acceleration kept, half its jump
+/// of velocity would be felt besides, at any step.) A limit force lasts, and is kept.
+#[test]
+fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
+    let damper = 50.0;
+    let worst = |contact: Contact, time_step: f64| {
+        let blow = Impact {
+            stepping: explicit(CONTINUOUS, time_step),
+            contact,
+            duration: Constant(0.2),
+            until: Until::Duration,
+            ..impact(Constant(STIFFNESS))
+        };
+        let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
+        plan.specimens[0].damping = damper;
+        let record = run_unwatched(&plan);
+        let steps = steps(&record);
+        let (mut worst, mut jump) = (0.0_f64, 0.0_f64);
+        for three in steps.windows(3) {
+            let forces = [0, 1, 2].map(|step: usize| three[step].contact_force);
+            let velocity = (three[2].command - three[0].command) / (three[2].time - three[0].time);
+            jump = jump.max(forces[1] * time_step);
+            // The blow at the end of a step, and the first and last step of a lasting one, are no smooth motion.
+            if forces[1] == 0.0 || (forces[0] == forces[1] && forces[1] == forces[2]) {
+                let felt = three[1].restoring_force - STIFFNESS * three[1].command;
+                worst = worst.max((felt - damper / SCALE * velocity).abs());
+            }
+        }
+        (worst, damper / SCALE * jump)
+    };
+    for (contact, share) in [
+        (Contact::Rigid, 0.02),
+        (
+            Contact::Limit {
+                force: Constant(1500.0),
+            },
+            0.6,
+        ),
+    ] {
+        let ((coarse, jump), (fine, _)) =
+            (worst(contact.clone(), 2e-4), worst(contact.clone(), 1e-4));
+        assert!(coarse < share * jump, "{contact:?}: {coarse} N of {jump} N");
+        assert!(
+            (1.7..4.5).contains(&(coarse / fine)),
+            "{contact:?}: {coarse} N and {fine} N"
+        );
+    }
+}
+
+/// While a target is computed the actuator goes on at the acceleration it had, but not at that of a blow: a jump of velocity is
+/// no trend.
+#[test]
+fn a_blow_is_no_trend_to_go_on_with() {
+    use crate::record::journal::testing::PowerLoss;
+    use crate::record::journal::{Durability, EntryKind, Journal, recover};
+    use crate::rig::VirtualRig;
+    use crate::run::Unwatched;
+    use crate::run::replay::{begin, record};
+
+    let time_step = 1e-3;
+    let blow = Impact {
+        stepping: explicit(CONTINUOUS, time_step),
+        ..impact(Constant(STIFFNESS))
+    };
+    let plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
+    let disk = PowerLoss::new();
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    begin(
+        &mut journal,
+        &crate::tests::testing::header(),
+        &["text".to_owned()],
+    )
+    .unwrap();
+    let whole = record(
+        &plan,
+        &mut VirtualRig::of_plan(&plan),
+        &mut Unwatched,
+        journal,
+        Box::new(|| None),
+    );
+    let hardest = steps(&whole.record)
+        .iter()
+        .map(|step| STIFFNESS * step.computed.abs())
+        .fold(0.0, f64::max);
+    assert!(
+        steps(&whole.record)
+            .iter()
+            .filter(|step| step.contact_force > 0.0)
+            .count()
+            > 1
+    );
+    let lines = recover(&disk.written()).unwrap().lines;
+    let number = |path: &serde_json::Value, name: &str| path[name].as_f64().unwrap();
+    let paths: Vec<serde_json::Value> = lines
+        .into_iter()
+        .filter(|line| line.kind == EntryKind::Intent)
+        .map(|line| line.body()["path"][0].clone())
+        .collect();
+    // Every other path is one ahead; the last is the brake.
+    for ahead in paths.iter().step_by(2).take(paths.len() / 2) {
+        let gained = (number(ahead, "end_velocity") - number(ahead, "start_velocity")).abs();
+        let smooth = 1.01 * hardest * number(ahead, "seconds") / SCALE.powi(2);
+        assert!(
+            gained <= smooth,
+            "{gained} m/s gained, {smooth} m/s by the specimen alone: {ahead}"
+        );
+    }
+}
+
+/// A lag leaves the piston v·lag behind its target: corrected to it, the run is near the ideal one; read as it stands, the
+/// lag feeds energy in, and the monitor holds the rig.
+#[test]
+fn the_reading_is_corrected_to_the_target() {
+    let lagging = |correct: bool| {
+        let mut plan = let_go(CONTINUOUS, 0.0, 0.0, 5e-4);
+        plan.rig.link = Link::Virtual(VirtualLink {
+            lag: 0.1,
+            ..VirtualLink::default()
+        });
+        // The striker flies by: its energy is what the shares are of.
+        plan.limits.tracking_energy_error = Interval {
+            low: 0.0,
+            high: 1e6,
+        };
+        if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
+            blow.stepping.i_modification = correct;
+        }
+        plan
+    };
+    let start = 0.5 * STIFFNESS * 1e-4;
+    let (corrected, raw) = (lost(&lagging(true)), lost(&lagging(false)));
+    assert!(corrected.abs() < 0.01 * start, "{corrected} J of {start} J");
+    // x(t) is read at x(t − lag/scale): C = −K·lag/scale, and the energy grows by exp(K·lag/scale·t).
+    let grown = f64::exp(STIFFNESS * 0.1 / SCALE * 0.5) - 1.0;
+    assert!(
+        (-raw / start - grown).abs() < 0.1 * grown,
+        "{} against {grown}",
+        -raw / start
+    );
+}
+
+#[test]
+fn a_continuous_run_is_stopped_on_its_way_by_what_is_read_there() {
+    let mut plan = let_go(CONTINUOUS, 50.0, 0.0, 1e-3);
+    plan.limits.speed = Interval {
+        low: 0.0,
+        high: 1e-3,
+    };
+    let record = run_unwatched(&plan);
+    assert!(
+        matches!(&record.outcome, Outcome::Aborted { reason } if reason.contains("speed")),
+        "{:?}",
+        record.outcome
+    );
+    let mut plan = let_go(CONTINUOUS, 50.0, 0.0, 1e-3);
+    plan.limits.force = Interval {
+        low: -1.0,
+        high: 10.0,
+    };
+    let record = run_unwatched(&plan);
+    assert!(
+        matches!(&record.outcome, Outcome::Aborted { reason } if reason.contains("force")),
+        "{:?}",
+        record.outcome
+    );
+}
+
+/// What was recorded of a continuous run is the run: played back, the same to the last bit; with one bit of a path turned,
+/// another one.
+#[test]
+fn a_continuous_run_is_played_back_from_its_record() {
+    use crate::record::journal::testing::PowerLoss;
+    use crate::record::journal::{Durability, EntryKind, Journal, recover};
+    use crate::rig::VirtualRig;
+    use crate::run::Unwatched;
+    use crate::run::replay::{Played, begin, record, replay};
+
+    let mut plan = let_go(CONTINUOUS, 50.0, 0.05, 5e-3);
+    plan.rig.link = Link::Virtual(VirtualLink {
+        lag: 0.02,
+        noise: 0.01,
+        seed: 5,
+        ..VirtualLink::default()
+    });
+    let disk = PowerLoss::new();
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    begin(
+        &mut journal,
+        &crate::tests::testing::header(),
+        &["text".to_owned()],
+    )
+    .unwrap();
+    let mut rig = VirtualRig::of_plan(&plan);
+    let whole = record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
+    assert_eq!(
+        whole.record.outcome,
+        Outcome::Completed,
+        "{:?}",
+        whole.record.events
+    );
+    let recovered = recover(&disk.written()).unwrap();
+    let again = replay(&plan, Played::of(&recovered).unwrap());
+    assert_eq!(again.mismatch, None);
+    assert_eq!(format!("{:?}", again.record), format!("{:?}", whole.record));
+
+    let path = recovered
+        .lines
+        .iter()
+        .rposition(|line| line.kind == EntryKind::Intent && !line.body()["path"].is_null())
+        .unwrap();
+    let mut forged = recovered;
+    let velocity = forged.lines[path].body()["path"][0]["start_velocity"]
+        .as_f64()
+        .unwrap();
+    forged.lines[path].alter(|body| {
+        body["path"][0]["start_velocity"] =
+            serde_json::json!(f64::from_bits(velocity.to_bits() ^ 1));
+    });
+    assert!(
+        replay(&plan, Played::of(&forged).unwrap())
+            .mismatch
+            .is_some()
+    );
+}
+
+/// An actuator that is late by 0.35 rad of a free swing is behind by a third of its energy twice a cycle, and gets there: under the
+/// correction by the spring's own K nothing is an error, and the run goes on as if there were no lag; without it, it is held.
+#[test]
+fn a_lag_that_is_taken_back_holds_no_run() {
+    let with = |lag: f64, i_modification: bool| {
+        let mut plan = let_go(CONTINUOUS, 0.0, 0.0, 1e-3);
+        plan.strikers[0].mass = 1e-6;
+        plan.rig.link = Link::Virtual(VirtualLink {
+            lag,
+            ..VirtualLink::default()
+        });
+        // It begins where it was sent to.
+        plan.rig.settle.band = 1e-10;
+        let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind else {
+            panic!()
+        };
+        blow.stepping.i_modification = i_modification;
+        run_unwatched(&plan)
+    };
+    let (late, prompt) = (with(2.0, true), with(0.0, true));
+    let behind = steps(&late)
+        .iter()
+        .map(|step| (step.displacement - step.computed).abs())
+        .fold(0.0, f64::max);
+    assert!(behind > 3e-3, "{behind} m");
+    for (late, prompt) in steps(&late).iter().zip(steps(&prompt)) {
+        assert!((late.computed - prompt.computed).abs() < 1e-9);
+        // Of ½K(10 mm)².
+        assert!(
+            late.tracking.energy_error.abs() < 1e-6 * 0.015,
+            "{:?}",
+            late.tracking
+        );
+    }
+    assert!(
+        matches!(&with(2.0, false).outcome, Outcome::Aborted { reason } if reason.contains("tracking energy"))
+    );
+}

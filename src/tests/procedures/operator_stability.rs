@@ -1,0 +1,172 @@
+//! Runs on specimens that are stiffer than α-OS takes them for, and on such that are not: one spring and storeys, with a stop at
+//! the steps and without one, dampers and friction in the readings.
+
+use crate::plan::formula::Formula::Constant;
+use crate::plan::{
+    Behaviour, Contact, Impact, Integrator, Link, Mode, Plan, ProcedureKind, Stepping, Until,
+    VirtualLink,
+};
+use crate::rig::virtual_rig;
+use crate::run::Unwatched;
+use crate::tests::testing::{elastic_plan, impact, struck_frame};
+
+const CONTINUOUS: Mode = Mode::Continuous { time_scale: 50.0 };
+const NOISY: VirtualLink = VirtualLink {
+    noise: 0.005,
+    resolution: 1e-7,
+    force_resolution: 0.0,
+    lag: 0.05,
+    tracking: 0.0,
+    drift: 0.0,
+    seed: 3,
+    foretold: None,
+};
+
+fn remarks(mut plan: Plan, link: VirtualLink) -> Vec<String> {
+    plan.rig.link = Link::Virtual(link);
+    plan.limits.tracking_energy_error.high = 1e6;
+    let record = crate::run::run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched);
+    record
+        .events
+        .into_iter()
+        .map(|event| event.text)
+        .filter(|text| text.starts_with("W718"))
+        .collect()
+}
+
+fn splitting(stepping: &Stepping, mode: Mode) -> Stepping {
+    let integrator = Integrator::AlphaOs { alpha: 0.0 };
+    Stepping {
+        integrator,
+        mode,
+        i_modification: true,
+        time_step: Constant(0.002),
+        ..stepping.clone()
+    }
+}
+
+/// 300 N/m on 1 kg taken for 250 N/m: 2/√50 s = 0.28 s is left.
+#[test]
+fn a_stiffer_spring_is_told_in_both_modes() {
+    let of = |mode: Mode, operator: f64, link: VirtualLink| {
+        let blow = impact(Constant(operator));
+        let blow = Impact {
+            stepping: splitting(&blow.stepping, mode),
+            until: Until::Duration,
+            ..blow
+        };
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+        plan.strikers[0].mass = 0.5;
+        plan.specimens[0].damping = 10.0;
+        plan.specimens[0].coulomb = 0.05;
+        remarks(plan, link)
+    };
+    for link in [VirtualLink::default(), NOISY] {
+        for mode in [Mode::StepAndPause, CONTINUOUS] {
+            let told = of(mode, 250.0, link);
+            assert_eq!(told.len(), 1, "{mode:?}, {link:?}: {told:?}");
+            assert!(
+                told[0].contains("the specimen is stiffer") && told[0].contains("K_I = 250.0 N/m"),
+                "{}",
+                told[0]
+            );
+        }
+        // No damper and no friction that turns is taken for stiffness.
+        for mode in [Mode::StepAndPause, CONTINUOUS] {
+            assert_eq!(
+                of(mode, 310.0, link),
+                Vec::<String>::new(),
+                "{mode:?}, {link:?}"
+            );
+        }
+    }
+    let measured = of(CONTINUOUS, 250.0, VirtualLink::default());
+    assert!(
+        measured[0].contains(", 300.0 N/m measured")
+            && measured[0].contains("is within (2.000 ms)"),
+        "{measured:?}"
+    );
+}
+
+/// Of two storeys the upper one, 450 N/m where the frame says 300 N/m, between floors of 1 kg each: 2/√(150·2) s = 0.1155 s.
+#[test]
+fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
+    let of = |mode: Mode, upper: f64, link: VirtualLink| {
+        let mut plan = struck_frame();
+        if let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind {
+            blow.stepping = splitting(&blow.stepping, mode);
+            blow.contact = Contact::Limit {
+                force: Constant(200.0),
+            };
+            blow.duration = Constant(0.5);
+        }
+        plan.strikers[0].mass = 0.5;
+        let frame = plan.specimens[0].frame.as_mut().unwrap();
+        for (storey, stiffness) in frame.storeys.iter_mut().zip([500.0, upper]) {
+            storey.behaviour = Behaviour::Elastic { stiffness };
+            (storey.damping, storey.coulomb) = (5.0, 0.02);
+        }
+        remarks(plan, link)
+    };
+    for link in [VirtualLink::default(), NOISY] {
+        for mode in [Mode::StepAndPause, CONTINUOUS] {
+            let told = of(mode, 450.0, link);
+            assert_eq!(told.len(), 1, "{mode:?}, {link:?}: {told:?}");
+            assert!(
+                told[0].contains("storey 2 is stiffer") && told[0].contains("K_I = 300.0 N/m"),
+                "{}",
+                told[0]
+            );
+        }
+        for mode in [Mode::StepAndPause, CONTINUOUS] {
+            assert_eq!(
+                of(mode, 300.0, link),
+                Vec::<String>::new(),
+                "{mode:?}, {link:?}"
+            );
+        }
+    }
+    let told = of(CONTINUOUS, 450.0, VirtualLink::default());
+    assert!(
+        told[0].contains(", 450.0 N/m measured") && told[0].contains("up to 0.1155 s"),
+        "{told:?}"
+    );
+}
+
+/// 300 N/m on 1 kg taken for 100 N/m, in steps that are stable for that: explicit Newmark past 2/√300 s = 0.1155 s, and α-OS past
+/// 2/√200 s = 0.1414 s, turn at every step.
+#[test]
+fn a_response_that_turns_at_every_step_is_told() {
+    for (integrator, told_of) in [
+        (Integrator::Explicit, "stable up to 0.1155 s"),
+        (
+            Integrator::AlphaOs { alpha: 0.0 },
+            "stable up to 0.1414 s only, which it is beyond",
+        ),
+    ] {
+        let of = |stated: f64| {
+            let blow = impact(Constant(stated));
+            let stepping = Stepping {
+                integrator,
+                time_step: Constant(0.15),
+                ..blow.stepping
+            };
+            let blow = Impact {
+                stepping,
+                until: Until::Duration,
+                duration: Constant(3.0),
+                ..blow
+            };
+            let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+            plan.strikers[0].mass = 0.5;
+            remarks(plan, VirtualLink::default())
+        };
+        let told = of(100.0);
+        assert_eq!(told.len(), 1, "{integrator:?}: {told:?}");
+        assert!(
+            told[0].contains(told_of) && told[0].contains("300.0 N/m"),
+            "{}",
+            told[0]
+        );
+    }
+}

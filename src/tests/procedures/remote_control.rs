@@ -1,0 +1,174 @@
+//! A served rig that watches its zeros. In: a client on a virtual rig whose cell drifts. Out: zeros before the first client and
+//! after the last, on record, and the same from the record alone; none after where a person ended it.
+
+use std::cell::Cell;
+
+use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
+use crate::record::journal::testing::PowerLoss;
+use crate::record::journal::{Durability, Journal, recover};
+use crate::record::{Outcome, Record};
+use crate::remote::control::{DrivenStep, Driver, Specimen};
+use crate::rig::{RigFault, virtual_rig};
+use crate::run::replay;
+use crate::run::replay::{Header, Played};
+use crate::run::{Inspection, Observer, Parting};
+use crate::tests::testing::elastic_plan;
+
+/// 0.1 N/s on a cell that may drift by so much, N.
+fn plan(force: f64, after: ZeroAfter) -> Plan {
+    let mut plan = elastic_plan(1e5, Vec::new());
+    plan.rig.link = crate::plan::Link::Virtual(VirtualLink {
+        drift: 0.1,
+        ..VirtualLink::default()
+    });
+    plan.rig.drift = Some(DriftCheck {
+        force,
+        displacement: None,
+        over: 2.0,
+        after,
+    });
+    plan
+}
+
+/// Goes out by half a millimetre, stays, and takes its leave.
+fn client(specimen: &mut Specimen<'_, '_>) {
+    let mut talk = || -> Result<(), RigFault> {
+        specimen.come("127.0.0.1:1".to_owned())?;
+        specimen.propose(&[5e-4])?;
+        specimen.execute()?;
+        specimen.commit();
+        Ok(())
+    };
+    talk().unwrap();
+    specimen.leave(Parting::Closed, "closed by the client".to_owned());
+    specimen.close();
+}
+
+/// Wants the end, or not.
+struct Person {
+    wants: Cell<bool>,
+}
+
+impl Observer for Person {
+    fn stop_requested(&self) -> bool {
+        self.wants.replace(false)
+    }
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::go_on()
+    }
+}
+
+fn header() -> Header {
+    Header {
+        served: Some("nees".to_owned()),
+        ..crate::tests::testing::header()
+    }
+}
+
+/// The record of a served rig; the same from the journal alone says the same.
+fn served(plan: &Plan, wants: bool) -> Record {
+    let (disk, record, steps) = recorded(plan, wants);
+    let again = played(plan, &disk);
+    assert_eq!(format!("{:?}", again.record), format!("{record:?}"));
+    assert_eq!(again.steps, Some(steps));
+    record
+}
+
+/// The record of a served rig from its journal alone.
+fn played(plan: &Plan, disk: &PowerLoss) -> replay::Replayed {
+    let again = replay::replay(
+        plan,
+        Played::of(&recover(&disk.written()).unwrap()).unwrap(),
+    );
+    assert_eq!(again.mismatch, None);
+    again
+}
+
+fn recorded(plan: &Plan, wants: bool) -> (PowerLoss, Record, Vec<DrivenStep>) {
+    let disk = PowerLoss::new();
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let (mut person, mut rig) = (
+        Person {
+            wants: Cell::new(wants),
+        },
+        virtual_rig(plan),
+    );
+    let wall = Box::new(|| None);
+    let (recorded, steps) = replay::record_driven(
+        plan,
+        rig.as_mut(),
+        &mut person,
+        journal,
+        wall,
+        Driver::Client,
+        &mut |specimen| client(specimen),
+    );
+    (disk, recorded.record, steps)
+}
+
+#[test]
+fn the_zeros_are_read_before_the_first_client_and_after_the_last() {
+    let record = served(&plan(5.0, ZeroAfter::Start), false);
+    assert_eq!(record.outcome, Outcome::Completed);
+    let drift = record.drift.unwrap();
+    let axis = drift.axes[0];
+    let (after, seconds) = (
+        axis.after.unwrap(),
+        axis.after.unwrap().time - axis.before.time,
+    );
+    assert!(
+        (axis.before.force_slope - 0.1).abs() < 1e-9
+            && (after.force - axis.before.force - 0.1 * seconds).abs() < 1e-9
+    );
+    assert_eq!(drift.beyond(), None);
+    let strict = served(&plan(0.15, ZeroAfter::Start), false).drift.unwrap();
+    assert!(
+        strict
+            .beyond()
+            .unwrap()
+            .reason
+            .starts_with("the zero of the force drifted by"),
+        "{:?}",
+        strict.beyond()
+    );
+}
+
+#[test]
+fn who_ends_the_serving_has_the_rig_held_where_it_is() {
+    let record = served(&plan(5.0, ZeroAfter::Start), true);
+    assert_eq!(record.outcome, Outcome::Completed);
+    assert_eq!(record.drift.unwrap().axes[0].after, None);
+    assert!(
+        record
+            .events
+            .iter()
+            .any(|event| event.text.contains("stopped on request")),
+        "{:?}",
+        record.events
+    );
+}
+
+#[test]
+fn a_rig_that_does_not_say_is_not_asked() {
+    let mut plan = plan(5.0, ZeroAfter::Nowhere);
+    assert!(served(&plan, false).drift.unwrap().axes[0].after.is_none());
+    plan.rig.drift = None;
+    assert_eq!(served(&plan, false).drift, None);
+}
+
+/// A version that read no zeros of a served rig wrote what this one writes of a rig that does not say how far they may drift.
+#[test]
+fn a_record_without_the_zeros_that_its_plan_asks_for_is_played_back_without_them() {
+    let asking = plan(5.0, ZeroAfter::Start);
+    let mut unread = asking.clone();
+    unread.rig.drift = None;
+    let (disk, record, steps) = recorded(&unread, false);
+    let again = played(&asking, &disk);
+    assert_eq!(
+        (again.record.drift.as_ref(), &again.record.outcome),
+        (None, &Outcome::Completed)
+    );
+    assert_eq!(format!("{:?}", again.record), format!("{record:?}"));
+    assert_eq!(again.steps, Some(steps));
+}

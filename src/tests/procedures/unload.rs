@@ -1,0 +1,254 @@
+//! Where a specimen rests whose load is taken off, against its model moved back in steps of a hundred-thousandth of the way.
+
+use super::frame_sequence::three;
+use crate::physics::specimen::{RestoringForce, SpecimenModel};
+use crate::plan::formula::Formula::Constant;
+use crate::plan::formula::ProcedureId;
+use crate::plan::{
+    Behaviour, Between, BlowOn, Bolted, Escalate, Impact, Link, Move, Plan, ProcedureKind, Unload,
+    VirtualLink,
+};
+use crate::procedures::unload::run::{of_frame, to_rest};
+use crate::record::{History, RampStep, Record};
+use crate::rig::virtual_rig;
+use crate::run::Unwatched;
+use crate::run::session::Session;
+use crate::tests::testing;
+use crate::tests::testing::{elastic_plan, impact, number, run_unwatched};
+
+/// End supports of a beam: 40 kN/m that bear 400 N after 3 mm, faces that slip at 90 N.
+fn bolted() -> Behaviour {
+    Behaviour::Bolted(Bolted {
+        stiffness: 4e4,
+        bearing_force: 400.0,
+        clearance: 3e-3,
+        slip_force: 90.0,
+    })
+}
+
+fn bouc_wen(beta: f64) -> Behaviour {
+    Behaviour::BoucWen {
+        stiffness: 4e4,
+        yield_force: 400.0,
+        hardening: 0.02,
+        sharpness: 2.0,
+        beta,
+    }
+}
+
+/// Moved to `to` (m), and unloaded by this stiffness, N/m.
+fn unloaded(
+    behaviour: &Behaviour,
+    coulomb: f64,
+    to: f64,
+    stiffness: f64,
+    link: VirtualLink,
+) -> Record {
+    let away = ProcedureKind::Move(Move {
+        to: Constant(to),
+        speed: None,
+    });
+    let unload = ProcedureKind::Unload(Unload {
+        specimen: 0,
+        stiffness: Constant(stiffness),
+        within: None,
+        speed: None,
+    });
+    let mut plan = elastic_plan(1.0, vec![away, unload]);
+    plan.specimens[0].behaviour = Some(behaviour.clone());
+    plan.specimens[0].coulomb = coulomb;
+    plan.rig.link = Link::Virtual(link);
+    run_unwatched(&plan)
+}
+
+fn moves(record: &Record) -> &[RampStep] {
+    match &record.procedures[1].history {
+        History::Move(moves) => moves,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Where it carries no load on the way back from the last of these places, at which it feels `friction` against it.
+fn truly_rests(behaviour: &Behaviour, places: &[f64], friction: f64) -> f64 {
+    let mut model = SpecimenModel::new(behaviour);
+    let mut force = 0.0;
+    for place in places {
+        force = model.move_to(*place);
+    }
+    let from = places[places.len() - 1];
+    let step = 1e-5
+        * force.signum()
+        * places
+            .iter()
+            .fold(0.0_f64, |most, place| most.max(place.abs()));
+    let felt = |force: f64| force * step.signum() - friction;
+    (1..200_000)
+        .map(|index| from - step * f64::from(index))
+        .find(|place| felt(model.move_to(*place)) <= 0.0)
+        .unwrap()
+}
+
+/// Supports that come back at twice their stiffness, a Bouc–Wen spring, a beam behind its supports, with and without friction: it never
+/// loads them the other way, and they rest where they do however stiff they were said to be. By hand, the supports from 20 mm: 4.5 mm
+/// back at 80 kN/m, over which the friction turns, then 3.25 mm at 40 kN/m.
+#[test]
+fn a_specimen_rests_where_it_does_whatever_its_stiffness_is_said_to_be() {
+    let beam = Behaviour::Series(vec![Behaviour::Elastic { stiffness: 3e5 }, bolted()]);
+    let beside = Behaviour::Parallel(vec![bouc_wen(0.5), bolted()]);
+    for (behaviour, coulomb) in [
+        (bolted(), 0.0),
+        (bolted(), 60.0),
+        (bouc_wen(1.0), 0.0),
+        (bouc_wen(0.8), 20.0),
+        (beam, 0.0),
+        (beside, 0.0),
+        (Behaviour::Elastic { stiffness: 4e4 }, 50.0),
+    ] {
+        let rests = truly_rests(&behaviour, &[0.02], coulomb);
+        for stiffness in [2e4, 4e4, 6e4, 8e4, 3e5] {
+            let record = unloaded(&behaviour, coulomb, 0.02, stiffness, VirtualLink::default());
+            let (moves, found) = (
+                moves(&record),
+                number(&record, 1, "residual_displacement").0.unwrap(),
+            );
+            let start = behaviour.initial_stiffness() * 0.02;
+            assert!(
+                moves
+                    .iter()
+                    .all(|step| step.restoring_force > -1e-3 * start),
+                "by {stiffness} N/m: {behaviour:?}: {moves:?}"
+            );
+            assert!(
+                (found - rests).abs() < 1e-3 * 0.02,
+                "by {stiffness} N/m: {found} m, not {rests} m: {behaviour:?}"
+            );
+            assert!(
+                moves.len() < 25,
+                "{} moves by {stiffness} N/m: {behaviour:?}",
+                moves.len()
+            );
+        }
+    }
+    assert!((truly_rests(&bolted(), &[0.02], 0.0) - 0.01225).abs() < 1e-6);
+}
+
+/// With noise, by the stiffness that a ramp finds and by one that is half as large.
+#[test]
+fn noise_leaves_it_at_its_place() {
+    for stiffness in [4e4, 8e4] {
+        for seed in 1..30 {
+            let link = VirtualLink {
+                noise: 0.5,
+                resolution: 1e-6,
+                seed,
+                ..VirtualLink::default()
+            };
+            let record = unloaded(&bolted(), 0.0, 0.02, stiffness, link);
+            let (found, u) = number(&record, 1, "residual_displacement");
+            // 3σ is all that readings tell of a load.
+            assert!(
+                (found.unwrap() - 0.01225).abs() < 3.0 * 0.5 / 4e4 + 2.0 * u.unwrap(),
+                "{found:?} m ± {u:?} m"
+            );
+        }
+    }
+}
+
+/// What rests within its friction is let be: one short move shows it, and a remark says what is left.
+#[test]
+fn a_load_within_the_friction_is_told_to_be_left() {
+    let record = unloaded(
+        &Behaviour::Elastic { stiffness: 4e4 },
+        500.0,
+        0.01,
+        4e4,
+        VirtualLink::default(),
+    );
+    assert_eq!(moves(&record).len(), 1);
+    assert!(
+        record
+            .events
+            .iter()
+            .any(|event| event.text.starts_with("the load could not be taken off"))
+    );
+}
+
+/// After a blow of a row the supports rest where the same path leads their model, and so the next blow begins there.
+#[test]
+fn a_row_of_blows_rests_there_too() {
+    let blow = Impact {
+        duration: Constant(0.2),
+        ..impact(Constant(4e4))
+    };
+    let row = Escalate {
+        own: ProcedureId(0),
+        blow: BlowOn::Specimen(Impact {
+            stepping: testing::every(2e-4),
+            ..blow
+        }),
+        velocities: [0.8, 1.0].map(Constant).to_vec(),
+        energies: None,
+        condition: Vec::new(),
+        between: Between::Unload,
+        inspect_between: false,
+    };
+    let mut plan = elastic_plan(4e4, vec![ProcedureKind::Escalate(row)]);
+    plan.specimens[0].behaviour = Some(bolted());
+    let record = run_unwatched(&plan);
+    let History::Escalate(history) = &record.procedures[0].history else {
+        panic!()
+    };
+    let mut places = Vec::new();
+    for blow in &history.blows {
+        places.extend(blow.impact().steps.iter().map(|step| step.command));
+        let rests = truly_rests(&bolted(), &places, 0.0);
+        let found = blow.rest_of_struck().unwrap().0;
+        assert!((found - rests).abs() < 2e-5, "{found} m, not {rests} m");
+        places.push(found);
+    }
+    assert!(
+        places.iter().any(|place| *place > 0.008),
+        "the supports bear"
+    );
+}
+
+/// Storeys whose shears come back twice as stiff rest by themselves, each with its own friction.
+#[test]
+fn storeys_are_never_loaded_the_other_way() {
+    let mut plan: Plan = three(0.05);
+    let frame = plan.specimens[0].frame.as_mut().unwrap();
+    for (storey, coulomb) in frame.storeys.iter_mut().zip([0.0, 1e3, 0.0]) {
+        storey.behaviour = Behaviour::BoucWen {
+            stiffness: storey.stiffness,
+            yield_force: 0.01 * storey.stiffness,
+            hardening: 0.05,
+            sharpness: 1.0,
+            beta: 1.0,
+        };
+        storey.coulomb = coulomb;
+    }
+    let storeys = frame.storeys.clone();
+    let mut rig = virtual_rig(&plan);
+    let mut watched = Unwatched;
+    let mut session = Session::begin(&plan, rig.as_mut(), &mut watched)
+        .unwrap_or_else(|_| panic!("the rig is refused"));
+    let pushed = [0.025, 0.03, 0.015];
+    session.go_to_all(&[0.025, 0.055, 0.07], None).unwrap();
+    let mut steps = Vec::new();
+    let unloading = of_frame(plan.specimens[0].frame.as_ref().unwrap()).unwrap();
+    let rest = to_rest(unloading, None, None, 0, &mut session, &mut steps).unwrap();
+    for (index, storey) in storeys.iter().enumerate() {
+        let rests = truly_rests(&storey.behaviour, &[pushed[index]], storey.coulomb);
+        let found = rest.drift()[index];
+        assert!(
+            (found - rests).abs() < 1e-3 * pushed[index],
+            "storey {index}: {found} m, not {rests} m"
+        );
+    }
+    for step in &steps {
+        let shears: Vec<f64> = (0..3)
+            .map(|storey| step.restoring_force[storey..].iter().sum())
+            .collect();
+        assert!(shears.iter().all(|shear| *shear > -100.0), "{shears:?} N");
+    }
+}

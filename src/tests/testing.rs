@@ -1,0 +1,257 @@
+//! Plans built by hand for tests of what comes after `check`.
+
+use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
+use crate::plan::{
+    Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, Integrator, Limits, Link, Mode,
+    Plan, Procedure, ProcedureKind, RampFit, Report, RigPlan, Settle, ShakeDamping, Specimen,
+    Stepping, StiffnessRamp, Storey, StoreyImpact, Striker, Until, VirtualLink,
+};
+use crate::record::{NamedResult, Record};
+use crate::rig::virtual_rig;
+use crate::run::replay::{Header, HeaderFile, RULES};
+use crate::uncertainty::Source;
+
+/// Nothing but an ideal virtual rig.
+pub(crate) fn empty_plan() -> Plan {
+    Plan {
+        title: "by hand".to_owned(),
+        particulars: Vec::new(),
+        parameters: Vec::new(),
+        specimens: Vec::new(),
+        strikers: Vec::new(),
+        grounds: Vec::new(),
+        rig: RigPlan {
+            name: "ideal".to_owned(),
+            link: Link::Virtual(VirtualLink::default()),
+            settle: Settle {
+                band: 0.0,
+                force_rate: 0.0,
+                dwell: 0.0,
+                timeout: 60.0,
+            },
+            sign: 1.0,
+            calibration: Calibration::default(),
+            drift: None,
+        },
+        limits: Limits::NONE,
+        procedures: Vec::new(),
+        requirements: Vec::new(),
+        decision_rule: DecisionRule::Simple,
+        report: Report {
+            title: None,
+            figures: Vec::new(),
+            formats: Vec::new(),
+            sign: Vec::new(),
+        },
+        golden: crate::plan::Golden::default(),
+        rehearses: None,
+        unloads_at_once: false,
+        files: Vec::new(),
+        settings: Vec::new(),
+    }
+}
+
+/// An elastic specimen of 1 kg, a striker of 10 kg at 1 m/s, and these procedures, named `p0`, `p1`, …
+pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Plan {
+    let named = |(index, kind)| Procedure {
+        name: format!("p{index}"),
+        kind,
+    };
+    Plan {
+        specimens: vec![Specimen::new(
+            "beam",
+            1.0,
+            Some(Behaviour::Elastic { stiffness }),
+        )],
+        strikers: vec![Striker::new("pendulum", 10.0, 1.0)],
+        procedures: procedures.into_iter().enumerate().map(named).collect(),
+        ..empty_plan()
+    }
+}
+
+/// A frame of two storeys of 1 kg, the upper of which is struck by 10 kg at 1 m/s: steps of 10 ms.
+pub(crate) fn struck_frame() -> Plan {
+    let storey = |stiffness, yield_force| {
+        Storey::new(
+            1.0,
+            stiffness,
+            Behaviour::Bilinear {
+                stiffness,
+                yield_force,
+                hardening: 0.05,
+            },
+        )
+    };
+    let frame = Frame::of_storeys(vec![storey(500.0, 20.0), storey(300.0, 15.0)]);
+    let blow = StoreyImpact {
+        specimen: 0,
+        striker: 0,
+        struck: 1,
+        damping: ShakeDamping::Rayleigh(Formula::Constant(0.02)),
+        damping_uncertainty: 0.0,
+        contact: Contact::Restitution {
+            coefficient: Formula::Constant(0.5),
+        },
+        stepping: Stepping {
+            max_tangent_ratio: Formula::Constant(2.0),
+            ..every(0.01)
+        },
+        duration: Formula::Constant(0.25),
+        until: Until::Duration,
+    };
+    let mut plan = elastic_plan(1.0, vec![ProcedureKind::StoreyImpact(blow)]);
+    plan.specimens[0].frame = Some(frame);
+    plan.specimens[0].behaviour = None;
+    plan.specimens[0].mass = 2.0;
+    plan
+}
+
+/// Ten outward steps of `step` (m), one sample each, no pause.
+pub(crate) fn ramp(step: f64) -> StiffnessRamp {
+    StiffnessRamp {
+        specimen: 0,
+        displacements: (1..=10)
+            .map(|index| Formula::Constant(f64::from(index) * step))
+            .collect(),
+        pause: Formula::Constant(0.0),
+        samples: 1,
+        repeats: 1,
+        return_path: false,
+        fit: RampFit::Linear,
+        relaxation: None,
+        speed: None,
+    }
+}
+
+/// Example 1 of Melo et al. 2006: M 1 kg, Ms 10 kg, V0 1 m/s, Δt 10 ms; K there is 327.65 N/m.
+pub(crate) fn impact(stiffness: Formula) -> Impact {
+    Impact {
+        specimen: 0,
+        striker: 0,
+        mass: Formula::Constant(1.0),
+        mass_uncertainty: 0.0,
+        stiffness,
+        damping: Formula::Constant(0.0),
+        contact: Contact::Rigid,
+        stepping: every(0.01),
+        duration: Formula::Constant(0.5),
+        until: Until::StrikerStop,
+    }
+}
+
+/// Results as they are of another procedure: its time step is the source then.
+pub(crate) fn as_of(procedure: usize, results: &[NamedResult]) -> Vec<NamedResult> {
+    let mut results = results.to_vec();
+    for part in results
+        .iter_mut()
+        .flat_map(|result| &mut result.contributions)
+    {
+        if let Source::TimeStep { procedure: own } = &mut part.source {
+            *own = ProcedureId(procedure);
+        }
+    }
+    results
+}
+
+/// Steps of `time_step` (s) by the tangent form, with no pause.
+pub(crate) fn every(time_step: f64) -> Stepping {
+    Stepping {
+        integrator: Integrator::Tangent,
+        allow_unstable: false,
+        i_modification: false,
+        mode: Mode::StepAndPause,
+        time_step: Formula::Constant(time_step),
+        pause: Formula::Constant(0.0),
+        max_tangent_ratio: Formula::Constant(10.0),
+        inspect: Vec::new(),
+    }
+}
+
+pub(crate) fn result_of(procedure: usize, name: &'static str) -> Formula {
+    Formula::Result(ResultReference {
+        procedure: ProcedureId(procedure),
+        name,
+        part: Part::Value,
+    })
+}
+
+pub(crate) fn run_unwatched(plan: &Plan) -> Record {
+    crate::run::run(plan, &mut *virtual_rig(plan), &mut crate::run::Unwatched)
+}
+
+/// Value and uncertainty of a result of the procedure `p0`, `p1`, …
+pub(crate) fn number(record: &Record, procedure: usize, name: &str) -> (Option<f64>, Option<f64>) {
+    match record.procedures[procedure]
+        .result(name)
+        .map(|result| &result.value)
+    {
+        Some(ResultValue::Number { value, uncertainty }) => (*value, *uncertainty),
+        other => panic!("{name} is {other:?}"),
+    }
+}
+
+/// Entries of a result that is a list, of the procedure `p0`, `p1`, …
+pub(crate) fn list(record: &Record, procedure: usize, name: &str) -> Vec<f64> {
+    match record.procedures[procedure]
+        .result(name)
+        .map(|result| &result.value)
+    {
+        Some(ResultValue::List(values)) => values.clone(),
+        other => panic!("{name} is {other:?}"),
+    }
+}
+
+/// What a record begins with that nobody looks at.
+pub(crate) fn header() -> Header {
+    Header {
+        run_id: "0123456789abcdef".to_owned(),
+        psd: "0".to_owned(),
+        build: "0".to_owned(),
+        rules: RULES,
+        toolchain: String::new(),
+        files: vec![HeaderFile {
+            name: "a.psd".to_owned(),
+            sha256: String::new(),
+        }],
+        settings: Vec::new(),
+        rig: None,
+        equipment: None,
+        rehearsal: false,
+        served: None,
+        date: None,
+        operator: None,
+        host: None,
+        began: None,
+    }
+}
+
+/// Uniform numbers in (0, 1), the same in every run: a Lehmer generator.
+pub(crate) struct Uniform(pub(crate) u64);
+
+impl Uniform {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0 * 48_271 % 2_147_483_647;
+        f64::from(u32::try_from(self.0).unwrap()) / 2_147_483_647.0
+    }
+
+    /// Standard normal by Box and Muller.
+    pub(crate) fn normal(&mut self) -> f64 {
+        let (radius, angle) = (
+            (-2.0 * self.next().ln()).sqrt(),
+            std::f64::consts::TAU * self.next(),
+        );
+        radius * angle.cos()
+    }
+}
+
+/// Standard deviation of numbers about their mean.
+pub(crate) fn scatter(values: &[f64]) -> f64 {
+    let count = f64::from(u32::try_from(values.len()).unwrap());
+    let mean = values.iter().sum::<f64>() / count;
+    (values
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>()
+        / (count - 1.0))
+        .sqrt()
+}

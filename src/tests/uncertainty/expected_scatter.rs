@@ -1,0 +1,269 @@
+//! Standard uncertainties that a dry run foretells of fits, against those that runs with other noise come to.
+
+use crate::physics::identification::multilinear_fit::BreakCount;
+use crate::physics::relaxation::fit::RelaxationModel;
+use crate::plan::formula::Formula;
+use crate::plan::{
+    Behaviour, Cycle, DampingSweep, Level, Link, Plan, ProcedureKind, RampFit, Sides,
+    StiffnessRamp, VirtualLink, WatchedHold, WatchedModel,
+};
+use crate::record::History;
+use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
+
+const STIFFNESS: f64 = 3e5;
+
+fn constant(value: f64) -> Formula {
+    Formula::Constant(value)
+}
+
+/// The same plan on an ideal copy of its rig, as `psd check --explain` runs it.
+fn dry(plan: &Plan) -> Plan {
+    let mut ideal = plan.clone();
+    ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
+    ideal
+}
+
+/// The mean of u² of so many runs over the u² that is foretold of the result.
+fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
+    let with = |seed: u64| {
+        let mut plan = plan.clone();
+        plan.rig.link = Link::Virtual(VirtualLink { seed, ..link });
+        plan
+    };
+    let foretold = number(&run_unwatched(&dry(&with(1))), 0, name)
+        .1
+        .expect("foretold");
+    let square = |seed: u32| {
+        number(&run_unwatched(&with(u64::from(seed) + 1)), 0, name)
+            .1
+            .expect("told")
+            .powi(2)
+    };
+    (0..runs).map(square).sum::<f64>() / f64::from(runs) / (foretold * foretold)
+}
+
+/// s² of ν degrees of freedom over N runs has the standard deviation √(2/(Nν)) of σ²: no more than four of it, and `curved` for what a
+/// fit that is not linear makes of it.
+fn assert_foretold(
+    plan: &Plan,
+    link: VirtualLink,
+    names: &[&str],
+    (runs, degrees, curved): (u32, f64, f64),
+) {
+    for name in names {
+        let found = ratio(plan, link, name, runs);
+        let within = 4.0 * (2.0 / (f64::from(runs) * degrees)).sqrt() + curved;
+        assert!(
+            (found - 1.0).abs() < within,
+            "{name}: u² of runs is {found} of what is foretold, within {within}"
+        );
+    }
+}
+
+fn ramp_plan(plan: StiffnessRamp) -> Plan {
+    elastic_plan(STIFFNESS, vec![ProcedureKind::StiffnessRamp(plan)])
+}
+
+const NOISY: VirtualLink = VirtualLink {
+    noise: 2.0,
+    resolution: 0.0,
+    force_resolution: 0.0,
+    lag: 0.0,
+    tracking: 0.0,
+    drift: 0.0,
+    seed: 1,
+    foretold: None,
+};
+
+/// Ten points, twice over, of three samples each.
+#[test]
+fn the_line_of_a_ramp_is_foretold() {
+    let plan = ramp_plan(StiffnessRamp {
+        samples: 3,
+        repeats: 2,
+        ..ramp(1e-4)
+    });
+    assert_foretold(
+        &plan,
+        NOISY,
+        &["stiffness", "intercept_force"],
+        (100, 18.0, 0.0),
+    );
+    // By hand: σ/√3 over √Sxx.
+    let squares: f64 = 2.0
+        * (1..=10)
+            .map(|step| (1e-4 * (f64::from(step) - 5.5)).powi(2))
+            .sum::<f64>();
+    let mut noisy = plan.clone();
+    noisy.rig.link = Link::Virtual(NOISY);
+    let foretold = number(&run_unwatched(&dry(&noisy)), 0, "stiffness")
+        .1
+        .unwrap();
+    assert!(
+        (foretold / (2.0 / 3.0_f64.sqrt() / squares.sqrt()) - 1.0).abs() < 1e-9,
+        "{foretold}"
+    );
+    // Quanta of force and displacement beside the noise, and alone: what they scatter by is of no normal distribution.
+    let rounded = VirtualLink {
+        force_resolution: 5.0,
+        resolution: 1.3e-5,
+        ..NOISY
+    };
+    assert_foretold(&plan, rounded, &["stiffness"], (100, 18.0, 0.1));
+    let quiet = VirtualLink {
+        noise: 0.0,
+        force_resolution: 7.3,
+        ..NOISY
+    };
+    assert_foretold(&plan, quiet, &["stiffness"], (1, 1e9, 0.35));
+    // An ideal rig has nothing to foretell.
+    assert!(
+        number(&run_unwatched(&dry(&plan)), 0, "stiffness")
+            .1
+            .unwrap()
+            < 1e-6
+    );
+}
+
+#[test]
+fn both_lines_of_a_ramp_past_yield_are_foretold() {
+    let displacements = (1..=24)
+        .map(|step| constant(1e-4 * f64::from(step)))
+        .collect();
+    let mut plan = ramp_plan(StiffnessRamp {
+        displacements,
+        fit: RampFit::Bilinear,
+        ..ramp(1e-4)
+    });
+    plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
+        stiffness: STIFFNESS,
+        yield_force: 400.0,
+        hardening: 0.2,
+    });
+    let names = [
+        "stiffness",
+        "yield_force",
+        "yield_displacement",
+        "hardened_stiffness",
+        "hardening",
+    ];
+    assert_foretold(&plan, NOISY, &names, (60, 20.0, 0.03));
+    let ProcedureKind::StiffnessRamp(asked) = &mut plan.procedures[0].kind else {
+        panic!()
+    };
+    asked.fit = RampFit::Multilinear(BreakCount::Exactly(1));
+    assert_foretold(&plan, NOISY, &names, (60, 20.0, 0.03));
+}
+
+#[test]
+fn damping_is_foretold() {
+    let sweep = DampingSweep {
+        specimen: 0,
+        velocities: [1e-3, 4e-3, 1e-2].map(Formula::Constant).to_vec(),
+        stroke: constant(1e-3),
+        about: None,
+        stiffness: constant(2e4),
+        rate: None,
+    };
+    let mut plan = elastic_plan(2e4, vec![ProcedureKind::DampingSweep(sweep)]);
+    (plan.specimens[0].damping, plan.specimens[0].coulomb) = (400.0, 2.0);
+    assert_foretold(
+        &plan,
+        NOISY,
+        &["damping", "coulomb_force", "damping_ratio"],
+        (20, 140.0, 0.0),
+    );
+    let rounded = VirtualLink {
+        noise: 1.0,
+        force_resolution: 3.0,
+        ..NOISY
+    };
+    assert_foretold(&plan, rounded, &["damping"], (20, 140.0, 0.05));
+}
+
+#[test]
+fn the_loops_of_a_cycle_are_foretold() {
+    let cycle = Cycle {
+        specimen: 0,
+        levels: vec![Level {
+            amplitude: constant(0.02),
+            cycles: 2,
+        }],
+        sides: Sides::Both,
+        about: constant(0.0),
+        points: 10,
+        samples: 4,
+        pause: constant(0.0),
+        speed: None,
+        rate: None,
+        inspect: Vec::new(),
+        fit: None,
+        evenly: false,
+    };
+    let mut plan = elastic_plan(1000.0, vec![ProcedureKind::Cycle(cycle)]);
+    plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
+        stiffness: 1000.0,
+        yield_force: 10.0,
+        hardening: 0.1,
+    });
+    // Both by the same draws.
+    let link = VirtualLink {
+        noise: 0.05,
+        force_resolution: 0.02,
+        resolution: 1e-5,
+        ..NOISY
+    };
+    assert_foretold(
+        &plan,
+        link,
+        &["dissipated_energy", "stiffness", "last_stiffness"],
+        (5, 1e9, 0.05),
+    );
+}
+
+#[test]
+fn what_holds_tell_is_foretold() {
+    let plan = |model| {
+        let relaxation = Some(WatchedHold {
+            readings: 20,
+            model,
+        });
+        let displacements = (1..=6)
+            .map(|step| constant(2e-4 * f64::from(step)))
+            .collect();
+        let mut plan = ramp_plan(StiffnessRamp {
+            displacements,
+            pause: constant(8.0),
+            relaxation,
+            ..ramp(1e-4)
+        });
+        let of = Box::new(Behaviour::Elastic {
+            stiffness: STIFFNESS,
+        });
+        plan.specimens[0].behaviour = Some(Behaviour::Maxwell {
+            of,
+            stiffness: 1e5,
+            time_constant: 2.0,
+        });
+        plan
+    };
+    for model in [
+        RelaxationModel::Exponential,
+        RelaxationModel::StandardLinearSolid,
+    ] {
+        let decay = plan(WatchedModel::Decay {
+            model,
+            accuracy: Some(1.0),
+        });
+        let names = ["time_constant", "remaining_relaxation", "needed_pause"];
+        let noisy = VirtualLink {
+            noise: 0.3,
+            ..NOISY
+        };
+        assert_foretold(&decay, noisy, &names, (20, 100.0, 0.05));
+        let record = run_unwatched(&decay);
+        assert!(
+            matches!(&record.procedures[0].history, History::Ramp(ramp) if ramp.relaxation.is_some())
+        );
+    }
+}

@@ -1,0 +1,182 @@
+//! Uncertainty of frames whose matrices are uncertain as a whole, and of the lists of a row of blows: against the virtual rig run
+//! again with one input moved.
+
+use super::frame::{constant, entry, from, shaken, storey};
+use crate::plan::formula::ResultValue;
+use crate::plan::{
+    Behaviour, Between, BlowOn, Contact, Frame, Plan, ProcedureKind, ShakeDamping, Stepping,
+};
+use crate::record::Record;
+use crate::rig::virtual_rig;
+use crate::run::Unwatched;
+use crate::tests::procedures::frame_sequence::rising;
+use crate::tests::testing::{every, number, run_unwatched};
+use crate::uncertainty::{Contribution, Source, combined};
+
+/// Two storeys by their matrices, damped, on ground that jumps to 1 m/s².
+fn of_matrices() -> Plan {
+    let mut plan = shaken(
+        vec![storey(2.0, 3000.0), storey(1.5, 1800.0)],
+        vec![1.0; 31],
+        5e-4,
+    );
+    let ProcedureKind::Shake(shake) = &mut plan.procedures[0].kind else {
+        panic!()
+    };
+    shake.damping = ShakeDamping::Rayleigh(constant(0.05));
+    let frame = plan.specimens[0].frame.as_mut().unwrap();
+    frame.storeys.clear();
+    plan
+}
+
+/// The plan with its matrices times these factors; the rig bends the one that it was built of.
+fn run_on(rig_of: &Plan, plan: &Plan) -> Record {
+    crate::run::run(plan, virtual_rig(rig_of).as_mut(), &mut Unwatched)
+}
+
+const NAMES: [(&str, usize); 8] = [
+    ("max_displacement", 0),
+    ("max_displacement", 1),
+    ("max_drift", 0),
+    ("max_drift", 1),
+    ("final_drift", 1),
+    ("max_base_shear", 0),
+    ("periods", 0),
+    ("periods", 1),
+];
+
+#[test]
+fn a_matrix_moves_as_a_whole() {
+    let share = [0.01, 0.02];
+    let mut plan = of_matrices();
+    plan.specimens[0].frame.as_mut().unwrap().matrix_uncertainty = share;
+    let told = run_unwatched(&plan);
+    let with = |factors: [f64; 2]| {
+        let mut plan = of_matrices();
+        let frame: Frame = plan.specimens[0].frame.clone().unwrap();
+        plan.specimens[0].frame = Some(frame.scaled(factors));
+        run_on(&of_matrices(), &plan)
+    };
+    let mut compared = 0;
+    for (source, [up, down]) in [
+        (
+            Source::MassMatrix(0),
+            [with([1.0 + share[0], 1.0]), with([1.0 - share[0], 1.0])],
+        ),
+        (
+            Source::StiffnessMatrix(0),
+            [with([1.0, 1.0 + share[1]]), with([1.0, 1.0 - share[1]])],
+        ),
+    ] {
+        for (name, place) in NAMES {
+            let (value, parts) = entry(&told, name, place);
+            let found = 0.5 * (entry(&up, name, place).0 - entry(&down, name, place).0);
+            let foretold = from(&parts, source);
+            // The ends of steps are told of the reruns, what is between them here.
+            assert!(
+                (found - foretold).abs() < 2e-4 * value.abs(),
+                "{name}[{place}] by {source:?}: {foretold}, of reruns {found}"
+            );
+            compared += usize::from(found.abs() > 2e-3 * value.abs());
+        }
+    }
+    assert!(compared >= 9, "only {compared} that are any");
+    // T = 2π√(M/K) of both modes, and what is struck is as heavy as the whole.
+    for mode in 0..2 {
+        let (value, parts) = entry(&told, "periods", mode);
+        assert!((combined(&parts).unwrap() / value - 0.5 * 0.01_f64.hypot(0.02)).abs() < 1e-4);
+    }
+    let frame = plan.specimens[0].frame.as_ref().unwrap();
+    assert!((frame.total_mass_uncertainty() - 0.035).abs() < 1e-12);
+}
+
+/// An elastic frame of two storeys, struck at three speeds.
+fn row(velocities: &[f64], striker: f64) -> Plan {
+    let mut plan = rising(velocities, Between::Unload);
+    let ProcedureKind::Escalate(row) = &mut plan.procedures[0].kind else {
+        panic!()
+    };
+    let BlowOn::Storey(blow) = &mut row.blow else {
+        panic!()
+    };
+    blow.contact = Contact::Restitution {
+        coefficient: constant(0.0),
+    };
+    blow.stepping = Stepping {
+        max_tangent_ratio: constant(2.0),
+        ..every(2e-3)
+    };
+    for storey in &mut plan.specimens[0].frame.as_mut().unwrap().storeys {
+        storey.behaviour = Behaviour::Elastic {
+            stiffness: storey.stiffness,
+        };
+    }
+    plan.strikers[0].mass = striker;
+    plan
+}
+
+fn parts_of(record: &Record, name: &str, place: usize) -> (f64, Vec<Contribution>) {
+    let result = record.procedures[0].result(name).unwrap();
+    match &result.value {
+        ResultValue::List(_) => entry(record, name, place),
+        ResultValue::Number { value, .. } => (value.unwrap(), result.contributions.clone()),
+    }
+}
+
+/// Every list of a row of blows on a storey: half the difference of rows with a heavier and a lighter, a faster and a slower
+/// striker.
+#[test]
+fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
+    let velocities = [0.4, 0.7, 1.0];
+    let mut plan = row(&velocities, 10.0);
+    plan.strikers[0].mass_uncertainty = 0.1;
+    plan.strikers[0].velocity_uncertainty = 0.01;
+    let told = run_unwatched(&plan);
+    // The striker's stated velocity is 1 m/s: each blow is as uncertain in proportion.
+    let faster = |by: f64| {
+        run_unwatched(&row(
+            &velocities.map(|velocity| velocity * (1.0 + by)),
+            10.0,
+        ))
+    };
+    let heavier = |by: f64| run_unwatched(&row(&velocities, 10.0 + by));
+    let moved = [
+        (Source::StrikerVelocity(0), [faster(0.01), faster(-0.01)]),
+        (Source::StrikerMass(0), [heavier(0.1), heavier(-0.1)]),
+    ];
+    let lists = [
+        ("velocities", 3),
+        ("blow_energies", 3),
+        ("max_displacements", 3),
+        ("absorbed_energies", 3),
+        ("impulses", 3),
+        ("max_drift", 2),
+        ("storey_energy", 2),
+        ("last_passed_energy", 1),
+        ("max_displacement", 1),
+    ];
+    let mut compared = 0;
+    for (source, [up, down]) in &moved {
+        for (name, count) in lists {
+            for place in 0..count {
+                let (value, parts) = parts_of(&told, name, place);
+                let found = 0.5 * (parts_of(up, name, place).0 - parts_of(down, name, place).0);
+                let foretold = from(&parts, *source);
+                let smooth = parts
+                    .iter()
+                    .all(|part| part.smooth || part.amount.abs() < 1e-3 * value.abs());
+                let within = if smooth { 1e-3 } else { 1e-2 };
+                assert!(
+                    (found - foretold).abs() < within * value.abs(),
+                    "{name}[{place}] by {source:?}: {foretold}, of reruns {found}"
+                );
+                compared += usize::from(found.abs() > 2e-3 * value.abs());
+            }
+        }
+    }
+    assert!(compared >= 24, "only {compared} that are any");
+    // Where an elastic frame rests is no matter of its striker.
+    let (rest, parts) = parts_of(&told, "residual_displacements", 2);
+    assert!(rest.abs() < 1e-12 && parts.is_empty(), "{parts:?}");
+    assert_eq!(number(&told, 0, "residual_displacement").1, None);
+}

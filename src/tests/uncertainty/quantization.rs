@@ -1,0 +1,287 @@
+//! What rounding leaves open of a fit, against replays on rigs that differ in where the zero of their grid lies.
+
+use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
+use crate::plan::{
+    Behaviour, DampingSweep, Link, Plan, ProcedureKind, RampFit, StiffnessRamp, VirtualLink,
+};
+use crate::record::{History, Record};
+use crate::tests::noise::uniform;
+use crate::tests::testing::{elastic_plan, ramp, result_of, run_unwatched};
+use crate::uncertainty::{Known, Source, known};
+
+const STIFFNESS: f64 = 3e5;
+/// m
+const REACH: f64 = 1e-3;
+
+fn told(record: &Record, procedure: usize, name: &'static str) -> (f64, Known) {
+    let reference = ResultReference {
+        procedure: ProcedureId(procedure),
+        name,
+        part: Part::Value,
+    };
+    let Some(ResultValue::Number {
+        value: Some(value), ..
+    }) = record.result(reference)
+    else {
+        panic!("no {name}")
+    };
+    (
+        value,
+        known(&record.contributions(reference), record).unwrap_or(Known::surely(0.0)),
+    )
+}
+
+/// `points` steps to the reach from `begin` (m), on a specimen of `stiffness` (N/m).
+fn ramp_plan(points: u32, begin: f64, stiffness: f64, link: VirtualLink) -> Plan {
+    let place = |point| Formula::Constant(begin + REACH * f64::from(point) / f64::from(points));
+    let kind = ProcedureKind::StiffnessRamp(StiffnessRamp {
+        displacements: (1..=points).map(place).collect(),
+        ..ramp(1e-4)
+    });
+    let mut plan = elastic_plan(stiffness, vec![kind]);
+    plan.rig.link = Link::Virtual(link);
+    plan
+}
+
+/// What replays came to: root mean square of the errors and of what was told of them, and the share that U holds.
+#[derive(Debug)]
+struct Replayed {
+    error: f64,
+    told: f64,
+    held: f64,
+}
+
+fn replayed(count: u32, mut replay: impl FnMut(&mut u64) -> (f64, Known)) -> Replayed {
+    let mut state = 23;
+    let (mut errors, mut squares, mut held) = (0.0, 0.0, 0);
+    for _ in 0..count {
+        let (error, known) = replay(&mut state);
+        errors += error * error;
+        squares += known.standard * known.standard;
+        held += u32::from(error.abs() <= known.expanded());
+    }
+    let mean = |sum: f64| (sum / f64::from(count)).sqrt();
+    Replayed {
+        error: mean(errors),
+        told: mean(squares),
+        held: f64::from(held) / f64::from(count),
+    }
+}
+
+/// From three quanta over the whole ramp to 77, of 3 points to 40: U holds 95 % and more, and u is no less than the scatter of the
+/// replays and no more than three times it.
+#[test]
+fn replays_of_a_ramp_on_a_coarse_load_cell_are_held() {
+    for points in [3, 5, 12, 40] {
+        for quanta in [3.0, 10.0, 77.0] {
+            let quantum = STIFFNESS * REACH / quanta;
+            let found = replayed(100, |state| {
+                let stiffness = STIFFNESS * (1.0 + (uniform(state) - 0.5) / quanta);
+                let begin = uniform(state) * quantum / stiffness;
+                let link = VirtualLink {
+                    force_resolution: quantum,
+                    ..VirtualLink::default()
+                };
+                let record = run_unwatched(&ramp_plan(points, begin, stiffness, link));
+                let (value, known) = told(&record, 0, "stiffness");
+                (value - stiffness, known)
+            });
+            let Replayed { error, told, held } = found;
+            assert!(
+                held >= 0.94,
+                "{points} points over {quanta} quanta: {found:?}"
+            );
+            assert!(
+                told > 0.93 * error && told < 3.0 * error,
+                "{points} points over {quanta} quanta: {found:?}"
+            );
+        }
+    }
+}
+
+/// The same of the displacement, with what it makes of the intercept.
+#[test]
+fn replays_of_a_ramp_on_a_coarse_transducer_are_held() {
+    for (points, quanta) in [(5, 5.3), (10, 33.3)] {
+        let quantum = REACH / quanta;
+        for name in ["stiffness", "intercept_force"] {
+            let found = replayed(150, |state| {
+                // The way is as long as asked for but for part of a quantum, and begins anywhere.
+                let begin = uniform(state) * quantum;
+                let link = VirtualLink {
+                    resolution: quantum,
+                    ..VirtualLink::default()
+                };
+                let mut plan = ramp_plan(points, begin, STIFFNESS, link);
+                let longer = 1.0 + (uniform(state) - 0.5) / quanta;
+                let ProcedureKind::StiffnessRamp(ramp) = &mut plan.procedures[0].kind else {
+                    panic!()
+                };
+                for (point, place) in (1..).zip(&mut ramp.displacements) {
+                    *place = Formula::Constant(
+                        begin + longer * REACH * f64::from(point) / f64::from(points),
+                    );
+                }
+                let (value, known) = told(&run_unwatched(&plan), 0, name);
+                (
+                    value - if name == "stiffness" { STIFFNESS } else { 0.0 },
+                    known,
+                )
+            });
+            assert!(
+                found.held >= 0.92 && found.told > 0.85 * found.error,
+                "{name}, {points} over {quanta} quanta: {found:?}"
+            );
+        }
+    }
+}
+
+/// Readings in step with the grid lie on one line to the last digit: what is told of K is what a quantum makes of it, and the budget
+/// says so. Of a quantum of nothing, nothing.
+#[test]
+fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
+    let link = VirtualLink {
+        force_resolution: 10.0,
+        ..VirtualLink::default()
+    };
+    let plan = ramp_plan(10, 0.0, STIFFNESS, link);
+    let record = run_unwatched(&plan);
+    let (value, known) = told(&record, 0, "stiffness");
+    assert!((value / STIFFNESS - 1.0).abs() < 1e-9);
+    // q/√12 of each of ten points, over √Σ(x − x̄)².
+    let squares: f64 = (1..=10)
+        .map(|point| (REACH / 10.0 * (f64::from(point) - 5.5)).powi(2))
+        .sum();
+    assert!(
+        (known.standard / (10.0 / 12_f64.sqrt() / squares.sqrt()) - 1.0).abs() < 1e-6,
+        "{known:?}"
+    );
+    assert!(known.degrees > 1e12, "stated, not estimated: {known:?}");
+    let parts = &record.procedures[0]
+        .result("stiffness")
+        .unwrap()
+        .contributions;
+    assert!(parts.iter().any(|part| matches!(
+        part.source,
+        Source::Rounding {
+            result: "stiffness",
+            ..
+        }
+    )));
+    let ideal = run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, VirtualLink::default()));
+    assert!(told(&ideal, 0, "stiffness").1.standard < 1e-6);
+    // Figures and reports tell the fit's error by the same.
+    let History::Ramp(ramp) = &record.procedures[0].history else {
+        panic!()
+    };
+    assert!((ramp.fit.unwrap().slope_error / known.standard - 1.0).abs() < 1e-9);
+    // And noise that is larger than the quantum is told as the scatter that it is.
+    let noisy = |force_resolution| VirtualLink {
+        noise: 30.0,
+        seed: 3,
+        force_resolution,
+        ..VirtualLink::default()
+    };
+    let [fine, none] = [1.0, 0.0].map(|quantum| {
+        told(
+            &run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, noisy(quantum))),
+            0,
+            "stiffness",
+        )
+    });
+    assert!(
+        (fine.1.standard / none.1.standard - 1.0).abs() < 0.02
+            && (fine.1.degrees - 8.0).abs() < 1e-6,
+        "{fine:?} {none:?}"
+    );
+}
+
+/// c and the friction of a sweep on a cell whose quantum is a third of what the damper makes, or three times that.
+#[test]
+fn replays_of_a_sweep_on_a_coarse_load_cell_are_held() {
+    for quantum in [1.3, 12.0] {
+        for name in ["damping", "coulomb_force"] {
+            let found = replayed(30, |state| {
+                let velocities = [1e-3, 4e-3, 1e-2].map(Formula::Constant).to_vec();
+                let sweep = DampingSweep {
+                    specimen: 0,
+                    velocities,
+                    stroke: Formula::Constant(1e-3),
+                    about: None,
+                    stiffness: Formula::Constant(2e4),
+                    rate: None,
+                };
+                let mut plan = elastic_plan(2e4, vec![ProcedureKind::DampingSweep(sweep)]);
+                plan.specimens[0].damping = 400.0 * (0.7 + 0.6 * uniform(state));
+                plan.specimens[0].coulomb = 3.0 * uniform(state);
+                plan.rig.link = Link::Virtual(VirtualLink {
+                    force_resolution: quantum,
+                    ..VirtualLink::default()
+                });
+                let truth = if name == "damping" {
+                    plan.specimens[0].damping
+                } else {
+                    plan.specimens[0].coulomb
+                };
+                let (value, known) = told(&run_unwatched(&plan), 0, name);
+                (value - truth, known)
+            });
+            assert!(
+                found.held >= 0.9 && found.told > 0.8 * found.error,
+                "{name}, {quantum} N: {found:?}"
+            );
+        }
+    }
+}
+
+/// Both stiffnesses and the knee of a ramp past yield, of which each stretch is a few quanta.
+#[test]
+fn replays_of_a_bilinear_ramp_on_a_coarse_load_cell_are_held() {
+    for name in ["stiffness", "hardened_stiffness", "yield_force"] {
+        let found = replayed(80, |state| {
+            let stiffness = STIFFNESS * (0.9 + 0.2 * uniform(state));
+            let yield_force = 150.0 + 10.0 * uniform(state);
+            let link = VirtualLink {
+                force_resolution: 20.0,
+                ..VirtualLink::default()
+            };
+            let mut plan = ramp_plan(20, 1e-5 * uniform(state), stiffness, link);
+            plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
+                stiffness,
+                yield_force,
+                hardening: 0.2,
+            });
+            let ProcedureKind::StiffnessRamp(ramp) = &mut plan.procedures[0].kind else {
+                panic!()
+            };
+            ramp.fit = RampFit::Bilinear;
+            let (value, known) = told(&run_unwatched(&plan), 0, name);
+            let truth = match name {
+                "stiffness" => stiffness,
+                "hardened_stiffness" => 0.2 * stiffness,
+                _ => yield_force,
+            };
+            (value - truth, known)
+        });
+        assert!(
+            found.held >= 0.9 && found.told > 0.7 * found.error,
+            "{name}: {found:?}"
+        );
+    }
+}
+
+/// What follows from K knows the rounding of it once: K − K is exact.
+#[test]
+fn rounding_is_a_source_like_any_other() {
+    let link = VirtualLink {
+        force_resolution: 10.0,
+        ..VirtualLink::default()
+    };
+    let record = run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, link));
+    let of = || Box::new(result_of(0, "stiffness"));
+    let nothing = Formula::Binary(crate::plan::formula::Operator::Subtract, of(), of());
+    assert_eq!(
+        nothing.evaluate(&record, None).unwrap().uncertainty,
+        Some(0.0)
+    );
+}

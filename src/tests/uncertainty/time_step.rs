@@ -1,0 +1,242 @@
+//! What the length of the time step does to the results: closed forms and the same runs in far finer steps. And inputs that cannot
+//! be moved by their uncertainty to both sides.
+
+pub(crate) use crate::plan::formula::{Formula, Stated};
+use crate::plan::{
+    Behaviour, Contact, Frame, Ground, Impact, Link, Plan, ProcedureKind, Shake, ShakeDamping,
+    Specimen, Stepping, Storey, VirtualLink,
+};
+use crate::record::{EventKind, Outcome, Record};
+use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
+use crate::uncertainty::Source;
+
+const STIFFNESS: f64 = 327.65;
+const STRIKER: f64 = 10.0;
+const MASS: f64 = 1.0;
+
+/// Perfectly plastic: both go on with V = `Ms·V0/(M + Ms)`.
+fn sticking(time_step: f64) -> Plan {
+    let contact = Contact::Restitution {
+        coefficient: Formula::Constant(0.0),
+    };
+    let blow = Impact {
+        contact,
+        stepping: every(time_step),
+        ..impact(Formula::Constant(STIFFNESS))
+    };
+    elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)])
+}
+
+/// What the time step contributes to a result.
+fn of_step(record: &Record, name: &str) -> f64 {
+    let parts = &record.procedures[0].result(name).unwrap().contributions;
+    parts
+        .iter()
+        .find(|part| matches!(part.source, Source::TimeStep { .. }))
+        .map_or(0.0, |part| part.amount.abs())
+}
+
+/// X = `Ms·V0/√(K(M + Ms))`, a quarter period and the energy of both: U holds them at every step, and is small at the default one.
+#[test]
+fn an_expanded_uncertainty_holds_the_closed_form_at_any_step() {
+    let total = MASS + STRIKER;
+    let peak = STRIKER / (STIFFNESS * total).sqrt();
+    let quarter = 0.25 * std::f64::consts::TAU * (total / STIFFNESS).sqrt();
+    let energy = 0.5 * STRIKER * STRIKER / total;
+    let exact = [
+        ("max_displacement", peak),
+        ("stop_time", quarter),
+        ("time_of_max_displacement", quarter),
+        ("absorbed_energy", energy),
+    ];
+    let critical = 0.1 * std::f64::consts::TAU * (MASS / STIFFNESS).sqrt();
+    for divisor in [1.0, 1.7, 3.0, 6.0, 20.0] {
+        let record = run_unwatched(&sticking(critical / divisor));
+        for (name, exact) in exact {
+            let (value, u) = number(&record, 0, name);
+            let (value, u) = (value.unwrap(), u.unwrap());
+            assert!(
+                (value - exact).abs() <= 2.0 * u,
+                "critical/{divisor}: {name} = {value} ± {}, truly {exact}",
+                2.0 * u
+            );
+        }
+        assert!(divisor < 20.0 || of_step(&record, "max_displacement") < 5e-4 * peak);
+    }
+    assert!(of_step(&run_unwatched(&sticking(critical)), "max_displacement") > 1e-3 * peak);
+}
+
+/// The same with noise, which the path that is taken again has in all its steps.
+#[test]
+fn noise_is_not_taken_for_the_time_step() {
+    let mut plan = sticking(2e-3);
+    plan.rig.link = Link::Virtual(VirtualLink {
+        noise: 0.02,
+        seed: 3,
+        ..VirtualLink::default()
+    });
+    let (quiet, noisy) = (run_unwatched(&sticking(2e-3)), run_unwatched(&plan));
+    for name in ["max_displacement", "absorbed_energy"] {
+        let (of_quiet, of_noisy) = (of_step(&quiet, name), of_step(&noisy, name));
+        let u = number(&noisy, 0, name).1.unwrap();
+        assert!(
+            (of_quiet - of_noisy).abs() < u,
+            "{name}: {of_quiet}, {of_noisy}, u = {u}"
+        );
+    }
+}
+
+fn shaken(time_step: f64) -> Record {
+    let storey = |stiffness| Storey::new(1000.0, stiffness, Behaviour::Elastic { stiffness });
+    let mut specimen = Specimen::new("frame", 2000.0, None);
+    specimen.frame = Some(Frame::of_storeys(vec![storey(2e6), storey(1.5e6)]));
+    let times: Vec<f64> = (0..=200).map(|index| 0.01 * f64::from(index)).collect();
+    let accelerations = times
+        .iter()
+        .map(|time| 2.0 * (9.0 * time).sin() + (31.0 * time).sin())
+        .collect();
+    let shake = Shake {
+        specimen: 0,
+        ground: 0,
+        scale: Formula::Constant(1.0),
+        damping: ShakeDamping::Rayleigh(Formula::Constant(0.02)),
+        damping_uncertainty: 0.0,
+        stepping: Stepping {
+            max_tangent_ratio: Formula::Constant(2.0),
+            ..every(time_step)
+        },
+        duration: None,
+    };
+    let mut plan = elastic_plan(1.0, vec![ProcedureKind::Shake(shake)]);
+    plan.specimens = vec![specimen];
+    let name = || "quake".to_owned();
+    plan.grounds = vec![Ground {
+        name: name(),
+        file: name(),
+        unit: 1.0,
+        scale: 1.0,
+        scale_uncertainty: 0.0,
+        times,
+        accelerations,
+    }];
+    run_unwatched(&plan)
+}
+
+/// Two elastic storeys on moving ground against the same in steps of 62.5 µs.
+#[test]
+fn a_frame_is_known_no_better_than_its_time_step_lets_it_be() {
+    let drifts = |record: &Record| {
+        let result = record.procedures[0].result("max_drift").unwrap();
+        let crate::plan::formula::ResultValue::List(values) = result.value.clone() else {
+            panic!("no list")
+        };
+        values
+            .into_iter()
+            .zip(result.entry_uncertainties())
+            .collect::<Vec<(f64, Option<f64>)>>()
+    };
+    let fine = drifts(&shaken(6.25e-5));
+    for time_step in [4e-3, 2e-3, 1e-3] {
+        for ((value, u), (exact, _)) in drifts(&shaken(time_step)).into_iter().zip(&fine) {
+            let expanded = 2.0 * u.unwrap();
+            assert!(
+                (value - exact).abs() <= expanded,
+                "{time_step}: {value} ± {expanded}, {exact}"
+            );
+            assert!(expanded < 0.1 * exact, "{time_step}: {expanded} of {exact}");
+        }
+    }
+}
+
+/// A striker that sticks, on a specimen whose damping is stated with an uncertainty.
+fn damped(damping: f64, uncertainty: f64) -> Record {
+    let mut plan = sticking(2e-3);
+    let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
+        panic!("no impact")
+    };
+    blow.damping = Stated {
+        source: Source::SpecimenMass(9),
+        value: damping,
+        uncertainty,
+    }
+    .formula();
+    run_unwatched(&plan)
+}
+
+fn of_damping(record: &Record, name: &str) -> f64 {
+    let parts = &record.procedures[0].result(name).unwrap().contributions;
+    parts
+        .iter()
+        .find(|part| part.source == Source::SpecimenMass(9))
+        .unwrap()
+        .amount
+}
+
+/// c = 1 ± 2 N·s/m: below 0 is no damping, and u is what 3 N·s/m do.
+#[test]
+fn an_input_that_would_pass_its_bound_is_moved_to_the_other_side() {
+    let peak = |damping: f64| {
+        number(&damped(damping, 0.0), 0, "max_displacement")
+            .0
+            .unwrap()
+    };
+    let record = damped(1.0, 2.0);
+    assert_eq!(record.outcome, Outcome::Completed);
+    let (found, by_hand) = (
+        of_damping(&record, "max_displacement"),
+        peak(3.0) - peak(1.0),
+    );
+    assert!(
+        (found / by_hand - 1.0).abs() < 0.02,
+        "{found}, by hand {by_hand}"
+    );
+    let central = of_damping(&damped(5.0, 2.0), "max_displacement");
+    assert!((central / (0.5 * (peak(7.0) - peak(3.0))) - 1.0).abs() < 0.02);
+}
+
+/// c = −0.5 ± 2 N·s/m, which may well be 0: the blow runs with 0, and 0 + 2 is moved to. −5 ± 2 is no damping, and no fault of a rig's.
+#[test]
+fn a_damping_that_is_not_significantly_below_none_is_none() {
+    let peak = |damping: f64| {
+        number(&damped(damping, 0.0), 0, "max_displacement")
+            .0
+            .unwrap()
+    };
+    let record = damped(-0.5, 2.0);
+    assert_eq!(record.outcome, Outcome::Completed);
+    let (found, by_hand) = (
+        of_damping(&record, "max_displacement"),
+        peak(2.0) - peak(0.0),
+    );
+    assert!(
+        (found / by_hand - 1.0).abs() < 0.02,
+        "{found}, by hand {by_hand}"
+    );
+    assert_eq!(number(&record, 0, "max_displacement").0, Some(peak(0.0)));
+    let (_, taken, _) = record.procedures[0]
+        .inputs
+        .iter()
+        .find(|(name, ..)| *name == "damping")
+        .unwrap();
+    assert_eq!((taken.value, taken.uncertainty), (0.0, Some(2.0)));
+    let said: Vec<&str> = record
+        .events
+        .iter()
+        .filter(|event| event.kind == EventKind::Remark)
+        .map(|event| event.text.as_str())
+        .collect();
+    assert!(
+        said.iter()
+            .any(|text| text.contains("not significantly below 0: it is taken as 0")),
+        "{said:?}"
+    );
+    let refused = damped(-5.0, 2.0);
+    assert!(refused.procedures[0].history.above_critical().is_none());
+    let Outcome::Blocked { reason } = &refused.outcome else {
+        panic!("{:?}", refused.outcome)
+    };
+    assert!(
+        reason.contains("below 0 by more than its expanded uncertainty"),
+        "{reason}"
+    );
+}

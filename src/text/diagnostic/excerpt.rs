@@ -1,0 +1,334 @@
+//! The source text as it may be shown: control and direction characters escaped, very long lines cut around the
+//! places, several files side by side. In: a diagnostic and its sources. Out: text the drawing tool can read, and
+//! the places in it. Must not change what line and column a place is said to have.
+
+use std::ops::Range;
+
+use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+
+use super::{Diagnostic, Label};
+use crate::text::sanitize::steers;
+pub use crate::text::sanitize::{escape, one_line};
+use crate::text::source::{FileId, Position, SourceFile, Sources, Span};
+
+/// Characters of a line that are shown.
+const WIDEST_LINE: usize = 120;
+/// Characters shown before the first place of a line that is cut.
+const LEAD: usize = 50;
+/// Lines kept before and after a place: the drawing tool shows one, and joins what it shows of two places that are near.
+const AROUND: usize = 2;
+
+/// The lines around the places of a diagnostic, one stretch after the other; the first place's file is the first.
+#[derive(Debug)]
+pub struct Excerpt {
+    stretches: Vec<Stretch>,
+    /// Where each place really is, by its offset in the shown text.
+    positions: Vec<(usize, Position)>,
+}
+
+/// Some lines of one file.
+#[derive(Debug)]
+struct Stretch {
+    /// Of the file.
+    name: String,
+    text: String,
+    /// Offset of the text among all stretches.
+    start: usize,
+    /// Lines of the file before it.
+    before: usize,
+}
+
+impl Excerpt {
+    /// The excerpt and the diagnostic's places in it. `folder` is put before every file's name.
+    pub fn new(
+        diagnostic: &Diagnostic,
+        sources: &Sources,
+        folder: &str,
+    ) -> (Self, Vec<LabeledSpan>) {
+        let mut excerpt = Self {
+            stretches: Vec::new(),
+            positions: Vec::new(),
+        };
+        let mut labels = Vec::new();
+        let mut seen: Vec<FileId> = Vec::new();
+        let mut start = 0;
+        for first in &diagnostic.labels {
+            let id = first.span.file;
+            if seen.contains(&id) {
+                continue;
+            }
+            seen.push(id);
+            let file = sources.file(id);
+            let here = diagnostic
+                .labels
+                .iter()
+                .enumerate()
+                .filter(|(_, label)| label.span.file == id);
+            let mut places: Vec<Place<'_>> = here
+                .map(|(index, label)| Place::of(label, index == 0, sources))
+                .collect();
+            places.sort_by_key(|place| place.line);
+            for near in places.chunk_by(|one, next| next.line - one.line <= 2 * AROUND) {
+                let before = near[0].line.saturating_sub(AROUND);
+                let lines = sources.lines(id, before..near[near.len() - 1].line + AROUND + 1);
+                let inside =
+                    |range: &Range<usize>| range.start - lines.start..range.end - lines.start;
+                let ranges: Vec<Range<usize>> =
+                    near.iter().map(|place| inside(&place.range)).collect();
+                let (text, shown) = show(&file.text[lines.clone()], &ranges);
+                for (place, shown) in near.iter().zip(shown) {
+                    let span = SourceSpan::new((start + shown.start).into(), shown.len());
+                    let text = Some(escape(&place.label.text)).filter(|text| !text.is_empty());
+                    excerpt
+                        .positions
+                        .push((span.offset(), sources.position(place.label.span)));
+                    labels.push(if place.primary {
+                        LabeledSpan::new_primary_with_span(text, span)
+                    } else {
+                        LabeledSpan::new_with_span(text, span)
+                    });
+                }
+                let length = text.len();
+                excerpt.stretches.push(Stretch {
+                    name: escape(&format!("{folder}{}", file.name)),
+                    text,
+                    start,
+                    before,
+                });
+                // One byte between stretches keeps the end of one apart from the start of the next.
+                start += length + 1;
+            }
+        }
+        (excerpt, labels)
+    }
+}
+
+/// A label, and where it is shown.
+struct Place<'a> {
+    label: &'a Label,
+    primary: bool,
+    /// Bytes of the file.
+    range: Range<usize>,
+    /// From 0.
+    line: usize,
+}
+
+impl<'a> Place<'a> {
+    fn of(label: &'a Label, primary: bool, sources: &Sources) -> Self {
+        let range = clip(sources.file(label.span.file), label.span.range());
+        let line = sources
+            .position(Span::new(label.span.file, range.start, range.start))
+            .line
+            - 1;
+        Self {
+            label,
+            primary,
+            range,
+            line,
+        }
+    }
+}
+
+impl SourceCode for Excerpt {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        // A span over two stretches is refused: the drawing tool then draws two snippets.
+        let end = span.offset() + span.len();
+        let stretch = self
+            .stretches
+            .iter()
+            .find(|stretch| {
+                stretch.start <= span.offset() && end <= stretch.start + stretch.text.len()
+            })
+            .ok_or(MietteError::OutOfBounds)?;
+        let local = SourceSpan::new((span.offset() - stretch.start).into(), span.len());
+        let contents = stretch
+            .text
+            .as_str()
+            .read_span(&local, lines_before, lines_after)?;
+        // Without context the tool asks for a place's line and column: the true ones, whatever was cut or escaped.
+        let place = self
+            .positions
+            .iter()
+            .find(|(offset, _)| *offset == span.offset() && lines_before == 0 && lines_after == 0);
+        let (line, column) = place.map_or(
+            (stretch.before + contents.line(), contents.column()),
+            |(_, at)| (at.line - 1, at.column - 1),
+        );
+        let moved = SourceSpan::new(
+            (contents.span().offset() + stretch.start).into(),
+            contents.span().len(),
+        );
+        Ok(Box::new(MietteSpanContents::new_named(
+            stretch.name.clone(),
+            contents.data(),
+            moved,
+            line,
+            column,
+            contents.line_count(),
+        )))
+    }
+}
+
+/// A place that spans lines is shown on its first one; a place past the text, at the end of its last line.
+fn clip(file: &SourceFile, range: Range<usize>) -> Range<usize> {
+    let text = &file.text;
+    let start =
+        text.floor_char_boundary(range.start.min(text.trim_end_matches(['\n', '\r']).len()));
+    let line_end = text[start..]
+        .find('\n')
+        .map_or(text.len(), |newline| start + newline);
+    let line_end = start + text[start..line_end].trim_end_matches('\r').len();
+    start..text.ceil_char_boundary(range.end.clamp(start, line_end))
+}
+
+/// The text to show, and where each of `places` lies in it.
+fn show(text: &str, places: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
+    let mut shown = String::with_capacity(text.len());
+    let mut moved = vec![0..0; places.len()];
+    let mut line_start = 0;
+    for line in text.split_inclusive('\n') {
+        let body = line.trim_end_matches(['\n', '\r']);
+        let inside = |place: &Range<usize>| {
+            line_start <= place.start && place.start <= line_start + body.len()
+        };
+        let first = places
+            .iter()
+            .filter(|place| inside(place))
+            .map(|place| place.start - line_start)
+            .min()
+            .unwrap_or(0);
+        let window = window(body, first);
+        if window.start > 0 {
+            shown.push('…');
+        }
+        for (offset, character) in body[window.clone()].char_indices() {
+            let offset = line_start + window.start + offset;
+            mark(places, &mut moved, offset, shown.len());
+            push_shown(&mut shown, character);
+        }
+        // Whatever lies past the window ends at its end.
+        for (place, moved) in places
+            .iter()
+            .zip(&mut moved)
+            .filter(|(place, _)| inside(place))
+        {
+            let end = line_start + window.end;
+            if place.start >= end {
+                moved.start = shown.len();
+            }
+            if place.end >= end {
+                moved.end = shown.len();
+            }
+        }
+        if window.end < body.len() {
+            shown.push('…');
+        }
+        shown.push('\n');
+        line_start += line.len();
+    }
+    (shown, moved)
+}
+
+/// Notes that the byte `original` is shown at `now`.
+fn mark(places: &[Range<usize>], moved: &mut [Range<usize>], original: usize, now: usize) {
+    for (place, moved) in places.iter().zip(moved) {
+        if place.start == original {
+            moved.start = now;
+        }
+        if place.end == original {
+            moved.end = now;
+        }
+    }
+}
+
+/// The part of a line to show: all of it, or [`WIDEST_LINE`] characters from a little before `first`.
+fn window(body: &str, first: usize) -> Range<usize> {
+    if body.len() <= WIDEST_LINE {
+        return 0..body.len();
+    }
+    let nth = |from: usize, count: usize| {
+        body[from..]
+            .char_indices()
+            .nth(count)
+            .map_or(body.len(), |(offset, _)| from + offset)
+    };
+    let start = body[..first]
+        .char_indices()
+        .rev()
+        .nth(LEAD - 1)
+        .map_or(0, |(offset, _)| offset);
+    start..nth(start, WIDEST_LINE)
+}
+
+fn push_shown(text: &mut String, character: char) {
+    if steers(character) && character != '\t' {
+        text.extend(character.escape_unicode());
+    } else {
+        text.push(character);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::diagnostic::Code;
+
+    /// A fault in the middle of a large file and one at its end, which the drawing tool joins with nothing.
+    #[test]
+    fn an_excerpt_of_a_large_file_holds_the_lines_around_its_places_only() {
+        let mut sources = Sources::default();
+        let text = "let a = 1 mm\n".repeat(80_000);
+        let file = sources.add("large.psd", text.as_str());
+        let at = |line: usize| Span::new(file, 13 * line + 4, 13 * line + 5);
+        let mut diagnostic = Diagnostic::new(Code::Syntax, "twice");
+        diagnostic.labels = [70_000, 3, 70_002, 79_999]
+            .map(|line| Label {
+                span: at(line),
+                text: line.to_string(),
+            })
+            .to_vec();
+        let (excerpt, labels) = Excerpt::new(&diagnostic, &sources, "");
+        let shown: Vec<(usize, usize)> = excerpt
+            .stretches
+            .iter()
+            .map(|stretch| (stretch.before, stretch.text.lines().count()))
+            .collect();
+        assert_eq!(shown, [(1, 5), (69_998, 7), (79_997, 3)]);
+        for label in labels {
+            let line: usize = label.label().unwrap().parse().unwrap();
+            let contents = excerpt.read_span(label.inner(), 1, 1).unwrap();
+            assert_eq!(contents.line(), line - 1, "one line before it is shown too");
+            assert_eq!(label.primary(), line == 70_000);
+        }
+    }
+
+    #[test]
+    fn places_follow_the_escapes() {
+        let (shown, moved) = show("a\u{1b}b c\r\nd", &[2..3, 4..5, 7..8]);
+        assert_eq!(shown, "a\\u{1b}b c\nd\n");
+        assert_eq!(
+            moved
+                .iter()
+                .map(|range| &shown[range.clone()])
+                .collect::<Vec<_>>(),
+            ["b", "c", "d"]
+        );
+    }
+
+    #[test]
+    fn a_cut_line_keeps_its_place_and_says_so() {
+        let text = format!("{}here{}", "ä".repeat(300), "z".repeat(300));
+        let (shown, moved) = show(&text, std::slice::from_ref(&(600..604)));
+        assert_eq!(&shown[moved[0].clone()], "here");
+        assert_eq!(
+            shown.chars().count(),
+            WIDEST_LINE + 3,
+            "two marks and the newline"
+        );
+    }
+}

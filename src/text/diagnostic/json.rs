@@ -1,0 +1,135 @@
+//! Diagnostics for an editor. In: diagnostics and their sources. Out: a JSON value, every diagnostic with file, line,
+//! column (characters, from 1) and byte span. Nothing is left out and nothing is drawn.
+
+use serde_json::{Value, json};
+
+use super::render::severity_name;
+use super::{Code, Diagnostic, Label};
+use crate::text::sanitize;
+use crate::text::source::{Position, Sources, Span};
+
+/// Name of the format, in the document's `schema`.
+pub const SCHEMA: &str = "psd.diagnostics/1";
+
+/// The document around the diagnostics of one or more plans.
+#[must_use]
+pub fn document(diagnostics: &[Value]) -> Value {
+    let count = |severity: &str| {
+        diagnostics
+            .iter()
+            .filter(|diagnostic| diagnostic["severity"] == severity)
+            .count()
+    };
+    let (errors, warnings) = (count("error"), count("warning"));
+    json!({ "schema": SCHEMA, "errors": errors, "warnings": warnings, "diagnostics": diagnostics })
+}
+
+/// The document as it is printed: indented, and no text of a plan in it steers a terminal.
+#[must_use]
+pub fn text(diagnostics: &[Value]) -> String {
+    sanitize::json(&format!("{:#}\n", document(diagnostics)))
+}
+
+/// One diagnostic. `plan` names the file of a diagnostic without a place; `folder` is put before every file's name.
+#[must_use]
+pub fn diagnostic(diagnostic: &Diagnostic, sources: &Sources, plan: &str, folder: &str) -> Value {
+    let place = diagnostic.span().map_or_else(
+        || json!({ "file": format!("{folder}{plan}"), "line": null, "column": null, "end_line": null, "end_column": null, "span": null }),
+        |span| place(span, sources, folder),
+    );
+    let labels: Vec<Value> = diagnostic
+        .labels
+        .iter()
+        .map(|label| self::label(label, sources, folder))
+        .collect();
+    let mut value = json!({
+        "code": diagnostic.code.id(),
+        "severity": severity_name(diagnostic.severity),
+        "message": diagnostic.message,
+    });
+    extend(&mut value, place);
+    extend(
+        &mut value,
+        json!({ "labels": labels, "help": diagnostic.help }),
+    );
+    value
+}
+
+/// A plan that cannot be read: an error of no code, and of no place but where its text is none.
+#[must_use]
+pub fn unreadable(file: &str, message: &str, at: Option<Position>) -> Value {
+    let (line, column) = (at.map(|at| at.line), at.map(|at| at.column));
+    json!({
+        "code": at.map(|_| Code::BadText.id()), "severity": "error", "message": message, "file": file, "line": line, "column": column,
+        "end_line": line, "end_column": column, "span": null, "labels": [], "help": null,
+    })
+}
+
+fn label(label: &Label, sources: &Sources, folder: &str) -> Value {
+    let mut value = place(label.span, sources, folder);
+    extend(&mut value, json!({ "text": label.text }));
+    value
+}
+
+fn place(span: Span, sources: &Sources, folder: &str) -> Value {
+    let start = sources.position(span);
+    let end = sources.position(Span {
+        start: span.end,
+        ..span
+    });
+    json!({
+        "file": format!("{folder}{}", sources.file(span.file).name),
+        "line": start.line,
+        "column": start.column,
+        "end_line": end.line,
+        "end_column": end.column,
+        "span": { "start": span.start, "end": span.end },
+    })
+}
+
+fn extend(value: &mut Value, more: Value) {
+    if let (Some(object), Value::Object(more)) = (value.as_object_mut(), more) {
+        object.extend(more);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::diagnostic::Code;
+
+    #[test]
+    fn an_editor_gets_places_in_characters_and_in_bytes() {
+        let mut sources = Sources::default();
+        let file = sources.add("a.psd", "# ä\nlet ä = 3 mx\n");
+        let fault = Diagnostic::new(Code::UnknownUnit, "no unit `mx`")
+            .at(Span::new(file, 16, 18), "unknown")
+            .help("`m`?");
+        let value = diagnostic(&fault, &sources, "a.psd", "plans/");
+        assert_eq!(
+            (&value["file"], &value["line"], &value["column"]),
+            (&json!("plans/a.psd"), &json!(2), &json!(11))
+        );
+        assert_eq!(value["span"], json!({ "start": 16, "end": 18 }));
+        assert_eq!(
+            (&value["end_line"], &value["end_column"]),
+            (&json!(2), &json!(13))
+        );
+        assert_eq!(
+            (&value["code"], &value["severity"], &value["help"]),
+            (&json!("E204"), &json!("error"), &json!("`m`?"))
+        );
+        assert_eq!(value["labels"][0]["text"], json!("unknown"));
+    }
+
+    #[test]
+    fn a_fault_of_the_command_line_has_no_line() {
+        let fault = Diagnostic::new(Code::UnknownParameter, "no parameter `v`");
+        let value = diagnostic(&fault, &Sources::default(), "a.psd", "");
+        assert_eq!(
+            (&value["file"], &value["line"]),
+            (&json!("a.psd"), &Value::Null)
+        );
+        assert_eq!(document(&[value])["errors"], json!(1));
+    }
+}

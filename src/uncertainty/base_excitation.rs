@@ -1,0 +1,192 @@
+//! The uncertainty of the results of a shake. In: its inputs with their sources of uncertainty, and the recorded steps. Out: the
+//! contributions of each source to each number. The frame is re-integrated along its recorded path, under the same ground.
+
+use super::frame::{FrameDoubts, leads_there};
+use super::impact::LEADS_ELSEWHERE;
+use crate::physics::frame::FrameError;
+use crate::physics::perturbation::Perturbation;
+use crate::physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
+use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
+use crate::physics::structure::ground::acceleration_at;
+use crate::plan::{Ground, Shake};
+use crate::procedures::base_excitation::run::Setting;
+use crate::procedures::results::{give, values};
+use crate::procedures::stepping;
+use crate::procedures::stepping::run::FrameSteps;
+use crate::record::{NamedResult, ShakeHistory, ShakeStep};
+use crate::run::stop::Stop;
+use crate::uncertainty::Source;
+use crate::uncertainty::engine::{Evaluate, Evaluation, FINER, Shifts, Tick, Unknown};
+use crate::units::Dimension;
+
+/// Steps of the finest run for each of the record.
+const FINEST: u8 = FINER[1];
+
+/// Gives `results` their contributions.
+pub(crate) fn propagate(
+    doubts: &FrameDoubts<'_>,
+    plan: &Shake,
+    ground: &Ground,
+    setting: &Setting,
+    history: &ShakeHistory,
+    results: &mut [NamedResult],
+    tick: Tick<'_, Stop>,
+) -> Result<(), Unknown<Stop>> {
+    let reading = |step: &ShakeStep| FrameReading {
+        target: step.command.clone(),
+        displacement: step.displacement.clone(),
+        force: step.restoring_force.clone(),
+    };
+    let path = doubts.path(&setting.frame, history.steps.iter().map(reading).collect())?;
+    let FrameSteps {
+        time_step, steps, ..
+    } = setting.frame;
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+    let at = |step: u64| {
+        acceleration_at(
+            &ground.times,
+            &ground.accelerations,
+            step as f64 * time_step / f64::from(FINEST),
+        )
+    };
+    let accelerations = (0..=steps * u64::from(FINEST)).map(at).collect();
+    let mut evaluate = RecordedShake {
+        doubts,
+        plan,
+        ground,
+        setting,
+        accelerations,
+        path,
+    };
+    let floors = doubts.floors();
+    let exact = Perturbation::none(floors);
+    let mut found = evaluate
+        .run(&evaluate.inputs(&[])?, &exact)
+        .map_err(|error| error.to_string())?;
+    if !leads_there(&found.ends, "max_displacement", results) {
+        return Err(LEADS_ELSEWHERE.to_owned().into());
+    }
+    evaluate.path = doubts.under_way(
+        &setting.frame,
+        evaluate.path,
+        std::mem::take(&mut found.velocities),
+    )?;
+    let lists =
+        ["max_displacement", "max_drift", "final_drift", "periods"].map(|name| (name, floors));
+    let layout: Vec<(&'static str, usize)> =
+        lists.into_iter().chain([("max_base_shear", 1)]).collect();
+    let mut reported = values(&layout, results);
+    if let Some(shear) = reported.last_mut() {
+        // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
+        *shear = found.between.max_base_shear;
+    }
+    let sources = doubts.sources(
+        &[&plan.scale],
+        &[(Source::GroundScale(plan.ground), ground.scale_uncertainty)],
+    );
+    give(
+        &layout,
+        doubts.contributions(&evaluate, sources, history.steps.len(), reported, tick)?,
+        results,
+    );
+    Ok(())
+}
+
+/// A shake along its recorded path.
+struct RecordedShake<'a, 'run> {
+    doubts: &'a FrameDoubts<'run>,
+    plan: &'a Shake,
+    ground: &'a Ground,
+    setting: &'a Setting,
+    /// Of the ground at every finest step \[m/s²\].
+    accelerations: Vec<f64>,
+    path: FramePath,
+}
+
+/// The frame, its periods \[s\] and the factor on the ground.
+struct Inputs {
+    run: FrameRun,
+    periods: Vec<f64>,
+    scale: f64,
+}
+
+impl RecordedShake<'_, '_> {
+    fn run(&self, inputs: &Inputs, readings: &Perturbation) -> Result<FloorsOutcome, FrameError> {
+        let accelerations = self
+            .accelerations
+            .iter()
+            .step_by(usize::from(FINEST / readings.finer));
+        let scaled: Vec<f64> = accelerations
+            .map(|acceleration| inputs.scale * acceleration)
+            .collect();
+        inputs.run.shaken(&scaled, &self.path, readings)
+    }
+}
+
+impl Evaluate for RecordedShake<'_, '_> {
+    type Inputs = Inputs;
+
+    fn inputs(&self, shifts: Shifts<'_>) -> Result<Inputs, String> {
+        let Self {
+            doubts,
+            plan,
+            ground,
+            setting,
+            ..
+        } = self;
+        let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
+        let (properties, scale) = doubts.with_inputs(shifts, &mut |inputs| {
+            let properties = stepping::run::properties(&frame, &damping, inputs)?;
+            Ok((
+                properties,
+                inputs.number("scale", &plan.scale, Dimension::NUMBER)?,
+            ))
+        })?;
+        let source = Source::GroundScale(plan.ground);
+        let by: f64 = shifts
+            .iter()
+            .filter(|(moved, _)| *moved == source)
+            .map(|(_, by)| by)
+            .sum();
+        let periods = properties.modes.periods.clone();
+        let run = FrameRun {
+            matrices: properties.matrices,
+            ..doubts.run(&setting.frame)
+        };
+        Ok(Inputs {
+            run,
+            periods,
+            scale: scale * (1.0 + by * ground.scale_uncertainty),
+        })
+    }
+
+    fn evaluate(&self, readings: &Perturbation, inputs: &Inputs) -> Evaluation {
+        let numbers = |floors: &Floors| {
+            let lists = [
+                &floors.max_displacement,
+                &floors.max_drift,
+                &floors.final_drift,
+                &inputs.periods,
+            ];
+            lists
+                .into_iter()
+                .flatten()
+                .copied()
+                .chain([floors.max_base_shear])
+                .collect::<Vec<f64>>()
+        };
+        let Ok(FloorsOutcome {
+            between,
+            before_departure,
+            ..
+        }) = self.run(inputs, readings)
+        else {
+            return Evaluation::none(4 * self.doubts.floors() + 1);
+        };
+        Evaluation {
+            values: numbers(&between),
+            before_departure: before_departure.as_ref().map(numbers),
+            farthest: between.farthest(),
+        }
+    }
+}

@@ -1,0 +1,544 @@
+//! The uncertainty engine: what each source contributes to each result of a procedure. In: a procedure as a pure function of its inputs
+//! and readings. Out: for each number, half the difference of the results at ±u of each source (JCGM 100:2008, 5.1.3 and 5.1.4), the
+//! results of Monte Carlo trials of the reading errors (JCGM 101:2008), and those in finer time steps. It knows no procedure and no rig.
+
+use super::cost::TrialBudget;
+use super::instruments::InstrumentUncertainty;
+use super::threads::in_threads;
+use super::{Contribution, MOST_DRAWS, Source};
+use crate::physics::perturbation::{Perturbation, sign_of_input};
+use crate::plan::formula::ProcedureId;
+
+/// A re-integrated run must lead to the recorded results, relatively.
+pub const CLOSE: f64 = 1e-9;
+/// The effects of a source to either side may differ by this fraction of the larger one; beyond it the result does not follow the source
+/// smoothly. Twice the error of half the difference.
+const ONE_SIDED: f64 = 0.2;
+/// The same of half the difference at ±u and at ±u/2.
+const HALVED: f64 = 0.1;
+/// An input that cannot be perturbed by its uncertainty to either side is perturbed by no less than this fraction of it.
+const LEAST_SHARE: f64 = 1e-3;
+/// Steps of a re-integrated run for each of its own.
+pub const FINER: [u8; 2] = [2, 4];
+/// Halving the step again may change a result by this fraction of the first change: by half where the scheme is of first order, with
+/// a margin for higher terms. Otherwise the steps do not converge.
+const CONVERGES: f64 = 0.75;
+/// A run that goes this many times as far as the recorded one grows without bound.
+const FARTHER: f64 = 10.0;
+const GROWS: &str = "errors of its readings, taken along the recorded way, grow without bound";
+
+/// Sources, each with the number of standard uncertainties by which it is perturbed.
+pub type Shifts<'a> = &'a [(Source, f64)];
+
+/// A procedure as a pure function of its readings and inputs.
+pub trait Evaluate: Sync {
+    type Inputs;
+
+    /// Inputs with these sources perturbed.
+    ///
+    /// # Errors
+    /// An input is out of its bounds.
+    fn inputs(&self, shifts: Shifts<'_>) -> Result<Self::Inputs, String>;
+
+    /// The results with these readings and inputs.
+    fn evaluate(&self, readings: &Perturbation, inputs: &Self::Inputs) -> Evaluation;
+}
+
+/// Results of one evaluation.
+#[derive(Clone, Debug, Default)]
+pub struct Evaluation {
+    /// NaN where a result does not exist.
+    pub values: Vec<f64>,
+    /// The values as they were where the run departed from its record.
+    pub before_departure: Option<Vec<f64>>,
+    /// The farthest place from zero \[m\].
+    pub farthest: f64,
+}
+
+impl Evaluation {
+    /// Values that follow from the readings as they are.
+    #[must_use]
+    pub const fn of_readings(values: Vec<f64>) -> Self {
+        Self {
+            values,
+            before_departure: None,
+            farthest: 0.0,
+        }
+    }
+
+    /// Of a run that could not be integrated.
+    #[must_use]
+    pub fn none(count: usize) -> Self {
+        Self::of_readings(vec![f64::NAN; count])
+    }
+
+    /// Whether the record determines a value.
+    fn is_known(&self, index: usize) -> bool {
+        self.before_departure
+            .as_ref()
+            .is_none_or(|before| before[index].to_bits() == self.values[index].to_bits())
+    }
+}
+
+/// Why no uncertainty is reported.
+#[derive(Debug)]
+pub enum Unknown<E> {
+    /// The caller ended the study.
+    Ended(E),
+    Reason(String),
+}
+
+impl<E> From<String> for Unknown<E> {
+    fn from(reason: String) -> Self {
+        Self::Reason(reason)
+    }
+}
+
+/// Receives how many of how many evaluations are done; its error ends the study.
+pub type Tick<'a, E> = &'a mut dyn FnMut(usize, usize) -> Result<(), E>;
+
+/// Contributions to each of the values of a procedure.
+pub type Contributions = Vec<Vec<Contribution>>;
+
+/// The study of one procedure, or of one impact of a series.
+pub struct Study<'a, P> {
+    pub procedure: ProcedureId,
+    /// From 0: each impact of a series has reading errors of its own.
+    pub impact: u16,
+    pub evaluate: &'a P,
+    pub instruments: &'a InstrumentUncertainty,
+    /// Uncertain inputs, each once.
+    pub inputs: Vec<Source>,
+    /// How long one evaluation is: steps of one degree of freedom.
+    pub steps: u64,
+    /// The values as the run reported them, of one that is integrated in time steps.
+    pub reported: Option<Vec<f64>>,
+}
+
+impl<P: Evaluate> Study<'_, P> {
+    /// The contributions of every source to every value.
+    ///
+    /// # Errors
+    /// An input is out of its bounds however little it is perturbed, errors grow without bound, or the caller ends the study.
+    pub fn contributions<E>(&self, tick: Tick<'_, E>) -> Result<Contributions, Unknown<E>> {
+        let mut sources: Vec<Source> = self
+            .inputs
+            .iter()
+            .copied()
+            .chain(self.instruments.sources())
+            .collect();
+        sources.sort_unstable();
+        sources.dedup();
+        let budget = TrialBudget::new(self.steps, &sources, self.instruments.has_reading_errors());
+        let (drawn, moved): (Vec<Source>, Vec<Source>) = sources
+            .into_iter()
+            .partition(|source| budget.draws(*source));
+        let first = self.impact.saturating_mul(MOST_DRAWS);
+        let trials = (first..first.saturating_add(budget.trials)).map(Part::Trial);
+        let parts: Vec<Part> = moved
+            .into_iter()
+            .map(Part::Source)
+            .chain(self.reported.as_ref().map(|_| Part::TimeStep))
+            .chain(trials)
+            .collect();
+        let nominal = self.evaluate.evaluate(
+            &self.instruments.perturbed(&[], None),
+            &self.evaluate.inputs(&[])?,
+        );
+        let study = Prepared {
+            study: self,
+            budget,
+            drawn,
+            nominal,
+        };
+        let effects =
+            in_threads(&parts, &|part| study.effects(*part), tick).map_err(Unknown::Ended)?;
+        let mut contributions: Contributions = vec![Vec::new(); study.nominal.values.len()];
+        for (part, effects) in parts.into_iter().zip(effects) {
+            let source = study.source(part);
+            for (parts, effect) in contributions.iter_mut().zip(effects?) {
+                parts.extend(effect.map(|(amount, smooth)| Contribution {
+                    smooth,
+                    ..Contribution::new(source, amount)
+                }));
+            }
+        }
+        Ok(contributions)
+    }
+}
+
+/// One piece of a study.
+#[derive(Clone, Copy)]
+enum Part {
+    Source(Source),
+    TimeStep,
+    Trial(u16),
+}
+
+/// The effect on each value, and whether the value follows smoothly; None where the value does not exist.
+type Effects = Vec<Option<(f64, bool)>>;
+
+struct Prepared<'a, P> {
+    study: &'a Study<'a, P>,
+    budget: TrialBudget,
+    /// Inputs that are drawn with the errors of the readings.
+    drawn: Vec<Source>,
+    nominal: Evaluation,
+}
+
+impl<P: Evaluate> Prepared<'_, P> {
+    fn source(&self, part: Part) -> Source {
+        let procedure = self.study.procedure;
+        match part {
+            Part::Source(source) => source,
+            Part::TimeStep => Source::TimeStep { procedure },
+            Part::Trial(draw) if self.budget.together => Source::Drawn { procedure, draw },
+            Part::Trial(draw) => Source::Readings { procedure, draw },
+        }
+    }
+
+    fn effects(&self, part: Part) -> Result<Effects, String> {
+        match part {
+            Part::Source(source) => self.of_source(source),
+            Part::TimeStep => self.of_the_time_step(),
+            Part::Trial(trial) => self.of_trial(trial),
+        }
+    }
+
+    fn run(&self, readings: &Perturbation, inputs: &P::Inputs) -> Result<Evaluation, String> {
+        let found = self.study.evaluate.evaluate(readings, inputs);
+        let grows = found.farthest.is_nan() || found.farthest > FARTHER * self.nominal.farthest;
+        if grows {
+            Err(GROWS.to_owned())
+        } else {
+            Ok(found)
+        }
+    }
+
+    /// The results with a source perturbed; None where that is out of its bounds.
+    fn perturbed(&self, source: Source, by: f64) -> Result<Option<Evaluation>, String> {
+        let shifts = [(source, by)];
+        let Ok(inputs) = self.study.evaluate.inputs(&shifts) else {
+            return Ok(None);
+        };
+        self.run(&self.study.instruments.perturbed(&shifts, None), &inputs)
+            .map(Some)
+    }
+
+    fn of_source(&self, source: Source) -> Result<Effects, String> {
+        let mut share = 1.0;
+        let [up, down] = loop {
+            let sides = [
+                self.perturbed(source, share)?,
+                self.perturbed(source, -share)?,
+            ];
+            if sides.iter().any(Option::is_some) {
+                break sides;
+            }
+            if share < LEAST_SHARE {
+                return Err(self
+                    .study
+                    .evaluate
+                    .inputs(&[(source, share)])
+                    .err()
+                    .unwrap_or_default());
+            }
+            share *= 0.5;
+        };
+        // To the sides that the whole perturbation went to.
+        let half = |whole: &Option<Evaluation>, by: f64| match whole {
+            Some(_) => self.perturbed(source, by),
+            None => Ok(None),
+        };
+        let halves = if self.budget.halves {
+            Some([half(&up, 0.5 * share)?, half(&down, -0.5 * share)?])
+        } else {
+            None
+        };
+        let all = || {
+            up.iter()
+                .chain(&down)
+                .chain(halves.iter().flatten().flatten())
+        };
+        let effect = |(index, nominal): (usize, &f64)| {
+            let sides = |[up, down]: [&Option<Evaluation>; 2]| {
+                one_sided(
+                    *nominal,
+                    [up, down].map(|found| found.as_ref().map(|found| found.values[index])),
+                )
+            };
+            let (amount, smooth) = effect(
+                *nominal,
+                sides([&up, &down]),
+                halves.as_ref().map(|[up, down]| sides([up, down])),
+            );
+            let known = amount == 0.0 || all().all(|found| found.is_known(index));
+            Some((amount / share, smooth && known))
+        };
+        Ok(self.nominal.values.iter().enumerate().map(effect).collect())
+    }
+
+    fn of_the_time_step(&self) -> Result<Effects, String> {
+        let inputs = self.study.evaluate.inputs(&[])?;
+        let in_steps = |finer| {
+            self.run(
+                &Perturbation {
+                    finer,
+                    ..self.study.instruments.perturbed(&[], None)
+                },
+                &inputs,
+            )
+        };
+        let [half, quarter] = FINER.map(in_steps);
+        let (half, quarter) = (half?, quarter?);
+        let effect = |(index, reported): (usize, &f64)| {
+            let (amount, converges) = of_finer_steps(
+                *reported,
+                self.nominal.values[index],
+                [half.values[index], quarter.values[index]],
+            );
+            let known = amount == 0.0 || half.is_known(index) && quarter.is_known(index);
+            reported.is_finite().then_some((amount, converges && known))
+        };
+        Ok(self
+            .study
+            .reported
+            .iter()
+            .flatten()
+            .enumerate()
+            .map(effect)
+            .collect())
+    }
+
+    fn of_trial(&self, trial: u16) -> Result<Effects, String> {
+        let evaluate = self.study.evaluate;
+        let drawn = self.drawn.iter().enumerate();
+        let mut shifts: Vec<(Source, f64)> = drawn
+            .map(|(place, source)| (*source, sign_of_input(trial, place)))
+            .collect();
+        if evaluate.inputs(&shifts).is_err() {
+            // An input that cannot be perturbed to one side is perturbed to the other.
+            for shift in &mut shifts {
+                if evaluate.inputs(&[*shift]).is_err() {
+                    shift.1 = -shift.1;
+                }
+            }
+        }
+        let found = self.run(
+            &self.study.instruments.perturbed(&shifts, Some(trial)),
+            &evaluate.inputs(&shifts)?,
+        )?;
+        let root = f64::from(self.budget.trials).sqrt();
+        // A result that does not exist has no uncertainty, and none is looked for in its trials.
+        let effect = |(found, nominal): (&f64, &f64)| {
+            nominal
+                .is_finite()
+                .then(|| ((found - nominal) / root, true))
+        };
+        Ok(found
+            .values
+            .iter()
+            .zip(&self.nominal.values)
+            .map(effect)
+            .collect())
+    }
+}
+
+/// Results at both sides; at a side that an input cannot be perturbed to, as far off as at the other.
+fn one_sided(nominal: f64, sides: [Option<f64>; 2]) -> [f64; 2] {
+    let mirrored = |value: f64| nominal + (nominal - value);
+    match sides {
+        [Some(up), Some(down)] => [up, down],
+        [Some(up), None] => [up, mirrored(up)],
+        [None, Some(down)] => [mirrored(down), down],
+        [None, None] => [f64::NAN; 2],
+    }
+}
+
+/// The effect of a perturbation by ±u, and whether it is smooth: `[up, down]`, and the same at ±u/2 where it was tried. Where
+/// the two sides, or the two sizes, disagree, the largest change stands for it.
+fn effect(nominal: f64, [up, down]: [f64; 2], half: Option<[f64; 2]>) -> (f64, bool) {
+    let (above, below, central) = (up - nominal, nominal - down, 0.5 * (up - down));
+    let halved = half.map_or(central, |[up, down]| up - down);
+    let widest = above.abs().max(below.abs());
+    let rounding = CLOSE * nominal.abs();
+    let one_sided = (above - below).abs() > ONE_SIDED * widest + rounding;
+    let step_dependent = (central - halved).abs() > HALVED * widest + rounding;
+    if one_sided || step_dependent {
+        return (
+            widest
+                .max(central.abs())
+                .max(halved.abs())
+                .copysign(central),
+            false,
+        );
+    }
+    (central, true)
+}
+
+/// The effect of the time step on a number that the run `reported`, and that was `nominal` when it was re-integrated and these in finer
+/// steps: how far it is from them, at most. It is sure where the steps converge.
+fn of_finer_steps(reported: f64, nominal: f64, [half, quarter]: [f64; 2]) -> (f64, bool) {
+    let off = [reported - half, reported - quarter]
+        .into_iter()
+        .reduce(|one, other| if other.abs() > one.abs() { other } else { one });
+    let converges =
+        (half - quarter).abs() <= CONVERGES * (nominal - half).abs() + CLOSE * nominal.abs();
+    (off.unwrap_or_default(), converges)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::perturbation::ReadingErrors;
+
+    fn source(index: usize) -> Source {
+        Source::StrikerMass(index)
+    }
+
+    /// y(a, b) of the two first sources, from (1, 2), each with its standard uncertainty and within bounds; past `departs` of the first
+    /// one it departs from its record.
+    struct Formula {
+        y: fn(f64, f64) -> f64,
+        u: [f64; 2],
+        bounds: [f64; 2],
+        departs: f64,
+    }
+
+    impl Evaluate for Formula {
+        type Inputs = [f64; 2];
+
+        fn inputs(&self, shifts: Shifts<'_>) -> Result<[f64; 2], String> {
+            let mut inputs = [1.0, 2.0];
+            for (index, input) in inputs.iter_mut().enumerate() {
+                *input += shifts
+                    .iter()
+                    .filter(|(moved, _)| *moved == source(index))
+                    .map(|(_, by)| by * self.u[index])
+                    .sum::<f64>();
+            }
+            let within = inputs
+                .iter()
+                .all(|input| (self.bounds[0]..=self.bounds[1]).contains(input));
+            within
+                .then_some(inputs)
+                .ok_or_else(|| "out of bounds".to_owned())
+        }
+
+        fn evaluate(&self, readings: &Perturbation, [a, b]: &[f64; 2]) -> Evaluation {
+            let (_, read) = readings.read(1, 0, 1, (0.0, 0.0));
+            let before_departure = (*a > self.departs).then(|| vec![f64::NAN]);
+            Evaluation {
+                values: vec![(self.y)(*a, *b) + read],
+                before_departure,
+                farthest: 1.0,
+            }
+        }
+    }
+
+    const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+    fn study(evaluate: &Formula, errors: ReadingErrors) -> Result<Vec<Contribution>, String> {
+        let instruments = InstrumentUncertainty::exact_but_for(errors);
+        let inputs = [0, 1]
+            .into_iter()
+            .filter(|index| evaluate.u[*index] > 0.0)
+            .map(source)
+            .collect();
+        let study = Study {
+            procedure: ProcedureId(0),
+            impact: 0,
+            evaluate,
+            instruments: &instruments,
+            inputs,
+            steps: 10,
+            reported: None,
+        };
+        match study.contributions::<()>(&mut |_, _| Ok(())) {
+            Ok(mut found) => Ok(found.remove(0)),
+            Err(Unknown::Reason(reason)) => Err(reason),
+            Err(Unknown::Ended(())) => panic!("nobody ends it"),
+        }
+    }
+
+    /// y = 3a + b², u(a) = 0.1, u(b) = 0.5 at b = 2: half the difference is exact for both; the quadratic to either side
+    /// differs by 2·0.25 of 2.25, more than a fifth.
+    #[test]
+    fn a_study_finds_the_effect_of_each_source() {
+        let evaluate = Formula {
+            y: |a, b| 3.0 * a + b * b,
+            u: [0.1, 0.5],
+            bounds: ANY,
+            departs: 1.01,
+        };
+        let found = study(&evaluate, ReadingErrors::default()).unwrap();
+        assert!(
+            (found[0].amount - 0.3).abs() < 1e-12 && !found[0].smooth,
+            "where nothing is recorded"
+        );
+        assert!(
+            (found[1].amount - 2.25).abs() < 1e-12 && !found[1].smooth,
+            "{found:?}"
+        );
+    }
+
+    /// Between bounds that let it go up alone, by a part to either side, and nowhere.
+    #[test]
+    fn an_input_is_perturbed_as_far_as_its_bounds_let_it() {
+        let of = |u, bounds| {
+            study(
+                &Formula {
+                    y: |a, _| 3.0 * a,
+                    u: [u, 0.0],
+                    bounds,
+                    departs: f64::INFINITY,
+                },
+                ReadingErrors::default(),
+            )
+        };
+        for (u, bounds, by_hand) in [(2.0, [0.0, 9.0], 6.0), (3.0, [0.0, 2.0], 9.0)] {
+            let part = of(u, bounds).unwrap()[0];
+            assert!(
+                (part.amount - by_hand).abs() < 1e-12 && part.smooth,
+                "{part:?}"
+            );
+        }
+        assert_eq!(of(1e9, [0.0, 2.0]).unwrap_err(), "out of bounds");
+    }
+
+    #[test]
+    fn trials_come_to_the_errors_of_the_readings() {
+        let evaluate = Formula {
+            y: |a, _| a,
+            u: [0.0; 2],
+            bounds: ANY,
+            departs: f64::INFINITY,
+        };
+        let errors = ReadingErrors {
+            noise: 0.2,
+            ..ReadingErrors::default()
+        };
+        let found = study(&evaluate, errors).unwrap();
+        assert_eq!(found.len(), usize::from(MOST_DRAWS));
+        assert!((crate::uncertainty::combined(&found).unwrap() - 0.2).abs() < 1e-12);
+    }
+
+    /// First order, second order, and steps that do not converge.
+    #[test]
+    fn the_time_step_contributes_what_finer_steps_leave_out() {
+        let of = |errors: [f64; 3]| {
+            let [own, half, quarter] = errors.map(|error| 10.0 + error);
+            of_finer_steps(own, own, [half, quarter])
+        };
+        let (first, sure) = of([1.0, 0.5, 0.25]);
+        assert!((first - 0.75).abs() < 1e-12 && sure);
+        let (second, sure) = of([1.0, 0.25, 0.0625]);
+        assert!((second - 0.9375).abs() < 1e-12 && sure);
+        let (none, sure) = of([0.0, 0.0, 0.0]);
+        assert!(none == 0.0 && sure);
+        let (wild, sure) = of([0.1, -0.4, 0.3]);
+        assert!((wild - 0.5).abs() < 1e-12 && !sure);
+        // A value at the end of a step is off by that too.
+        assert!((of_finer_steps(10.5, 10.0, [10.0, 10.0]).0 - 0.5).abs() < 1e-12);
+    }
+}

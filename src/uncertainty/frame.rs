@@ -1,0 +1,335 @@
+//! What the uncertainty of the inputs makes of the results of a frame, shaken or struck: what every such run shares. In: a
+//! frame of the plan, its damping, the rig's calibration. Out: the sources, inputs with sources moved, the runs to take again.
+//! The run itself is not touched, and no rig is moved.
+
+use super::impact::{out_of_bounds, uncertain_inputs};
+use crate::physics::reintegration::frame::{Floors, FrameRun};
+use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
+use crate::plan::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
+use crate::plan::{Frame, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyImpact};
+use crate::procedures::impact::storey::no_frame;
+use crate::procedures::inputs::{Inputs, with_shifts};
+use crate::procedures::stepping::run::FrameSteps;
+use crate::record::NamedResult;
+use crate::rig::DeclaredNoise;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+use crate::uncertainty::engine::{CLOSE, Contributions, Evaluate, Shifts, Study, Tick, Unknown};
+use crate::uncertainty::{InstrumentUncertainty, Source};
+
+/// Everything uncertain about a frame.
+#[derive(Clone, Copy)]
+pub(crate) struct FrameDoubts<'run> {
+    pub whole: &'run Plan,
+    /// By its place among the plan's specimens.
+    pub specimen: usize,
+    /// None of a specimen that is no frame, of which nothing is asked.
+    pub frame: Option<&'run Frame>,
+    pub damping: &'run ShakeDamping,
+    pub damping_uncertainty: f64,
+    pub stepping: &'run Stepping,
+    pub results: &'run dyn Results,
+    pub procedure: ProcedureId,
+    pub noise: DeclaredNoise,
+    /// By how much its damping ratio was raised to none.
+    pub lift: f64,
+    /// Which blow of the procedure it is, from 0: each has errors of its own.
+    pub blow: u16,
+}
+
+impl<'run> FrameDoubts<'run> {
+    pub fn of_shake(
+        plan: &'run Shake,
+        whole: &'run Plan,
+        inputs: &Inputs<'run>,
+        session: &Session<'_>,
+    ) -> Self {
+        let Shake {
+            specimen,
+            damping,
+            damping_uncertainty,
+            stepping,
+            ..
+        } = plan;
+        Self::new(
+            (*specimen, damping, *damping_uncertainty, stepping),
+            whole,
+            inputs,
+            session,
+        )
+    }
+
+    pub fn of_blow(
+        plan: &'run StoreyImpact,
+        whole: &'run Plan,
+        inputs: &Inputs<'run>,
+        session: &Session<'_>,
+    ) -> Self {
+        let StoreyImpact {
+            specimen,
+            damping,
+            damping_uncertainty,
+            stepping,
+            ..
+        } = plan;
+        Self::new(
+            (*specimen, damping, *damping_uncertainty, stepping),
+            whole,
+            inputs,
+            session,
+        )
+    }
+
+    fn new(
+        (specimen, damping, damping_uncertainty, stepping): (
+            usize,
+            &'run ShakeDamping,
+            f64,
+            &'run Stepping,
+        ),
+        whole: &'run Plan,
+        inputs: &Inputs<'run>,
+        session: &Session<'_>,
+    ) -> Self {
+        Self {
+            whole,
+            specimen,
+            frame: whole.specimens[specimen].frame.as_ref(),
+            damping,
+            damping_uncertainty,
+            stepping,
+            results: inputs.results(),
+            procedure: inputs.procedure(),
+            noise: session.guard.declared_noise(),
+            lift: inputs.lift(),
+            blow: 0,
+        }
+    }
+
+    /// Of another blow of the same procedure, from 0.
+    pub fn of_blow_number(self, index: usize) -> Self {
+        Self {
+            blow: u16::try_from(index).unwrap_or(u16::MAX),
+            ..self
+        }
+    }
+
+    /// Degrees of freedom.
+    pub fn floors(&self) -> usize {
+        self.frame.map_or(0, Frame::degrees_of_freedom)
+    }
+
+    /// Every uncertain input of the frame and of the `formulas` that the procedure reads; `stated` are more, with
+    /// their uncertainties.
+    pub fn sources(&self, formulas: &[&Formula], stated: &[(Source, f64)]) -> Vec<Source> {
+        let ratios = self.ratios();
+        let formulas: Vec<&Formula> = formulas.iter().copied().chain(ratios).collect();
+        let specimen = self.specimen;
+        let storeys = self.frame.map_or(&[][..], |frame| &frame.storeys);
+        let storeys = storeys.iter().enumerate().flat_map(|(storey, it)| {
+            [
+                (Source::StoreyMass { specimen, storey }, it.mass_uncertainty),
+                (
+                    Source::StoreyStiffness { specimen, storey },
+                    it.stiffness_uncertainty,
+                ),
+            ]
+        });
+        let [mass, stiffness] = self
+            .frame
+            .map_or([0.0; 2], |frame| frame.matrix_uncertainty);
+        let matrices = [
+            (Source::MassMatrix(specimen), mass),
+            (Source::StiffnessMatrix(specimen), stiffness),
+        ];
+        let procedure = self.procedure;
+        let modes = (0..ratios.len()).map(|mode| {
+            (
+                Source::DampingRatio { procedure, mode },
+                self.damping_uncertainty,
+            )
+        });
+        let all = storeys
+            .chain(matrices)
+            .chain(modes)
+            .chain(stated.iter().copied());
+        uncertain_inputs(&formulas, all, self.results)
+    }
+
+    fn ratios(&self) -> &[Formula] {
+        match self.damping {
+            ShakeDamping::Rayleigh(ratio) => std::slice::from_ref(ratio),
+            ShakeDamping::Modal(ratios) => ratios,
+        }
+    }
+
+    /// Contributions to the values of a layout, of a run in so many recorded steps.
+    pub fn contributions<P: Evaluate>(
+        &self,
+        evaluate: &P,
+        inputs: Vec<Source>,
+        steps: usize,
+        reported: Vec<f64>,
+        tick: Tick<'_, Stop>,
+    ) -> Result<Contributions, Unknown<Stop>> {
+        let study = Study {
+            procedure: self.procedure,
+            impact: self.blow,
+            evaluate,
+            instruments: &InstrumentUncertainty::of(self.whole, self.noise, self.floors()),
+            inputs,
+            steps: (steps * self.floors()) as u64,
+            reported: Some(reported),
+        };
+        study.contributions(tick)
+    }
+
+    /// The frame with its storeys as they are moved.
+    pub fn moved_frame(&self, shifts: Shifts<'_>) -> Result<Frame, String> {
+        let frame = self.frame.ok_or_else(|| out_of_bounds(&no_frame()))?;
+        let mut factors = [1.0; 2];
+        for (source, by) in shifts {
+            match *source {
+                Source::MassMatrix(specimen) if specimen == self.specimen => {
+                    factors[0] += by * frame.matrix_uncertainty[0];
+                }
+                Source::StiffnessMatrix(specimen) if specimen == self.specimen => {
+                    factors[1] += by * frame.matrix_uncertainty[1];
+                }
+                _ => {}
+            }
+        }
+        if frame.storeys.is_empty() {
+            return Ok(frame.scaled(factors));
+        }
+        Ok(frame.with(|storeys| {
+            for (source, by) in shifts {
+                match *source {
+                    Source::StoreyMass { specimen, storey } if specimen == self.specimen => {
+                        storeys[storey].mass += by * storeys[storey].mass_uncertainty;
+                    }
+                    Source::StoreyStiffness { specimen, storey } if specimen == self.specimen => {
+                        storeys[storey].stiffness += by * storeys[storey].stiffness_uncertainty;
+                    }
+                    _ => {}
+                }
+            }
+        }))
+    }
+
+    /// The damping as it is moved.
+    pub fn moved_damping(&self, shifts: Shifts<'_>) -> ShakeDamping {
+        let moved = |(mode, ratio): (usize, &Formula)| {
+            let source = Source::DampingRatio {
+                procedure: self.procedure,
+                mode,
+            };
+            let by: f64 = shifts
+                .iter()
+                .filter(|(moved, _)| *moved == source)
+                .map(|(_, by)| by)
+                .sum();
+            if by == 0.0 {
+                return ratio.clone();
+            }
+            let more = Formula::Constant(by * self.damping_uncertainty);
+            Formula::Binary(Operator::Add, Box::new(ratio.clone()), Box::new(more))
+        };
+        match self.damping {
+            ShakeDamping::Rayleigh(ratio) => ShakeDamping::Rayleigh(moved((0, ratio))),
+            ShakeDamping::Modal(ratios) => {
+                ShakeDamping::Modal(ratios.iter().enumerate().map(moved).collect())
+            }
+        }
+    }
+
+    /// Calls with inputs that read results with the sources moved.
+    pub fn with_inputs<T>(
+        &self,
+        shifts: Shifts<'_>,
+        then: &mut dyn FnMut(&mut Inputs<'_>) -> Result<T, Stop>,
+    ) -> Result<T, String> {
+        with_shifts(self.results, shifts, &mut |results| {
+            then(&mut Inputs::moved(results, self.procedure, self.lift))
+        })
+        .map_err(|stop| out_of_bounds(&stop))
+    }
+
+    /// How the run was integrated.
+    pub fn run(&self, steps: &FrameSteps) -> FrameRun {
+        FrameRun {
+            matrices: steps.properties.matrices.clone(),
+            integrator: self.stepping.integrator,
+            i_modification: self.stepping.i_modification,
+            tangents: steps.tangents,
+            time_step: steps.time_step,
+            steps: steps.steps,
+            force_noise: self.noise.force,
+            resolution: self.noise.resolution,
+            gliding: matches!(self.stepping.mode, Mode::Continuous { .. }),
+        }
+    }
+
+    /// The way that was recorded.
+    pub fn path(
+        &self,
+        steps: &FrameSteps,
+        readings: Vec<FrameReading>,
+    ) -> Result<FramePath, String> {
+        self.passed(steps, readings, Vec::new())
+    }
+
+    /// The same way, once it is known how fast its targets were passed (m/s).
+    pub fn under_way(
+        &self,
+        steps: &FrameSteps,
+        path: FramePath,
+        velocities: Vec<Vec<f64>>,
+    ) -> Result<FramePath, String> {
+        if velocities.is_empty() {
+            Ok(path)
+        } else {
+            self.passed(steps, path.into_readings(), velocities)
+        }
+    }
+
+    fn passed(
+        &self,
+        steps: &FrameSteps,
+        readings: Vec<FrameReading>,
+        velocities: Vec<Vec<f64>>,
+    ) -> Result<FramePath, String> {
+        let stiffness = &steps.properties.matrices.stiffness;
+        let path = FramePath::new(
+            readings,
+            (velocities, steps.time_step),
+            stiffness,
+            self.noise.force,
+            self.noise.resolution,
+        );
+        path.ok_or_else(|| "nothing was recorded".to_owned())
+    }
+}
+
+/// Whether the floors came to what is told of them; `displacement` names the result with the floors' largest.
+pub(crate) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResult]) -> bool {
+    // The largest shear is told without what noise adds to it: the drifts say that the way is the recorded one.
+    let lists = [
+        (displacement, floors.max_displacement.as_slice()),
+        ("max_drift", &floors.max_drift),
+        ("final_drift", &floors.final_drift),
+    ];
+    lists.into_iter().all(|(name, found)| {
+        let told = match told
+            .iter()
+            .find(|result| result.name == name)
+            .map(|result| &result.value)
+        {
+            Some(ResultValue::List(values)) => values.as_slice(),
+            Some(ResultValue::Number { value, .. }) => value.as_slice(),
+            None => return false,
+        };
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
+        told.len() == found.len() && told.iter().zip(found).all(near)
+    })
+}

@@ -1,0 +1,348 @@
+//! The uncertainty of the results of an impact. In: its inputs with their sources of uncertainty, and the recorded steps. Out: the
+//! contributions of each source to each result. The impact is re-integrated along the recorded force–displacement path with perturbed
+//! inputs and readings; no rig is moved.
+
+use crate::physics::contact::state::ContactLaw;
+use crate::physics::impact::ImpactError;
+use crate::physics::impact::summary::ImpactSummary;
+use crate::physics::perturbation::Perturbation;
+use crate::physics::reintegration::hysteresis_replay::{Reading, RecordedPath};
+use crate::physics::reintegration::impact::{OUTCOMES, Outcome, foretold, rerun};
+use crate::plan::formula::{Formula, ProcedureId, Results};
+use crate::plan::{Contact, Impact, Mode, Plan, Striker};
+use crate::procedures::impact::run::Setting;
+use crate::procedures::inputs::{Inputs, with_shifts};
+use crate::procedures::results::{Layout, give, values};
+use crate::record::{ImpactStep, NamedResult};
+use crate::rig::DeclaredNoise;
+use crate::run::stop::Stop;
+use crate::uncertainty::engine::{
+    CLOSE, Contributions, Evaluate, Evaluation, Shifts, Study, Tick, Unknown,
+};
+use crate::uncertainty::{InstrumentUncertainty, Source, sources_of};
+
+/// Why no uncertainty is told of a run.
+pub(crate) const LEADS_ELSEWHERE: &str =
+    "the recorded way, taken again, does not lead to the recorded results";
+
+/// Everything uncertain about a blow.
+#[derive(Clone, Copy)]
+pub(crate) struct Doubts<'run> {
+    plan: &'run Impact,
+    whole: &'run Plan,
+    results: &'run dyn Results,
+    procedure: ProcedureId,
+    noise: DeclaredNoise,
+    /// By how much its damping was raised to none.
+    lift: f64,
+    /// Which blow of the procedure it is, from 0: each has errors of its own.
+    blow: u16,
+}
+
+impl<'run> Doubts<'run> {
+    pub(crate) fn new(
+        plan: &'run Impact,
+        whole: &'run Plan,
+        inputs: &Inputs<'run>,
+        noise: DeclaredNoise,
+    ) -> Self {
+        Self {
+            plan,
+            whole,
+            results: inputs.results(),
+            procedure: inputs.procedure(),
+            noise,
+            lift: inputs.lift(),
+            blow: 0,
+        }
+    }
+
+    /// Of another blow of the same procedure, from 0.
+    pub(crate) fn of_blow(self, index: usize) -> Self {
+        Self {
+            blow: u16::try_from(index).unwrap_or(u16::MAX),
+            ..self
+        }
+    }
+
+    /// Gives `results` their contributions.
+    pub(crate) fn propagate(
+        &self,
+        setting: &Setting,
+        steps: &[ImpactStep],
+        recorded: &ImpactSummary,
+        results: &mut [NamedResult],
+        tick: Tick<'_, Stop>,
+    ) -> Result<(), Unknown<Stop>> {
+        let path = self
+            .path(setting, steps)
+            .ok_or_else(|| "nothing was recorded".to_owned())?;
+        let evaluate = RecordedImpact {
+            doubts: self,
+            setting,
+            path,
+        };
+        let unperturbed = evaluate
+            .run(setting, &Perturbation::none(1))
+            .map_err(|error| error.to_string())?;
+        if !same(&unperturbed.summary, recorded) {
+            return Err(LEADS_ELSEWHERE.to_owned().into());
+        }
+        let layout: Layout = OUTCOMES
+            .iter()
+            .copied()
+            .chain(["critical_time_step"])
+            .map(|name| (name, 1))
+            .collect();
+        let study = Study {
+            procedure: self.procedure,
+            impact: self.blow,
+            evaluate: &evaluate,
+            instruments: &InstrumentUncertainty::of(self.whole, self.noise, 1),
+            inputs: self.sources(),
+            steps: steps.len() as u64,
+            reported: Some(values(&layout, results)),
+        };
+        let mut contributions = study.contributions(tick)?;
+        for (name, quantum) in whole_steps(setting.input.time_step) {
+            at_least(
+                quantum,
+                self.procedure,
+                layout.iter().position(|(result, _)| *result == name),
+                &mut contributions,
+            );
+        }
+        no_known_force(setting.input.law, recorded, &mut contributions);
+        give(&layout, contributions, results);
+        Ok(())
+    }
+
+    /// The path that was recorded; None of no reading.
+    fn path(&self, setting: &Setting, steps: &[ImpactStep]) -> Option<RecordedPath> {
+        let readings = steps.iter().map(|step| Reading {
+            target: step.command,
+            displacement: step.displacement,
+            force: step.restoring_force,
+        });
+        let (input, readings) = (&setting.input, readings.collect::<Vec<Reading>>());
+        if self.plan.stepping.mode == Mode::StepAndPause {
+            return RecordedPath::new(
+                readings,
+                input.stiffness,
+                input.force_noise,
+                input.resolution,
+            );
+        }
+        let velocities = foretold(input, self.plan.until, setting.steps, &readings);
+        RecordedPath::under_way(
+            readings,
+            (&velocities, input.time_step),
+            input.stiffness,
+            input.force_noise,
+            input.resolution,
+        )
+    }
+
+    /// Uncertain inputs, each once.
+    fn sources(&self) -> Vec<Source> {
+        let Impact {
+            striker,
+            specimen,
+            mass,
+            stiffness,
+            damping,
+            contact,
+            ..
+        } = self.plan;
+        let formulas: Vec<&Formula> = [mass, stiffness, damping]
+            .into_iter()
+            .chain(contact_formulas(contact))
+            .collect();
+        let Striker {
+            mass_uncertainty,
+            velocity_uncertainty,
+            ..
+        } = self.whole.strikers[*striker];
+        let stated = [
+            (Source::StrikerMass(*striker), mass_uncertainty),
+            (Source::StrikerVelocity(*striker), velocity_uncertainty),
+            (Source::SpecimenMass(*specimen), self.plan.mass_uncertainty),
+        ];
+        uncertain_inputs(&formulas, stated.into_iter(), self.results)
+    }
+}
+
+/// Sources of the results and statements that `formulas` read, and `stated` ones with their uncertainties.
+pub(crate) fn uncertain_inputs(
+    formulas: &[&Formula],
+    stated: impl Iterator<Item = (Source, f64)>,
+    results: &dyn Results,
+) -> Vec<Source> {
+    let mut references = Vec::new();
+    for formula in formulas {
+        formula.collect_references(&mut references);
+    }
+    let mut sources = sources_of(&references, results);
+    for formula in formulas {
+        formula.collect_stated(&mut sources);
+    }
+    sources.extend(
+        stated
+            .filter(|(_, uncertainty)| *uncertainty > 0.0)
+            .map(|(source, _)| source),
+    );
+    sources
+}
+
+/// An impact along its recorded path.
+struct RecordedImpact<'a, 'run> {
+    doubts: &'a Doubts<'run>,
+    setting: &'a Setting,
+    path: RecordedPath,
+}
+
+impl RecordedImpact<'_, '_> {
+    fn run(&self, setting: &Setting, readings: &Perturbation) -> Result<Outcome, ImpactError> {
+        rerun(
+            &setting.input,
+            self.doubts.plan.until,
+            setting.steps,
+            &self.path,
+            readings,
+        )
+    }
+}
+
+impl Evaluate for RecordedImpact<'_, '_> {
+    type Inputs = Setting;
+
+    /// The time step stays: it was chosen, not measured.
+    fn inputs(&self, shifts: Shifts<'_>) -> Result<Setting, String> {
+        let Doubts {
+            plan,
+            whole,
+            results,
+            procedure,
+            noise,
+            lift,
+            ..
+        } = *self.doubts;
+        let declared = &whole.strikers[plan.striker];
+        let mut striker = declared.clone();
+        let mut heavier = 0.0;
+        for (source, by) in shifts {
+            match source {
+                Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
+                Source::StrikerVelocity(_) => striker.velocity += by * striker.velocity_uncertainty,
+                Source::SpecimenMass(_) => heavier += by * plan.mass_uncertainty,
+                // Formulas follow it where they read it; the others are of the instruments.
+                _ => {}
+            }
+        }
+        // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion; they share the
+        // critical time step of the fastest.
+        let faster = striker.velocity / declared.velocity;
+        striker.velocity = self.setting.fastest * faster;
+        let mut found = with_shifts(results, shifts, &mut |results| {
+            Setting::evaluate(
+                plan,
+                &striker,
+                &mut Inputs::moved(results, procedure, lift),
+                noise,
+            )
+        })
+        .map_err(|stop| out_of_bounds(&stop))?;
+        found.heavier(heavier);
+        found.input.time_step = self.setting.input.time_step;
+        found.steps = self.setting.steps;
+        found.input.striker_velocity = self.setting.input.striker_velocity * faster;
+        Ok(found)
+    }
+
+    fn evaluate(&self, readings: &Perturbation, setting: &Setting) -> Evaluation {
+        let Ok(found) = self.run(setting, readings) else {
+            return Evaluation::none(OUTCOMES.len() + 1);
+        };
+        let with_step = |values: [f64; OUTCOMES.len()]| -> Vec<f64> {
+            values
+                .iter()
+                .copied()
+                .chain([setting.critical_time_step])
+                .collect()
+        };
+        Evaluation {
+            values: with_step(found.values),
+            before_departure: found.before_departure.map(with_step),
+            farthest: found.farthest,
+        }
+    }
+}
+
+pub(crate) fn out_of_bounds(stop: &Stop) -> String {
+    format!("an input moved by its uncertainty is none: {stop}")
+}
+
+/// What a contact law reads.
+pub(crate) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
+    match contact {
+        Contact::Rigid => Vec::new(),
+        Contact::Limit { force } => vec![force],
+        Contact::Restitution { coefficient } => vec![coefficient],
+        Contact::Hertz {
+            stiffness,
+            loss,
+            force_limit,
+        } => [stiffness, loss].into_iter().chain(force_limit).collect(),
+    }
+}
+
+/// Times that are told to a whole step, with the standard uncertainty of a quantum Δt, Δt/√12 (s).
+pub(crate) fn whole_steps(time_step: f64) -> [(&'static str, f64); 2] {
+    ["stop_time", "time_of_max_displacement"].map(|name| (name, time_step / 12.0_f64.sqrt()))
+}
+
+/// Lets the time step contribute so much at least to the number at a place.
+pub(crate) fn at_least(
+    most: f64,
+    procedure: ProcedureId,
+    place: Option<usize>,
+    contributions: &mut Contributions,
+) {
+    let source = Source::TimeStep { procedure };
+    let parts = place
+        .and_then(|place| contributions.get_mut(place))
+        .into_iter()
+        .flatten();
+    for part in parts.filter(|part| part.source == source && part.amount.abs() < most) {
+        part.amount = most;
+    }
+}
+
+/// A largest contact force that follows the time step is known to nobody: what inputs do to it is not its uncertainty.
+pub(crate) fn no_known_force(
+    law: ContactLaw,
+    recorded: &ImpactSummary,
+    contributions: &mut Contributions,
+) {
+    if law.force_follows_the_step(recorded.max_contact_force)
+        && let Some(index) = OUTCOMES
+            .iter()
+            .position(|outcome| *outcome == "max_contact_force")
+    {
+        contributions[index].clear();
+    }
+}
+
+/// Whether two runs came to the same.
+pub(crate) fn same(one: &ImpactSummary, other: &ImpactSummary) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
+    let read: [fn(&ImpactSummary) -> f64; 6] = [
+        |summary| summary.max_displacement,
+        |summary| summary.time_of_max_displacement,
+        |summary| summary.stop_time.unwrap_or(-1.0),
+        |summary| summary.final_displacement,
+        |summary| summary.impulse,
+        |summary| summary.absorbed_energy,
+    ];
+    read.iter().all(|read| near(read(one), read(other)))
+}

@@ -1,0 +1,159 @@
+//! The uncertainty of the instruments of a rig: calibration, zero offset and reading errors, axis by axis. In: what the plan states and the rig
+//! declares. Out: sources, and readings with some of them perturbed. It knows no procedure.
+
+use super::Source;
+use super::engine::Shifts;
+use crate::physics::identification::StatedVariance;
+use crate::physics::perturbation::{Instruments, Perturbation, ReadingErrors};
+use crate::plan::{Calibration, Link, Plan, ReadingRules, VirtualLink};
+use crate::rig::DeclaredNoise;
+
+/// The instruments of every axis.
+#[derive(Clone, Debug)]
+pub struct InstrumentUncertainty {
+    axes: Vec<(Calibration, ReadingErrors)>,
+    /// Whether the readings of this run do not have these errors: a dry run on an ideal rig.
+    expected: bool,
+}
+
+impl InstrumentUncertainty {
+    /// Of the rig of a plan, which declares this noise.
+    #[must_use]
+    pub fn of(plan: &Plan, declared: DeclaredNoise, axes: usize) -> Self {
+        let of_axis = |axis| {
+            (
+                plan.rig.calibration_of(axis),
+                reading_errors(plan, declared, axis),
+            )
+        };
+        let expected = matches!(
+            plan.rig.link,
+            Link::Virtual(VirtualLink {
+                foretold: Some(_),
+                ..
+            })
+        );
+        Self {
+            axes: (0..axes).map(of_axis).collect(),
+            expected,
+        }
+    }
+
+    /// The errors of one reading of an axis.
+    #[must_use]
+    pub fn errors(&self, axis: usize) -> ReadingErrors {
+        self.axes
+            .get(axis)
+            .map(|(_, errors)| *errors)
+            .unwrap_or_default()
+    }
+
+    /// Whether a reading of any axis has errors.
+    #[must_use]
+    pub fn has_reading_errors(&self) -> bool {
+        self.axes.iter().any(|(_, errors)| errors.any())
+    }
+
+    /// The variance of a mean of so many samples of an axis, for a fit whose scatter shows the noise: q²/12, which the samples at one place
+    /// have in common. A dry run has no scatter, and counts with the noise as well.
+    #[must_use]
+    pub fn stated_variance(&self, axis: usize, samples: u32) -> StatedVariance {
+        let errors = self.errors(axis);
+        let [force, displacement] = errors.quantization().map(|u| u * u);
+        let noise = if self.expected {
+            errors.noise * errors.noise / f64::from(samples.max(1))
+        } else {
+            0.0
+        };
+        StatedVariance {
+            force: force + noise,
+            displacement,
+            expected: self.expected,
+        }
+    }
+
+    /// Uncertain scale factors and zero offsets.
+    pub fn sources(&self) -> impl Iterator<Item = Source> {
+        self.axes
+            .iter()
+            .enumerate()
+            .flat_map(|(axis, (calibration, _))| {
+                let stated = [
+                    (Source::ForceScale(axis), calibration.force_uncertainty),
+                    (
+                        Source::DisplacementScale(axis),
+                        calibration.displacement_uncertainty,
+                    ),
+                    (Source::ForceZero(axis), calibration.zero()),
+                ];
+                stated
+                    .into_iter()
+                    .filter(|(_, uncertainty)| *uncertainty > 0.0)
+                    .map(|(source, _)| source)
+            })
+    }
+
+    /// Readings with the sources that are the instruments' perturbed, and the errors of a trial.
+    #[must_use]
+    pub fn perturbed(&self, shifts: Shifts<'_>, trial: Option<u16>) -> Perturbation {
+        let mut readings = Perturbation {
+            trial,
+            ..Perturbation::none(self.axes.len())
+        };
+        for (Instruments { errors, .. }, (_, declared)) in readings.axes.iter_mut().zip(&self.axes)
+        {
+            *errors = *declared;
+        }
+        for (source, by) in shifts {
+            match *source {
+                Source::ForceScale(axis) => {
+                    readings.axes[axis].force_scale += by * self.axes[axis].0.force_uncertainty;
+                }
+                Source::DisplacementScale(axis) => {
+                    readings.axes[axis].displacement_scale +=
+                        by * self.axes[axis].0.displacement_uncertainty;
+                }
+                Source::ForceZero(axis) => {
+                    readings.axes[axis].zero_offset += by * self.axes[axis].0.zero();
+                }
+                // The others are inputs.
+                _ => {}
+            }
+        }
+        readings
+    }
+
+    #[cfg(test)]
+    pub(super) fn exact_but_for(errors: ReadingErrors) -> Self {
+        Self {
+            axes: vec![(Calibration::default(), errors)],
+            expected: false,
+        }
+    }
+}
+
+/// The errors of one reading of an axis, as the rig declares them; in a dry run, those of the rig that it stands for.
+fn reading_errors(plan: &Plan, declared: DeclaredNoise, axis: usize) -> ReadingErrors {
+    let (noise, resolution, force_resolution) = match &plan.rig.link {
+        Link::Virtual(VirtualLink {
+            foretold: Some(errors),
+            ..
+        }) => (errors.noise, errors.resolution, errors.force_resolution),
+        Link::Virtual(link) => (declared.force, declared.resolution, link.force_resolution),
+        Link::Real(link) => {
+            let ReadingRules {
+                noise, resolution, ..
+            } = link.readings_of(axis);
+            (
+                noise,
+                resolution,
+                plan.rig.calibration.newtons_per_count.unwrap_or(0.0).abs(),
+            )
+        }
+    };
+    ReadingErrors {
+        noise,
+        resolution,
+        force_resolution,
+    }
+}

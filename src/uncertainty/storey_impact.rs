@@ -1,0 +1,248 @@
+//! The uncertainty of the results of an impact on a storey. In: its inputs with their sources of uncertainty, and the recorded steps. Out:
+//! the contributions of each source to each number. The frame is re-integrated along its recorded path.
+
+use super::frame::{FrameDoubts, leads_there};
+use super::impact::{
+    LEADS_ELSEWHERE, at_least, contact_formulas, no_known_force, same, whole_steps,
+};
+use crate::physics::impact::ImpactInput;
+use crate::physics::impact::summary::ImpactSummary;
+use crate::physics::perturbation::Perturbation;
+use crate::physics::reintegration::frame::{Blow, Floors, FrameRun, StrikerOutcome};
+use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
+use crate::physics::reintegration::impact::OUTCOMES;
+use crate::plan::{StoreyImpact, Striker};
+use crate::procedures::impact::run::law;
+use crate::procedures::impact::storey::Setting;
+use crate::procedures::results::{Layout, give, values};
+use crate::procedures::stepping;
+use crate::record::{FloorStep, NamedResult};
+use crate::run::stop::Stop;
+use crate::uncertainty::Source;
+use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Tick, Unknown};
+
+/// Numbers after those of any impact.
+const SCALARS: [&str; 4] = [
+    "contact_duration",
+    "rebound_velocity",
+    "max_base_shear",
+    "critical_time_step",
+];
+/// Lists after them, an entry a floor.
+const LISTS: [&str; 5] = [
+    "floor_displacement",
+    "max_drift",
+    "final_drift",
+    "storey_energy",
+    "periods",
+];
+
+/// Gives `results` their contributions.
+pub(crate) fn propagate(
+    doubts: &FrameDoubts<'_>,
+    plan: &StoreyImpact,
+    setting: &Setting,
+    history: &[FloorStep],
+    recorded: &ImpactSummary,
+    results: &mut [NamedResult],
+    tick: Tick<'_, Stop>,
+) -> Result<(), Unknown<Stop>> {
+    let reading = |step: &FloorStep| FrameReading {
+        target: step.command.clone(),
+        displacement: step.displacement.clone(),
+        force: step.restoring_force.clone(),
+    };
+    let path = doubts.path(&setting.frame, history.iter().map(reading).collect())?;
+    let floors = doubts.floors();
+    let mut evaluate = RecordedStoreyImpact {
+        doubts,
+        plan,
+        setting,
+        path,
+    };
+    let Inputs { run, blow, .. } = evaluate.inputs(&[])?;
+    let found = run
+        .struck(&blow, &evaluate.path, &Perturbation::none(floors))
+        .map_err(|error| error.to_string())?;
+    if !same(&found.blow.summary, recorded)
+        || !leads_there(&found.floors.ends, "floor_displacement", results)
+    {
+        return Err(LEADS_ELSEWHERE.to_owned().into());
+    }
+    evaluate.path = doubts.under_way(&setting.frame, evaluate.path, found.floors.velocities)?;
+    let scalars = OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1));
+    let layout: Layout = scalars.chain(LISTS.map(|name| (name, floors))).collect();
+    let mut reported = values(&layout, results);
+    // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
+    reported[OUTCOMES.len() + 2] = found.floors.between.max_base_shear;
+    let Striker {
+        mass_uncertainty,
+        velocity_uncertainty,
+        ..
+    } = setting.striker;
+    let stated = [
+        (Source::StrikerMass(plan.striker), mass_uncertainty),
+        (Source::StrikerVelocity(plan.striker), velocity_uncertainty),
+    ];
+    let sources = doubts.sources(&contact_formulas(&plan.contact), &stated);
+    let mut contributions =
+        doubts.contributions(&evaluate, sources, history.len(), reported, tick)?;
+    no_known_force(setting.law, recorded, &mut contributions);
+    let time_step = setting.frame.time_step;
+    // From the beginning of a step to the end of one: two times.
+    let duration = ("contact_duration", time_step / 6.0_f64.sqrt());
+    for (name, quantum) in whole_steps(time_step).into_iter().chain([duration]) {
+        at_least(
+            quantum,
+            doubts.procedure,
+            layout.iter().position(|(result, _)| *result == name),
+            &mut contributions,
+        );
+    }
+    give(&layout, contributions, results);
+    Ok(())
+}
+
+/// An impact on a storey along its recorded path.
+struct RecordedStoreyImpact<'a, 'run> {
+    doubts: &'a FrameDoubts<'run>,
+    plan: &'a StoreyImpact,
+    setting: &'a Setting,
+    path: FramePath,
+}
+
+struct Inputs {
+    run: FrameRun,
+    blow: Blow,
+    /// s
+    periods: Vec<f64>,
+    critical_time_step: f64,
+}
+
+impl Evaluate for RecordedStoreyImpact<'_, '_> {
+    type Inputs = Inputs;
+
+    fn inputs(&self, shifts: Shifts<'_>) -> Result<Inputs, String> {
+        let Self {
+            doubts,
+            plan,
+            setting,
+            ..
+        } = self;
+        let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
+        let (properties, law) = doubts.with_inputs(shifts, &mut |inputs| {
+            Ok((
+                stepping::run::properties(&frame, &damping, inputs)?,
+                law(&plan.contact, inputs)?,
+            ))
+        })?;
+        let (mut striker, declared) = (
+            setting.striker.clone(),
+            &doubts.whole.strikers[plan.striker],
+        );
+        for (source, by) in shifts {
+            match source {
+                Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
+                // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion.
+                Source::StrikerVelocity(_) => {
+                    striker.velocity *=
+                        1.0 + by * declared.velocity_uncertainty / declared.velocity;
+                }
+                _ => {}
+            }
+        }
+        // Blows of a row have the critical time step of the fastest.
+        let fastest = Striker {
+            velocity: striker.velocity * (setting.fastest / setting.striker.velocity),
+            ..striker.clone()
+        };
+        let critical_time_step =
+            properties.critical_on_impact(plan.struck, &fastest.approach(law.stiffness()));
+        let stiffness = frame.stiffness[plan.struck][plan.struck];
+        let body = ImpactInput {
+            mass: properties.struck_mass(plan.struck),
+            stiffness,
+            operator_stiffness: stiffness,
+            striker_mass: striker.mass,
+            striker_velocity: striker.velocity,
+            law,
+            ..setting.body
+        };
+        let blow = Blow {
+            struck: plan.struck,
+            law,
+            until: plan.until,
+            body,
+        };
+        let periods = properties.modes.periods.clone();
+        let run = FrameRun {
+            matrices: properties.matrices,
+            ..doubts.run(&setting.frame)
+        };
+        Ok(Inputs {
+            run,
+            blow,
+            periods,
+            critical_time_step,
+        })
+    }
+
+    fn evaluate(&self, readings: &Perturbation, inputs: &Inputs) -> Evaluation {
+        let Ok(found) = inputs.run.struck(&inputs.blow, &self.path, readings) else {
+            return Evaluation::none(
+                OUTCOMES.len() + SCALARS.len() + LISTS.len() * self.doubts.floors(),
+            );
+        };
+        let time_step = inputs.run.time_step / f64::from(readings.finer);
+        // In the order of the layout.
+        let numbers = |blow: &[f64], striker: &StrikerOutcome, floors: &Floors| {
+            let StrikerOutcome {
+                storey_energy,
+                first_blow,
+                striker_velocity,
+            } = striker;
+            #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+            let duration = if *first_blow > 0 {
+                *first_blow as f64 * time_step
+            } else {
+                f64::NAN
+            };
+            let back = if *striker_velocity < 0.0 {
+                -striker_velocity
+            } else {
+                f64::NAN
+            };
+            let lists = [
+                &floors.max_displacement,
+                &floors.max_drift,
+                &floors.final_drift,
+                storey_energy,
+                &inputs.periods,
+            ];
+            let scalars = [
+                duration,
+                back,
+                floors.max_base_shear,
+                inputs.critical_time_step,
+            ];
+            blow.iter()
+                .copied()
+                .chain(scalars)
+                .chain(lists.into_iter().flatten().copied())
+                .collect::<Vec<f64>>()
+        };
+        let before = (
+            &found.blow.before_departure,
+            &found.before_departure,
+            &found.floors.before_departure,
+        );
+        Evaluation {
+            values: numbers(&found.blow.values, &found.striker, &found.floors.between),
+            before_departure: match before {
+                (Some(blow), Some(striker), Some(floors)) => Some(numbers(blow, striker, floors)),
+                _ => None,
+            },
+            farthest: found.floors.between.farthest(),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Independent jobs shared out among threads. In: jobs. Out: their results, each in its place, so that the same bytes come out whatever the
+//! number of threads.
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+/// How long to wait for the next result before `tick` is called again.
+const MOMENT: Duration = Duration::from_millis(20);
+
+/// The result of each job, in the order of the jobs, by as many threads as the machine has cores. `tick` hears how many of how many
+/// are done.
+pub(super) fn in_threads<J: Sync, T: Send, E>(
+    jobs: &[J],
+    work: &(dyn Fn(&J) -> T + Sync),
+    tick: &mut dyn FnMut(usize, usize) -> Result<(), E>,
+) -> Result<Vec<T>, E> {
+    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let (next, given_up) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let (send, receive) = channel();
+    let mut found: Vec<Option<T>> = jobs.iter().map(|_| None).collect();
+    let ended = std::thread::scope(|scope| {
+        let mut threads = 0;
+        for _ in 0..cores.min(jobs.len()) {
+            let (send, next, given_up) = (send.clone(), &next, &given_up);
+            let run = move || {
+                while !given_up.load(Ordering::Relaxed) {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(job) = jobs.get(place) else { break };
+                    if send.send((place, work(job))).is_err() {
+                        break;
+                    }
+                }
+            };
+            threads += usize::from(std::thread::Builder::new().spawn_scoped(scope, run).is_ok());
+        }
+        drop(send);
+        let mut done = 0;
+        // The rig has moved and the record is open: a machine that starts no thread costs time, and not the run.
+        if threads == 0 {
+            for (job, found) in jobs.iter().zip(&mut found) {
+                *found = Some(work(job));
+                done += 1;
+                tick(done, jobs.len())?;
+            }
+        }
+        while done < jobs.len() {
+            match receive.recv_timeout(MOMENT) {
+                Ok((place, value)) => {
+                    found[place] = Some(value);
+                    done += 1;
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                // A thread that panicked: the scope says so.
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if let Err(stop) = tick(done, jobs.len()) {
+                given_up.store(true, Ordering::Relaxed);
+                return Err(stop);
+            }
+        }
+        Ok(())
+    });
+    ended.map(|()| found.into_iter().flatten().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every job is done once, in whatever order, and stands in its place; whoever watches is told of all, and may stop it.
+    #[test]
+    fn jobs_keep_their_places_in_threads() {
+        let jobs: Vec<u64> = (0..500).collect();
+        let mut most = 0;
+        let slow_first =
+            |job: &u64| (0..(500 - job) * 50).fold(*job, |sum, more| sum ^ more << 20 >> 60);
+        let found = in_threads(&jobs, &slow_first, &mut |done, of| {
+            most = most.max(done);
+            assert_eq!(of, 500);
+            Ok::<(), ()>(())
+        });
+        assert_eq!(found, Ok(jobs.clone()));
+        assert_eq!(most, 500);
+        let stop = in_threads(&jobs, &|job| *job, &mut |_, _| Err("enough"));
+        assert_eq!(stop, Err("enough"));
+    }
+}

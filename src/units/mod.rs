@@ -1,0 +1,10 @@
+//! Physical quantities: dimensions, the unit table, numbers for display. Inside the program every
+//! number is SI. Units are converted in two places: `language` on the way in, `report` on the way
+//! out.
+
+pub mod dimension;
+pub mod display;
+pub mod unit;
+
+pub use dimension::{Dimension, Exponent};
+pub use unit::Unit;

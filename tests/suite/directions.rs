@@ -1,0 +1,215 @@
+//! The arrows of the house: which folder of `src` may use which, and how many files still use each other in a circle.
+
+use std::collections::BTreeSet;
+
+use super::import_graph::{ImportGraph, cycles, is_of_tests, without_comments_and_tests};
+use super::source_text::{none, rust_files};
+
+/// The folders of `src` from the ground up. A folder may use what stands before it, and none of its own line but itself.
+const ORDER: &[&[&str]] = &[
+    &["text", "units"],
+    &["physics"],
+    &["plan"],
+    &["schema"],
+    &["language", "record"],
+    &["rig"],
+    &["run"],
+    &["uncertainty"],
+    &["verdict"],
+    &["report"],
+    &["procedures"],
+    &["golden", "remote"],
+    &["emulator", "evidence"],
+    &["cli"],
+];
+
+/// The one file that knows which procedures there are.
+const DISPATCH: &str = "procedures/mod.rs";
+
+/// The types of what it says of a procedure.
+const FACTS: &str = "procedures/facts.rs";
+
+/// The drivers of check, run and report: they alone ask the procedures, and only through the dispatch file. All else in their folders
+/// is an engine, which the procedures use.
+const DRIVERS: &[&str] = &[
+    "language/check/declarations/golden.rs",
+    "language/check/declarations/report.rs",
+    "language/check/driver.rs",
+    "language/check/procedures.rs",
+    "language/check/warnings/left.rs",
+    "language/check/warnings/mod.rs",
+    "language/check/warnings/record_size.rs",
+    "language/check/warnings/tracking.rs",
+    "report/budget.rs",
+    "report/content/budget.rs",
+    "report/content/conditions.rs",
+    "report/content/results.rs",
+    "report/content/validation.rs",
+    "report/figures/mod.rs",
+    "report/tables/mod.rs",
+    "run/driver.rs",
+];
+
+/// Files that use a folder above them. The list may only shrink.
+const EXCEPTIONS: &[(&str, &str)] = &[
+    ("evidence/folder.rs", "cli"),
+    ("evidence/keys.rs", "cli"),
+    ("evidence/rebuilt.rs", "cli"),
+    ("evidence/standing.rs", "cli"),
+    ("language/check/declarations/specimen.rs", "uncertainty"),
+    ("language/check/declarations/striker.rs", "uncertainty"),
+    ("language/check/expressions/names.rs", "procedures"),
+    ("language/check/messages/values.rs", "uncertainty"),
+    ("language/check/warnings/mod.rs", "uncertainty"),
+    ("language/check/warnings/tracking.rs", "procedures"),
+    ("plan/formula.rs", "uncertainty"),
+    ("plan/mod.rs", "uncertainty"),
+    ("record/equipment.rs", "rig"),
+    ("record/impact_series.rs", "uncertainty"),
+    ("record/journal/file/mod.rs", "rig"),
+    ("record/journal/writer.rs", "rig"),
+    ("record/mod.rs", "rig"),
+    ("record/mod.rs", "uncertainty"),
+    ("record/unload.rs", "uncertainty"),
+    ("record/zero_drift.rs", "rig"),
+    ("report/comparison.rs", "golden"),
+    ("report/content/conditions.rs", "procedures"),
+    ("report/deviations.rs", "procedures"),
+    ("report/mod.rs", "remote"),
+    ("report/tables/mod.rs", "remote"),
+    ("run/driver.rs", "procedures"),
+    ("run/driver.rs", "uncertainty"),
+    ("run/mod.rs", "remote"),
+    ("run/replay/entry.rs", "remote"),
+    ("run/replay/mod.rs", "remote"),
+    ("run/replay/observer.rs", "remote"),
+    ("run/replay/state.rs", "remote"),
+    ("run/session.rs", "uncertainty"),
+    ("run/storage_bound.rs", "procedures"),
+    ("run/zero_drift.rs", "procedures"),
+    ("uncertainty/base_excitation.rs", "procedures"),
+    ("uncertainty/cycle.rs", "procedures"),
+    ("uncertainty/fit_uncertainty.rs", "procedures"),
+    ("uncertainty/frame.rs", "procedures"),
+    ("uncertainty/impact.rs", "procedures"),
+    ("uncertainty/ramp.rs", "procedures"),
+    ("uncertainty/rest.rs", "procedures"),
+    ("uncertainty/storey_impact.rs", "procedures"),
+];
+
+/// Files in circles of uses, at most. The number may only fall; the goal is under 20.
+const IN_CYCLES: usize = 86;
+
+/// Files beside the dispatch file that still tell procedures or histories apart. The list may only shrink.
+const TELL_APART: &[&str] = &[
+    "cli/commands/explain_plan/mod.rs",
+    "language/check/warnings/tracking.rs",
+    "run/rehearsal.rs",
+    "run/replay/compatibility.rs",
+    "run/replay/measured.rs",
+    "run/storage_bound.rs",
+    "uncertainty/fit_uncertainty.rs",
+    "uncertainty/quantization.rs",
+    "verdict/unfinished_peaks.rs",
+];
+
+fn place(folder: &str) -> Option<usize> {
+    ORDER.iter().position(|line| line.contains(&folder))
+}
+
+fn folder_of(file: &str) -> &str {
+    file.split('/').next().unwrap_or_default()
+}
+
+#[test]
+fn a_folder_uses_what_stands_below_it() {
+    let files = rust_files("src");
+    let graph = ImportGraph::of(&files);
+    let mut upwards = BTreeSet::new();
+    let mut drivers = BTreeSet::new();
+    for (file, used) in graph.uses() {
+        let folder = folder_of(file);
+        let Some(own) = place(folder) else { continue };
+        for used in used {
+            let above = folder_of(used);
+            let up = place(above).is_some_and(|above| above >= own) && above != folder;
+            if up && [DISPATCH, FACTS].contains(&used) && DRIVERS.contains(&file) {
+                drivers.insert(file);
+            } else if up {
+                upwards.insert((file, above));
+            }
+        }
+    }
+    let listed: BTreeSet<(&str, &str)> = EXCEPTIONS.iter().copied().collect();
+    let new = upwards
+        .difference(&listed)
+        .map(|(file, above)| format!("{file} uses {above}, which stands above it"));
+    let gone = listed
+        .difference(&upwards)
+        .map(|(file, above)| format!("{file} no longer uses {above}: remove it from the list"));
+    let idle = DRIVERS
+        .iter()
+        .filter(|driver| !drivers.contains(*driver))
+        .map(|driver| format!("{driver} drives no procedure: remove it from the drivers"));
+    let found: Vec<String> = new.chain(gone).chain(idle).collect();
+    none(&found, "the arrows of the house");
+}
+
+#[test]
+fn circles_of_files_only_shrink() {
+    let files = rust_files("src");
+    let graph = ImportGraph::of(&files);
+    let uses = graph.uses();
+    let found = cycles(&uses);
+    let count: usize = found.iter().map(BTreeSet::len).sum();
+    let shown: Vec<String> = found.iter().map(|cycle| format!("{cycle:?}")).collect();
+    assert!(
+        count <= IN_CYCLES,
+        "{count} files use each other in circles:\n{}",
+        shown.join("\n")
+    );
+    assert!(
+        count == IN_CYCLES,
+        "only {count} files are in circles: lower the bound"
+    );
+}
+
+/// Whether a code names a variant of an enum: `History::Ramp`, but no function of it.
+fn names_a_variant(code: &str, of: &str) -> bool {
+    code.match_indices(of).any(|(at, _)| {
+        let before = code[..at].chars().next_back();
+        let whole = before.is_none_or(|before| !before.is_alphanumeric() && before != '_');
+        whole && code[at + of.len()..].starts_with(|next: char| next.is_ascii_uppercase())
+    })
+}
+
+/// A procedure is added in its folder, in the two enums, and in the dispatch file, where the compiler asks for it: so its matches
+/// name every variant.
+#[test]
+fn one_file_knows_which_procedures_there_are() {
+    let variants = ["ProcedureKind::", "History::"];
+    let files = rust_files("src");
+    let mut found = Vec::new();
+    for file in files.iter().filter(|file| !is_of_tests(&file.path)) {
+        let code = without_comments_and_tests(&file.text);
+        if file.path == DISPATCH {
+            let arms = code.lines().filter(|line| line.trim().starts_with("_ =>"));
+            found.extend(arms.map(|line| format!("{DISPATCH} skips variants: {}", line.trim())));
+        }
+        let tells = !file.path.starts_with("procedures/")
+            && variants
+                .iter()
+                .any(|variant| names_a_variant(&code, variant));
+        let listed = TELL_APART.contains(&file.path.as_str());
+        if tells && !listed {
+            found.push(format!("{} tells procedures apart", file.path));
+        }
+        if listed && !tells {
+            found.push(format!(
+                "{} no longer does: remove it from the list",
+                file.path
+            ));
+        }
+    }
+    none(&found, "only the dispatch file tells procedures apart");
+}
