@@ -13,6 +13,7 @@ mod summary;
 mod table;
 mod tap;
 mod tested;
+mod thinning;
 mod tolerance;
 mod words;
 
@@ -23,6 +24,7 @@ pub use junit::junit;
 pub use table::{Cells, Table, dimension as column_dimension};
 pub use tap::tap;
 pub use tested::{Blessed, Outcome, Report, Tested};
+pub use thinning::thinned;
 pub use tolerance::{FLOOR, Rule, Tolerances};
 pub use words::Words;
 
@@ -44,15 +46,25 @@ impl Truth {
         matches!(path, DIAGNOSTICS | SUMMARY | FIGURES) || table_name(path).is_some()
     }
 
-    /// The texts of those files that are compared.
+    /// The texts of those files that are compared. Of a long table only some rows are compared: see [`thinned`].
     #[must_use]
     pub fn of(files: impl IntoIterator<Item = (String, String)>) -> Self {
-        Self(
-            files
-                .into_iter()
-                .filter(|(path, _)| Self::holds(path))
-                .collect(),
-        )
+        let compared = |(path, text): (String, String)| {
+            let text = if table_name(&path).is_some() {
+                thinned(&text)
+            } else {
+                text
+            };
+            Self::holds(&path).then_some((path, text))
+        };
+        Self(files.into_iter().filter_map(compared).collect())
+    }
+
+    /// Path and text of each file.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.0
+            .iter()
+            .map(|(path, text)| (path.as_str(), text.as_str()))
     }
 
     /// Whether there is nothing to compare with.

@@ -538,7 +538,8 @@ fn bless_writes_beside_the_plans_folder() {
         bench.read("here/summary.json")
     );
     assert!(
-        bench.path("reports/small/certificate.html").exists()
+        bench.path("here/certificate.html").exists()
+            && !bench.path("reports/small/certificate.html").exists()
             && bench.path("reports/small/tables/hit.csv").exists()
     );
     assert!(

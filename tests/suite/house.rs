@@ -1,5 +1,8 @@
 //! The house rules that a reader would otherwise have to trust: read from the source text itself.
 
+use std::collections::BTreeSet;
+use std::path::Path;
+
 use super::source_text::{SourceText, none, rust_files};
 
 /// What turns text into a verdict and its outputs: a function of its input, on every machine.
@@ -267,4 +270,33 @@ fn nothing_is_left_undone_or_switched_off() {
         }
     }
     none(&found, "left undone");
+}
+
+/// Numbers of every plan are accepted results; pages and pictures are large, and change with every wording.
+#[test]
+fn accepted_results_stay_small() {
+    let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("reports")];
+    let (mut bytes, mut with_pages) = (0, BTreeSet::new());
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let entry = entry.unwrap();
+            if entry.path().is_dir() {
+                open.push(entry.path());
+                continue;
+            }
+            bytes += entry.metadata().unwrap().len();
+            if entry
+                .path()
+                .extension()
+                .is_some_and(|ending| ending == "html")
+            {
+                with_pages.insert(folder.clone());
+            }
+        }
+    }
+    assert!(bytes < 8_000_000, "{bytes} bytes of accepted results");
+    assert!(
+        with_pages.len() <= 5,
+        "pages of more than five plans: {with_pages:?}"
+    );
 }

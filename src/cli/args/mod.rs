@@ -338,9 +338,12 @@ pub struct TestArguments {
     /// Blesses what the plans give now, and says what changed; where nothing did, nothing is written
     #[arg(long, conflicts_with_all = ["list", "fail_fast"])]
     pub bless: bool,
-    /// With --bless: writes everything anew, also certificates and pictures of results that did not change
+    /// With --bless: writes all files again, also of results that did not change
     #[arg(long, requires = "bless")]
     pub anew: bool,
+    /// With --bless: also keeps report and pictures; where they are kept already, they are updated without it
+    #[arg(long, requires = "bless")]
+    pub pages: bool,
     /// Only plans with this text in their path
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,

@@ -80,7 +80,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         let trial = golden_run::of(&arguments.plan, Extent::All)?;
         if trial.ended.as_ref() == Some(&recorded.record.outcome) {
             let outcome =
-                Outcome::Blessed(blessed.bless(&trial.files, &trial.tolerances, false)?);
+                Outcome::Blessed(blessed.bless(&trial.files, &trial.tolerances, false, false)?);
             tell(&console::told(
                 &Tested {
                     name: blessed.path().display().to_string(),

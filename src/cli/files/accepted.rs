@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::loader::plain;
 use super::run_folder::write_new;
 use crate::cli::exit::Failure;
-use crate::golden::{Blessed, DIAGNOSTICS, FIGURES, SUMMARY, Tolerances, Truth, compare};
+use crate::golden::{Blessed, SUMMARY, Tolerances, Truth, compare};
 use crate::report::OutputFile;
 
 /// Where a plan's blessed results are kept.
@@ -76,13 +76,14 @@ impl BlessedFolder {
         truth_in(&self.path())
     }
 
-    /// Blesses the files of a run. Where every number is near enough and no file came or went, nothing is written, unless
-    /// all is to be written anew.
+    /// Accepts the files of a run. If every number is within tolerance and no file came or went, nothing is written, unless
+    /// `anew` asks for it. Rendered pages are written with `pages`, or where the folder already has some.
     pub fn bless(
         &self,
         files: &[OutputFile],
         tolerances: &Tolerances,
         anew: bool,
+        pages: bool,
     ) -> Result<Blessed, Failure> {
         let (old, new) = (self.truth()?, truth_of(files));
         if old.text(SUMMARY).is_some() && new.is_of_faults() {
@@ -90,25 +91,31 @@ impl BlessedFolder {
                 "the plan had results and now fails to check; remove the folder to bless that",
             ));
         }
+        let before = names(&self.path())?;
+        let pages = pages || before.iter().any(|path| is_page(path));
+        let mut kept: Vec<OutputFile> = files
+            .iter()
+            .filter(|file| pages && is_page(&file.path))
+            .cloned()
+            .chain(new.files().map(|(path, text)| OutputFile {
+                path: path.to_owned(),
+                bytes: text.as_bytes().to_vec(),
+            }))
+            .collect();
+        kept.sort_by(|one, other| one.path.cmp(&other.path));
         if old.is_empty() {
-            self.replace(files)?;
+            self.replace(&kept)?;
             return Ok(Blessed::New);
         }
         let found = compare(&old, &new, tolerances);
-        let mut kept: Vec<String> = files
-            .iter()
-            .map(|file| file.path.clone())
-            .filter(|path| is_kept(path))
-            .collect();
-        kept.sort();
-        if found.is_empty() && !anew && kept == names(&self.path())? {
+        if found.is_empty() && !anew && kept.iter().map(|file| &file.path).eq(&before) {
             return Ok(Blessed::Unchanged);
         }
-        self.replace(files)?;
+        self.replace(&kept)?;
         Ok(Blessed::Changed(found))
     }
 
-    /// Puts the files that are kept in place of those that were. The old ones go only when the new ones are written.
+    /// Replaces the files of the folder. The old ones go only when the new ones are written.
     fn replace(&self, files: &[OutputFile]) -> Result<(), Failure> {
         let failed = |path: &Path, error: &std::io::Error| Failure::file(path, plain(error));
         std::fs::create_dir_all(&self.reports).map_err(|error| failed(&self.reports, &error))?;
@@ -117,10 +124,7 @@ impl BlessedFolder {
             remove(left_over).map_err(|error| failed(left_over, &error))?;
         }
         std::fs::create_dir(&fresh).map_err(|error| failed(&fresh, &error))?;
-        files
-            .iter()
-            .filter(|file| is_kept(&file.path))
-            .try_for_each(|file| write_new(&fresh, file))?;
+        files.iter().try_for_each(|file| write_new(&fresh, file))?;
         let swap = || -> std::io::Result<()> {
             if path.symlink_metadata().is_ok() {
                 std::fs::rename(&path, &old)?;
@@ -200,21 +204,19 @@ pub fn remove(path: &Path) -> std::io::Result<()> {
     }
 }
 
-/// Results that a visitor reads and a later run is compared with; not the plan, which lies beside them, and no Parquet.
-pub fn is_kept(path: &str) -> bool {
-    let is = |folder: &str, ending: &str| {
-        path.starts_with(folder) && Path::new(path).extension().is_some_and(|e| e == ending)
-    };
-    let certificate = matches!(path, "certificate.html" | "certificate.pdf");
-    certificate
-        || matches!(path, SUMMARY | FIGURES | DIAGNOSTICS)
-        || is("figures/", "png")
-        || is("tables/", "csv")
+/// Whether a file is a rendered page or picture, made from the numbers that are compared.
+pub fn is_page(path: &str) -> bool {
+    let picture = path.starts_with("figures/")
+        && Path::new(path)
+            .extension()
+            .is_some_and(|ending| ending == "png");
+    picture || matches!(path, "certificate.html" | "certificate.pdf")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::DIAGNOSTICS;
 
     fn file(path: &str) -> OutputFile {
         OutputFile {
@@ -242,8 +244,14 @@ mod tests {
             file("tables/hit.csv"),
             file("tables/hit.parquet"),
             file("plan/beam.psd"),
+            file("certificate.html"),
         ];
-        let bless = |anew| blessed.bless(&files, &Tolerances::default(), anew).unwrap();
+        let bless_with = |anew, pages| {
+            blessed
+                .bless(&files, &Tolerances::default(), anew, pages)
+                .unwrap()
+        };
+        let bless = |anew| bless_with(anew, false);
         assert!(matches!(bless(false), Blessed::Changed(found) if !found.is_empty()));
         let read =
             |path: &str| std::fs::read_to_string(root.path().join("reports").join(path)).ok();
@@ -268,17 +276,23 @@ mod tests {
             (bless(false), bless(true)),
             (Blessed::Unchanged, Blessed::Changed(Vec::new()))
         );
+        let page = "beam/certificate.html";
+        assert_eq!(read(page), None, "data alone");
+        assert!(matches!(bless_with(false, true), Blessed::Changed(found) if found.is_empty()));
+        assert_eq!(read(page).as_deref(), Some("{}"));
+        assert!(matches!(bless(true), Blessed::Changed(_)));
+        assert_eq!(read(page).as_deref(), Some("{}"), "a page stays");
         let faults = [file(DIAGNOSTICS)];
         assert!(matches!(
             blessed
-                .bless(&faults, &Tolerances::default(), true)
+                .bless(&faults, &Tolerances::default(), true, false)
                 .unwrap(),
             Blessed::Refused(_)
         ));
         std::fs::remove_dir_all(blessed.path()).unwrap();
         assert_eq!(
             blessed
-                .bless(&faults, &Tolerances::default(), false)
+                .bless(&faults, &Tolerances::default(), false, false)
                 .unwrap(),
             Blessed::New
         );

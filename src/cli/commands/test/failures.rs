@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::cases::Case;
 use super::overlay;
 use crate::cli::exit::Failure;
-use crate::cli::files::accepted::{is_kept, remove};
+use crate::cli::files::accepted::{is_page, remove};
 use crate::cli::files::loader::plain;
 use crate::cli::files::run_folder::write_new;
 use crate::golden::{Finding, Truth, Words};
@@ -57,7 +57,7 @@ pub fn write(
     let new = folder.join("new");
     files
         .iter()
-        .filter(|file| is_kept(&file.path))
+        .filter(|file| is_page(&file.path) || Truth::holds(&file.path))
         .try_for_each(|file| write_new(&new, file))?;
     overlay::all(
         blessed,

@@ -89,6 +89,7 @@ impl Trials<'_> {
                 &trial.files,
                 &trial.tolerances,
                 self.arguments.anew,
+                self.arguments.pages,
             )?));
         }
         let trial = golden_run::of(&case.plan, Extent::Compared)?;
