@@ -3,6 +3,7 @@
 //! no printed form.
 
 mod driver;
+pub(crate) mod inputs;
 mod motion;
 pub(crate) mod pretest_check;
 pub mod rehearsal;

@@ -3,18 +3,10 @@
 //! 5.2 and F.1.2.3). In: contributions. Out: standard uncertainties, and results with one source
 //! perturbed.
 
-pub(crate) mod base_excitation;
 mod cost;
-pub(crate) mod cycle;
 mod degrees;
 pub mod engine;
-pub(crate) mod fit_uncertainty;
-pub(crate) mod frame;
-pub(crate) mod impact;
 mod instruments;
-pub(crate) mod ramp;
-pub(crate) mod rest;
-pub(crate) mod storey_impact;
 mod threads;
 
 use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
