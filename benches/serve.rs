@@ -8,10 +8,10 @@ use std::thread::JoinHandle;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
-use psd::remote::control::Specimen;
 use psd::remote::{Protocol, serve};
 use psd::rig::{Guard, VirtualRig, Wish};
 use psd::run::Unwatched;
+use psd::run::remote_control::Specimen;
 
 const STIFFNESS: f64 = 3e5;
 const WORDS: usize = 256;

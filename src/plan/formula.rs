@@ -2,27 +2,11 @@
 //! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
 //! Out: an [`Estimate`], the value with its standard uncertainty.
 
-use crate::uncertainty::{Contribution, Moved, Source, combined, combined_entries, sources_of};
-
-/// Position of a procedure in the plan, from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ProcedureId(pub usize);
-
-/// Which number of a result is meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    Value,
-    /// `.u`, the standard uncertainty.
-    Uncertainty,
-}
-
-/// A result of a procedure: `k0.stiffness`, `k0.stiffness.u`. `name` is the schema's own word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ResultReference {
-    pub procedure: ProcedureId,
-    pub name: &'static str,
-    pub part: Part,
-}
+use super::contribution::{Contribution, combined, combined_entries};
+use super::results::{Moved, sources_of};
+pub use super::results::{NoResults, Part, ResultReference, ResultValue, Results};
+pub use super::source::ProcedureId;
+use super::source::Source;
 
 /// A checked expression, in SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,69 +73,6 @@ pub enum Function {
 pub struct Estimate {
     pub value: f64,
     pub uncertainty: Option<f64>,
-}
-
-/// What a result may be: one number or a list, with the standard uncertainty of a number where it was measured.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ResultValue {
-    /// `value` is None where the result does not exist in this run (no stop time: the striker did not stop).
-    Number {
-        value: Option<f64>,
-        uncertainty: Option<f64>,
-    },
-    List(Vec<f64>),
-}
-
-/// Where formulas find results.
-pub trait Results: Sync {
-    /// The result, or None if its procedure has not run to it.
-    fn result(&self, reference: ResultReference) -> Option<ResultValue>;
-
-    /// What its uncertainty is made of; of a result that says no more, all of it is its own.
-    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
-        let ResultReference {
-            procedure, name, ..
-        } = reference;
-        match self.result(reference) {
-            Some(ResultValue::Number {
-                uncertainty: Some(own),
-                ..
-            }) => {
-                vec![Contribution::new(
-                    Source::Fit {
-                        procedure,
-                        result: name,
-                    },
-                    own,
-                )]
-            }
-            _ => Vec::new(),
-        }
-    }
-
-    /// Degrees of freedom by which the size of a source is known; infinite of what was not estimated from readings.
-    fn degrees(&self, _: Source) -> f64 {
-        f64::INFINITY
-    }
-
-    /// By how many of its standard uncertainties a source is moved here.
-    fn moved(&self, _: Source) -> f64 {
-        0.0
-    }
-
-    /// Why a measured result that exists has no expanded uncertainty; None where it has one, or is exact.
-    fn no_uncertainty(&self, _: ResultReference) -> Option<String> {
-        None
-    }
-}
-
-/// No procedure has run: constants only.
-pub struct NoResults;
-
-impl Results for NoResults {
-    fn result(&self, _: ResultReference) -> Option<ResultValue> {
-        None
-    }
 }
 
 /// Why a formula has no value.

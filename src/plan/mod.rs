@@ -1,17 +1,20 @@
 //! The checked plan: SI only, every name resolved, every required value present. `language` makes
 //! it, `run` and `report` read it. It contains text only where a report prints it.
 
+pub mod contribution;
 pub mod formula;
 pub mod procedure;
 mod record_size;
 pub mod report;
+pub mod results;
 mod rig;
+pub mod source;
 pub mod specimen;
 
 use crate::physics::contact::contact_time_step::Approach;
 use crate::plan::formula::{Formula, ResultReference};
-use crate::uncertainty::Source;
 use crate::units::Dimension;
+use source::Source;
 
 // The parameters of a model stand beside it, in `physics`.
 pub use crate::physics::impact::Until;
@@ -40,6 +43,8 @@ pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use report::golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use report::undeclared::Dependence;
 pub use rig::axis::{AxisCalibration, AxisPlan};
+pub(crate) use rig::axis_names::{named_axis, of_axis, who};
+pub use rig::declared_noise::DeclaredNoise;
 pub use rig::devices::Behind;
 pub use rig::limits::{Interval, Limits};
 pub use rig::{

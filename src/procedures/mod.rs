@@ -6,14 +6,15 @@ pub mod base_excitation;
 pub mod cycle;
 pub mod damping_sweep;
 pub(crate) mod facts;
+pub(crate) mod fit_uncertainty;
 pub mod impact;
 pub mod impact_series;
-pub(crate) mod inputs;
 pub mod inspect;
+pub(crate) mod loop_sampling;
 pub mod move_to;
+pub(crate) mod perturbed_inputs;
 pub(crate) mod reached;
 pub(crate) mod results;
-pub(crate) mod samples;
 pub mod stepping;
 pub mod stiffness_ramp;
 pub mod unload;
@@ -31,12 +32,12 @@ use crate::report::document::Block;
 use crate::report::figures::chart::{Chart, SharedCurve};
 use crate::report::tables::Table;
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::schema::{Column, Kind};
 use crate::uncertainty::Source;
 use facts::{Facts, Leaves, Recorded, Tests};
 use impact::judge::Strikers;
-use inputs::Inputs;
 
 /// Check: what a block asks for; None with a fault, and of a block that is no procedure.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {

@@ -3,8 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::plan::DeclaredNoise;
 use crate::plan::{Dialect, Interval, Limits, Link, Plan, RigPlan};
-use crate::rig::{DeclaredNoise, Identity};
+use crate::record::Identity;
 use crate::units::Dimension;
 use crate::units::display::stated;
 

@@ -4,9 +4,13 @@
 
 mod cycle;
 pub mod equipment;
+pub mod failpoint;
 mod floors;
+mod held;
+mod identity;
 mod impact_series;
 pub mod journal;
+pub mod remote;
 mod unload;
 mod zero_drift;
 
@@ -23,12 +27,13 @@ pub use crate::physics::relaxation::fit::{Hold, RelaxationFit};
 pub use crate::physics::relaxation::reached_fit::{LawFit, ReachedFit};
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::formula::{Estimate, ResultReference, ResultValue, Results};
-use crate::rig::Identity;
 use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 use crate::units::Dimension;
 pub use cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use floors::{FloorStep, Floors, FloorsAt, StruckFrame};
+pub use held::Held;
+pub use identity::Identity;
 pub use impact_series::{Blow, EscalateHistory};
 pub use unload::{Rest, UnloadStep};
 pub use zero_drift::{AxisDrift, Beyond, Drift, Zero};

@@ -2,7 +2,8 @@
 //! writes it; in: readings. Out: whether the drift was more than the rig allows. It knows no rig and no procedure.
 
 use crate::plan::DriftCheck;
-use crate::rig::{Held, named_axis, of_axis};
+use crate::plan::{named_axis, of_axis};
+use crate::record::Held;
 use crate::units::Dimension;
 use crate::units::display::{readable, stated};
 

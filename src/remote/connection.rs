@@ -13,8 +13,8 @@ use rustix::net::sockopt::set_tcp_quickack;
 use rustix::net::{RecvFlags, recv};
 
 use super::{Ended, LOOK};
-use crate::remote::control::Specimen;
 use crate::rig::{RigFault, Wish};
+use crate::run::remote_control::Specimen;
 
 /// A client that takes nothing for so long is gone.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use super::Ended;
 use super::connection::{Broken, Connection};
 use super::generic_header::{self, HEADER, Layout};
-use crate::remote::control::Specimen;
+use crate::run::remote_control::Specimen;
 
 /// What a message asks for: its first word.
 mod action {

@@ -3,14 +3,12 @@
 //! reads no plan, opens no port and keeps no record.
 
 mod connection;
-pub mod control;
 #[cfg(test)]
 mod frame_tests;
 mod generic_client;
 mod generic_header;
 mod nees;
 pub mod nees_message;
-pub(crate) mod request;
 #[cfg(test)]
 mod tests;
 
@@ -22,10 +20,10 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-pub use crate::remote::control::Driven;
-use crate::remote::control::Specimen;
 use crate::rig::{RigFault, Wish};
 use crate::run::Parting;
+pub use crate::run::remote_control::Driven;
+use crate::run::remote_control::Specimen;
 use connection::{Broken, Connection};
 pub use nees::usual_names;
 

@@ -11,8 +11,8 @@ use std::time::Instant;
 use super::Ended;
 use super::connection::Connection;
 use super::nees_message::{self, Refusal, Request, Why};
-use crate::remote::control::Specimen;
 use crate::rig::RigFault;
+use crate::run::remote_control::Specimen;
 
 /// Longest line taken, bytes.
 const LONGEST: usize = 4096;

@@ -31,8 +31,8 @@ use std::collections::BTreeSet;
 
 use crate::plan::{Format, Link, Plan, PlanFile};
 use crate::record::equipment::{Device, Equipment};
+use crate::record::remote::DrivenStep;
 use crate::record::{Drift, Record};
-use crate::remote::control::DrivenStep;
 use crate::rig::DeclaredNoise;
 use crate::text::sanitize;
 use crate::verdict::Assessment;

@@ -21,26 +21,15 @@ use crate::physics::tracking::trajectory::Path;
 use crate::plan::Plan;
 use crate::units::{Dimension, display};
 
+pub use crate::plan::DeclaredNoise;
+pub(crate) use crate::plan::{named_axis, of_axis, who};
+pub use crate::record::{Held, Identity};
 pub use connect::{Connected, connect};
 pub use guard::{Guard, Traversed};
-pub use holds::Held;
 pub use safety::final_hold::{Halted, place_and_force};
 pub use safety::live::{Felt, Live};
 pub use safety::stop_request::Wish;
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
-
-/// Who the rig says it is.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Identity {
-    pub name: String,
-    pub model: String,
-    pub serial: String,
-    pub firmware: String,
-    /// Random word of this power-up, where the rig has one: another word means that its position is not to be trusted.
-    pub boot: Option<String>,
-    /// Nothing real moved.
-    pub simulated: bool,
-}
 
 /// The virtual rig of a plan, with an axis for each degree of freedom of the specimen on it; in place of a real rig an ideal
 /// one.
@@ -186,21 +175,6 @@ fn breach(
         shown(low),
         shown(high)
     )
-}
-
-/// ` of axis 2`, or nothing.
-pub(crate) fn of_axis(axis: Option<usize>) -> String {
-    axis.map_or_else(String::new, |axis| format!(" of axis {axis}"))
-}
-
-/// `axis 2`, or `the rig`.
-pub(crate) fn who(axis: Option<usize>) -> String {
-    axis.map_or_else(|| "the rig".to_owned(), |axis| format!("axis {axis}"))
-}
-
-/// The number of the axis at this place, from 1, for a fault that names it; None where the rig has no other.
-pub(crate) fn named_axis(place: usize, axes: usize) -> Option<usize> {
-    (axes > 1).then_some(place + 1)
 }
 
 /// What a limit bounds.
@@ -425,12 +399,3 @@ impl CutOff<'_> {
 
 /// Takes the readings of a traverse as they come.
 pub type EachReading<'a> = &'a mut dyn FnMut(Reading) -> Result<(), RigFault>;
-
-/// What the rig declares of its readings.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub struct DeclaredNoise {
-    /// N
-    pub force: f64,
-    /// m
-    pub resolution: f64,
-}

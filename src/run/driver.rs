@@ -6,9 +6,9 @@ use super::{Observer, Performed, Settings, pretest_check, zero_drift};
 use crate::plan::formula::ProcedureId;
 use crate::plan::{DriftCheck, Plan, ZeroAfter};
 use crate::procedures;
-use crate::procedures::inputs::Inputs;
 use crate::record::{EventKind, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
+use crate::run::inputs::Inputs;
 
 /// Runs every procedure of the plan in order on the rig. Never fails: what went wrong is the record's outcome.
 #[must_use]
@@ -87,7 +87,7 @@ pub fn run_with(
             .take_observations()
             .into_iter()
             .for_each(|text| session.event(EventKind::Remark, text));
-        crate::uncertainty::fit_uncertainty::attribute(
+        procedures::fit_uncertainty::attribute(
             &procedure.kind,
             &history,
             plan,

@@ -3,9 +3,11 @@
 //! no printed form.
 
 mod driver;
+pub(crate) mod inputs;
 mod motion;
 pub(crate) mod pretest_check;
 pub mod rehearsal;
+pub mod remote_control;
 pub mod replay;
 pub(crate) mod session;
 mod shutdown;
@@ -14,7 +16,7 @@ pub(crate) mod stop;
 pub mod storage_bound;
 pub(crate) mod zero_drift;
 
-pub use crate::remote::request::{Parting, Request};
+pub use crate::record::remote::{Parting, Request};
 pub use driver::{run, run_with};
 pub use motion::{Extent, Motion};
 

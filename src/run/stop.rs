@@ -41,6 +41,16 @@ pub(crate) enum Stop {
 }
 
 impl Stop {
+    /// A procedure on a frame names a specimen that is not one.
+    pub(crate) const fn no_frame() -> Self {
+        Self::BadInput {
+            field: "specimen",
+            value: 0.0,
+            dimension: Dimension::NUMBER,
+            wanted: Cow::Borrowed("a frame of storeys"),
+        }
+    }
+
     /// Limits and people abort a run; an input that cannot be used blocks it; a rig that fails is a fault.
     pub(crate) fn outcome(&self) -> Outcome {
         let reason = self.to_string();

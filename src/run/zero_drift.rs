@@ -4,8 +4,8 @@
 use super::session::Session;
 use super::stop::Stop;
 use crate::physics::identification::fit_line;
+use crate::physics::statistics::samples::mean;
 use crate::plan::{DriftCheck, ZeroAfter};
-use crate::procedures::samples::mean;
 use crate::record::{AxisDrift, Drift, EventKind, Zero};
 use crate::rig::{Held, Reading, named_axis};
 use crate::units::Dimension;

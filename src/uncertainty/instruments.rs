@@ -5,8 +5,8 @@ use super::Source;
 use super::engine::Shifts;
 use crate::physics::identification::StatedVariance;
 use crate::physics::perturbation::{Instruments, Perturbation, ReadingErrors};
+use crate::plan::DeclaredNoise;
 use crate::plan::{Calibration, Link, Plan, ReadingRules, VirtualLink};
-use crate::rig::DeclaredNoise;
 
 /// The instruments of every axis.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 //! Out: numbers. It knows no instrument.
 
 pub mod noisy_largest;
+pub mod samples;
 pub mod student_t;
 #[cfg(test)]
 pub(crate) mod testing;

@@ -2,6 +2,8 @@
 //! data: no port is opened here.
 
 pub(crate) mod axis;
+pub(crate) mod axis_names;
+pub(crate) mod declared_noise;
 pub(crate) mod devices;
 pub(crate) mod limits;
 

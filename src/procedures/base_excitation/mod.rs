@@ -9,5 +9,7 @@ pub(crate) mod left;
 pub(crate) mod report;
 pub(crate) mod results;
 pub(crate) mod run;
+pub(crate) mod setting;
 pub(crate) mod steps;
 pub(crate) mod tables;
+pub(crate) mod uncertainty;

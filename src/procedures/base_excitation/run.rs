@@ -3,23 +3,19 @@
 //! from them. The steps themselves are `shaking`'s.
 
 use super::results::{ShakeSummary, results};
+use super::setting::Setting;
 use super::steps::Shaking;
-use crate::physics::frame::Damping;
-use crate::physics::structure::ground::peak_velocity;
-use crate::plan::formula::Formula;
-use crate::plan::{Frame, Ground, Plan, Shake, ShakeDamping, rayleigh};
-use crate::procedures::impact::run::unbalanced;
-use crate::procedures::inputs::Inputs;
+use super::uncertainty;
+use crate::plan::{Plan, Shake};
 use crate::procedures::stepping;
-use crate::procedures::stepping::run::FrameSteps;
+use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
+use crate::procedures::stepping::remarks::unbalanced;
 use crate::procedures::stepping::tracking_summary::Followed;
 use crate::record::{History, ShakeHistory};
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::{Session, of_base_shear};
 use crate::run::stop::Stop;
-use crate::uncertainty::base_excitation;
-use crate::uncertainty::frame::FrameDoubts;
-use crate::units::Dimension;
 
 pub(crate) fn perform(
     plan: &Shake,
@@ -31,14 +27,7 @@ pub(crate) fn perform(
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
     let setting = frame.map_or_else(
-        || {
-            Err(Stop::BadInput {
-                field: "specimen",
-                value: 0.0,
-                dimension: Dimension::NUMBER,
-                wanted: "a frame of storeys".into(),
-            })
-        },
+        || Err(Stop::no_frame()),
         |frame| Setting::evaluate(plan, frame, ground, inputs, session),
     );
     let setting = match setting {
@@ -79,9 +68,9 @@ pub(crate) fn perform(
         if summary.is_some() {
             unbalanced(shaking.summary.energy_error(), session);
         }
-        let doubts = FrameDoubts::of_shake(plan, whole, inputs, session);
+        let doubts = FrameUncertainty::of_shake(plan, whole, inputs, session);
         stop = session.evaluate_uncertainty(|tick| {
-            base_excitation::propagate(
+            uncertainty::propagate(
                 &doubts,
                 plan,
                 ground,
@@ -97,84 +86,4 @@ pub(crate) fn perform(
         history: History::Shake(shaking.history),
         stop,
     }
-}
-
-/// Everything known before the first step.
-pub(crate) struct Setting {
-    pub(crate) frame: FrameSteps,
-    /// Factor on the record.
-    pub(crate) scale: f64,
-    /// ½ ιᵀMι v², v the largest velocity of the ground, J: what its motion can put in, before it has.
-    pub(crate) ground_energy: f64,
-}
-
-impl Setting {
-    fn evaluate(
-        plan: &Shake,
-        frame: &Frame,
-        ground: &Ground,
-        inputs: &mut Inputs<'_>,
-        session: &Session<'_>,
-    ) -> Result<Self, Stop> {
-        let properties = stepping::run::properties(frame, &plan.damping, inputs)?;
-        let critical = properties.critical_time_step();
-        let time_step = stepping::run::time_step(
-            &plan.stepping,
-            (frame, &properties),
-            critical,
-            inputs,
-            session,
-        )?;
-        let to_the_end = Formula::Constant(ground.duration());
-        let duration = inputs.positive(
-            "duration",
-            plan.duration.as_ref().unwrap_or(&to_the_end),
-            Dimension::TIME,
-        )?;
-        let scale = inputs.number("scale", &plan.scale, Dimension::NUMBER)?;
-        let steps = FrameSteps::new(
-            properties,
-            &plan.stepping,
-            (time_step, critical, duration),
-            inputs,
-        )?;
-        let velocity = scale * peak_velocity(&ground.times, &ground.accelerations);
-        let ground_energy = 0.5 * frame.total_mass() * velocity * velocity;
-        Ok(Self {
-            frame: steps,
-            scale,
-            ground_energy,
-        })
-    }
-}
-
-/// The damping, and a ratio of it for a message.
-pub(crate) fn damping(
-    plan: &ShakeDamping,
-    inputs: &mut Inputs<'_>,
-) -> Result<(Damping, f64), Stop> {
-    let known = |ratio: f64| match ratio {
-        ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
-        value => Err(Stop::BadInput {
-            field: "damping_ratio",
-            value,
-            dimension: Dimension::NUMBER,
-            wanted: "between 0 and 1".into(),
-        }),
-    };
-    Ok(match plan {
-        ShakeDamping::Rayleigh(ratio) => {
-            let ratio = known(inputs.damping("damping_ratio", ratio, Dimension::NUMBER)?)?;
-            (rayleigh(ratio), ratio)
-        }
-        ShakeDamping::Modal(ratios) => {
-            let ratios = inputs.list("damping_ratio", ratios)?;
-            let ratios = ratios
-                .into_iter()
-                .map(known)
-                .collect::<Result<Vec<f64>, Stop>>()?;
-            let first = ratios.first().copied().unwrap_or(0.0);
-            (Damping::Modal(ratios), first)
-        }
-    })
 }

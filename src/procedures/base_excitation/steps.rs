@@ -2,15 +2,16 @@
 //! Out: the history and what it comes to. How the steps are taken on the rig is `step_loop`'s; the equations are `mechanics`'.
 
 use super::results::ShakeSummary;
-use super::run::Setting;
+use super::setting::Setting;
 use crate::physics::frame::FrameSolver;
 use crate::physics::structure::ground::acceleration_at;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Ground, Shake};
 use crate::procedures::stepping::axes::AxesState;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
+use crate::procedures::stepping::start::{Start, not_stepped};
 use crate::procedures::stepping::step_loop;
-use crate::procedures::stepping::step_loop::{Balance, Start, Stepped, not_stepped};
+use crate::procedures::stepping::step_loop::{Balance, Stepped};
 use crate::procedures::stepping::tracking_summary::Followed;
 use crate::record::{ShakeHistory, ShakeStep};
 use crate::rig::Reading;

@@ -9,3 +9,4 @@ pub(crate) mod figures;
 pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod tables;
+pub(crate) mod uncertainty;

@@ -2,23 +2,22 @@
 //! every reading, and energy, stiffness and damping of each whole cycle. Step and pause by default; with a rate the
 //! actuator goes from end to end without stopping.
 
+use super::uncertainty::RecordedLoops;
 use crate::physics::identification::cyclic::{LoopPoint, loop_of, work};
 use crate::physics::identification::loop_sampling::spaced;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
+use crate::physics::statistics::samples::{mean, scatter};
 use crate::plan::formula::ResultValue;
 use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
-use crate::procedures::inputs::Inputs;
-use crate::procedures::samples::{mean, scatter};
 use crate::procedures::stiffness_ramp::curve;
 use crate::record::{CycleHistory, CycleStep, EventKind, History, NamedResult, WholeCycle};
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::InstrumentUncertainty;
-use crate::uncertainty::cycle;
-use crate::uncertainty::cycle::RecordedLoops;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
@@ -57,7 +56,8 @@ pub(crate) fn perform(
     }
     let noise = declared.force / f64::from(samples).sqrt();
     let mut results = results(&cycling.history, noise);
-    let left_open = cycle::left_open_by_points(&cycling.history, samples, instruments.errors(0));
+    let left_open =
+        super::uncertainty::left_open_by_points(&cycling.history, samples, instruments.errors(0));
     if session.settings.uncertainty {
         let loops = RecordedLoops {
             history: &cycling.history,
@@ -65,7 +65,7 @@ pub(crate) fn perform(
             noise: declared.force,
             left_open: &left_open,
         };
-        cycle::propagate(&loops, &instruments, inputs.procedure(), &mut results);
+        super::uncertainty::propagate(&loops, &instruments, inputs.procedure(), &mut results);
     }
     if let Some(text) = few_points(&cycling.history, &left_open).filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text);

@@ -16,12 +16,12 @@ use crate::physics::identification::damping_strokes::{OutAndBack, change_along, 
 use crate::physics::identification::{StatedVariance, damping_ratio, fit_damping, fit_line};
 use crate::plan::formula::Estimate;
 use crate::plan::{DampingSweep, Plan};
-use crate::procedures::inputs::Inputs;
 use crate::procedures::results::largest;
 use crate::record::{
     BroughtTogether, EventKind, History, LineFit, NamedResult, SweepHistory, SweepStep,
 };
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::schema::procedures::damping_sweep as schema;

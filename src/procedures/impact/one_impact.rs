@@ -3,16 +3,16 @@
 //! nothing about the next one.
 
 use super::storey;
+use super::uncertainty::ImpactUncertainty;
 use crate::physics::frame::Unloading;
 use crate::physics::impact::ImpactInput;
 use crate::plan::{BlowOn, Escalate, Impact, Plan, StoreyImpact, Striker};
-use crate::procedures::inputs::Inputs;
+use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
 use crate::procedures::{impact, unload};
 use crate::record::{ImpactHistory, NamedResult};
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::uncertainty::frame::FrameDoubts;
-use crate::uncertainty::impact::Doubts;
 use crate::units::Dimension;
 
 /// What is struck again and again.
@@ -21,13 +21,13 @@ pub(crate) enum Struck<'a> {
     Specimen {
         plan: &'a Impact,
         setting: impact::run::Setting,
-        doubts: Doubts<'a>,
+        doubts: ImpactUncertainty<'a>,
     },
     Storey {
         plan: &'a StoreyImpact,
         setting: storey::Setting,
         unloading: Unloading,
-        doubts: FrameDoubts<'a>,
+        doubts: FrameUncertainty<'a>,
     },
 }
 
@@ -60,7 +60,7 @@ impl<'a> Struck<'a> {
             BlowOn::Specimen(blow) => {
                 let noise = session.guard.declared_noise();
                 let setting = impact::run::Setting::evaluate(blow, &fastest, inputs, noise)?;
-                let doubts = Doubts::new(blow, whole, inputs, noise);
+                let doubts = ImpactUncertainty::new(blow, whole, inputs, noise);
                 Ok((
                     Self::Specimen {
                         plan: blow,
@@ -75,10 +75,10 @@ impl<'a> Struck<'a> {
                 let frame = whole.specimens[blow.specimen]
                     .frame
                     .as_ref()
-                    .ok_or_else(storey::no_frame)?;
+                    .ok_or_else(Stop::no_frame)?;
                 let setting = storey::Setting::evaluate(blow, frame, &fastest, inputs, session)?;
                 let unloading = unload::run::of_frame(frame)?;
-                let doubts = FrameDoubts::of_blow(blow, whole, inputs, session);
+                let doubts = FrameUncertainty::of_blow(blow, whole, inputs, session);
                 Ok((
                     Self::Storey {
                         plan: blow,

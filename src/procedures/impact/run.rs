@@ -4,28 +4,29 @@
 
 use super::steps::{ImpactSteps, Kept};
 use super::summary::StruckSummary;
+use super::uncertainty::ImpactUncertainty;
 use crate::physics::contact::contact_time_step::Approach;
 use crate::physics::contact::state::ContactLaw;
-use crate::physics::impact::energy::UNBALANCED;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::impact::{ImpactInput, ImpactSolver};
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::plan::Structure;
 use crate::plan::formula::Estimate;
 use crate::plan::{Contact, Impact, MOST_STEPS, Plan, Striker, Until, step_count, steps_in};
-use crate::procedures::inputs::Inputs;
 use crate::procedures::results::result;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
+use crate::procedures::stepping::pace::Pace;
+use crate::procedures::stepping::remarks::unbalanced;
 use crate::procedures::stepping::run::{above_critical, holds_a_step, stable};
-use crate::procedures::stepping::step_loop::{Pace, not_stepped};
+use crate::procedures::stepping::start::not_stepped;
 use crate::record::{EventKind, History, ImpactHistory, ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::uncertainty::impact::Doubts;
 use crate::units::Dimension;
-use crate::units::display::{readable, significant};
+use crate::units::display::readable;
 
 pub(crate) fn perform(
     plan: &Impact,
@@ -53,7 +54,7 @@ pub(crate) fn perform(
         };
     };
     above_critical(setting.input.time_step, setting.critical_time_step, session);
-    let doubts = Doubts::new(plan, whole, inputs, noise);
+    let doubts = ImpactUncertainty::new(plan, whole, inputs, noise);
     let Blown {
         history,
         results,
@@ -77,7 +78,7 @@ pub(crate) struct Blown {
 pub(crate) fn blow(
     plan: &Impact,
     setting: &Setting,
-    doubts: &Doubts<'_>,
+    doubts: &ImpactUncertainty<'_>,
     before: u64,
     session: &mut Session<'_>,
 ) -> Blown {
@@ -279,22 +280,6 @@ const SECONDS_PER_METRE: Dimension = Dimension {
     mass: crate::units::Exponent::ZERO,
     time: crate::units::Exponent::whole(1),
 };
-
-/// Says that the scheme made or lost more of the energy than a reader may take for the specimen's.
-pub(crate) fn unbalanced(energy_error: f64, session: &mut Session<'_>) {
-    if energy_error.is_nan() || energy_error.abs() > UNBALANCED {
-        let off = if energy_error.is_nan() {
-            "the energy balance cannot be computed: its energies are not finite".to_owned()
-        } else {
-            format!(
-                "the energy balance is off by {} % of the energy put in",
-                significant(100.0 * energy_error, 3)
-            )
-        };
-        let text = format!("{off}: a shorter time step is needed");
-        session.event(EventKind::Remark, text);
-    }
-}
 
 /// What a reader of the results must know of how the run ended.
 pub(crate) fn remark(

@@ -12,19 +12,18 @@ use crate::plan::Structure;
 use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Plan, StoreyImpact, Striker};
 use crate::procedures::impact;
-use crate::procedures::inputs::Inputs;
 use crate::procedures::results::result;
 use crate::procedures::stepping;
+use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::run::FrameSteps;
-use crate::procedures::stepping::step_loop::not_stepped;
+use crate::procedures::stepping::start::not_stepped;
 use crate::procedures::stepping::tracking_summary::Followed;
 use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StruckFrame};
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::{Session, of_base_shear};
 use crate::run::stop::Stop;
-use crate::uncertainty::frame::FrameDoubts;
-use crate::uncertainty::storey_impact;
 use crate::units::Dimension;
 
 pub(crate) fn perform(
@@ -37,7 +36,7 @@ pub(crate) fn perform(
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
     let setting = frame
-        .ok_or_else(no_frame)
+        .ok_or_else(Stop::no_frame)
         .and_then(|frame| Setting::evaluate(plan, frame, striker, inputs, session));
     match setting {
         Ok(setting) => {
@@ -46,7 +45,7 @@ pub(crate) fn perform(
                 setting.frame.critical_time_step,
                 session,
             );
-            let doubts = FrameDoubts::of_blow(plan, whole, inputs, session);
+            let doubts = FrameUncertainty::of_blow(plan, whole, inputs, session);
             let Blown {
                 history,
                 results,
@@ -69,15 +68,6 @@ pub(crate) fn perform(
     }
 }
 
-pub(crate) fn no_frame() -> Stop {
-    Stop::BadInput {
-        field: "specimen",
-        value: 0.0,
-        dimension: Dimension::NUMBER,
-        wanted: "a frame of storeys".into(),
-    }
-}
-
 /// One blow, as far as it went.
 pub(crate) struct Blown {
     pub history: ImpactHistory,
@@ -89,7 +79,7 @@ pub(crate) struct Blown {
 pub(crate) fn blow(
     plan: &StoreyImpact,
     setting: &Setting,
-    doubts: &FrameDoubts<'_>,
+    doubts: &FrameUncertainty<'_>,
     before: u64,
     session: &mut Session<'_>,
 ) -> Blown {
@@ -140,7 +130,7 @@ pub(crate) fn blow(
             .as_ref()
             .map_or(&[][..], |frame| &frame.floors);
         stop = session.evaluate_uncertainty(|tick| {
-            storey_impact::propagate(
+            super::storey_uncertainty::propagate(
                 doubts,
                 plan,
                 setting,

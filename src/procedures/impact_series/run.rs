@@ -4,15 +4,15 @@
 use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Between, Escalate, Plan};
 use crate::procedures::impact::one_impact::{Blown, Struck};
-use crate::procedures::inputs::Inputs;
 use crate::procedures::results::{measured, result};
 use crate::procedures::stepping::run::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest};
+use crate::procedures::unload::uncertainty::RestUncertainty;
 use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult, Rest};
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::uncertainty::rest::RestDoubts;
 use crate::uncertainty::{Contribution, Source, combined, share};
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -53,7 +53,7 @@ fn run(
     let (time_step, critical) = struck.time_steps();
     above_critical(time_step, critical, session);
     let home = session.guard.commanded().to_vec();
-    let doubts = RestDoubts::new(whole, inputs, session);
+    let doubts = RestUncertainty::new(whole, inputs, session);
     let mut done = 0;
     for (index, velocity) in velocities.iter().copied().enumerate() {
         let given = energies
@@ -210,7 +210,7 @@ impl Left {
 fn bring(
     between: Between,
     home: &[f64],
-    (struck, doubts): (&Struck<'_>, &RestDoubts<'_>),
+    (struck, doubts): (&Struck<'_>, &RestUncertainty<'_>),
     done: &mut u64,
     session: &mut Session<'_>,
 ) -> Result<Rest, Stop> {

@@ -1,10 +1,10 @@
 //! `move`: to an absolute displacement. A limited increment makes it several equal ones, each a step of the record.
 
 use crate::plan::Move;
-use crate::procedures::inputs::Inputs;
 use crate::procedures::stiffness_ramp::run::secant;
 use crate::record::{History, RampStep};
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::units::Dimension;

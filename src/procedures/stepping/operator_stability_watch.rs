@@ -2,7 +2,7 @@
 //! the specimen is not stiffer than its `K_I`, and explicit Newmark up to 2/ω of what it is at its stiffest. In: what is imposed and
 //! read, step by step. Out: one remark. It stops nothing.
 
-use super::step_loop::Start;
+use super::start::Start;
 use crate::physics::frame::{FrameMatrices, drifts, shears, storeys_of};
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};

@@ -2,13 +2,14 @@
 //! integrated with, how many steps there are, tangents. In: a frame of the plan and how the plan steps. Out: numbers, each
 //! inside its domain. It knows no ground and no striker.
 
-use super::step_loop::Pace;
-use crate::physics::frame::{Tangents, storeys_of};
+use super::pace::Pace;
+use crate::physics::frame::{Damping, Tangents, storeys_of};
 use crate::physics::structure::frame_properties::FrameProperties;
-use crate::plan::{Frame, Integrator, MOST_STEPS, ShakeDamping, Stepping, step_count, steps_in};
-use crate::procedures::base_excitation::run::damping;
-use crate::procedures::inputs::Inputs;
+use crate::plan::{
+    Frame, Integrator, MOST_STEPS, ShakeDamping, Stepping, rayleigh, step_count, steps_in,
+};
 use crate::record::EventKind;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::units::Dimension;
@@ -41,6 +42,34 @@ pub(crate) fn properties(
         value,
         dimension: Dimension::NUMBER,
         wanted: format!("other: {reason}").into(),
+    })
+}
+
+/// The damping, and a ratio of it for a message.
+fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
+    let known = |ratio: f64| match ratio {
+        ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
+        value => Err(Stop::BadInput {
+            field: "damping_ratio",
+            value,
+            dimension: Dimension::NUMBER,
+            wanted: "between 0 and 1".into(),
+        }),
+    };
+    Ok(match plan {
+        ShakeDamping::Rayleigh(ratio) => {
+            let ratio = known(inputs.damping("damping_ratio", ratio, Dimension::NUMBER)?)?;
+            (rayleigh(ratio), ratio)
+        }
+        ShakeDamping::Modal(ratios) => {
+            let ratios = inputs.list("damping_ratio", ratios)?;
+            let ratios = ratios
+                .into_iter()
+                .map(known)
+                .collect::<Result<Vec<f64>, Stop>>()?;
+            let first = ratios.first().copied().unwrap_or(0.0);
+            (Damping::Modal(ratios), first)
+        }
     })
 }
 

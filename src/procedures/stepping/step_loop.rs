@@ -7,77 +7,19 @@
 //! r* = `r_m` − `K_I`(`d_m` − d̃). The force of a damper of the specimen is in the reading, at the actuator's velocity:
 //! c·v/`time_scale`.
 
-use std::fmt::Display;
-
 use super::axes::{AxesState, Errors, Monitors, report};
 use super::continuous_motion::{Gliding, Passing};
 use super::operator_stability_watch::StifferSprings;
-use super::run::FrameSteps;
+use super::pace::Pace;
+use super::start::Start;
 use super::tracking_summary::Followed;
-use crate::physics::frame::FrameInput;
+use super::triggers::Triggers;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Mode, Stepping};
-use crate::procedures::impact::triggers::Triggers;
-use crate::rig::{DeclaredNoise, Reading};
+use crate::rig::Reading;
 use crate::run::StepReport;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::units::Dimension;
-
-/// What is known when the first step begins.
-pub(crate) struct Start {
-    /// Where the actuators were sent to, m: X starts there.
-    pub commanded: Vec<f64>,
-    /// What was read there, once: R₀ is in it.
-    pub reading: Reading,
-    pub noise: DeclaredNoise,
-}
-
-impl Start {
-    /// What a frame is stepped from, with these loads on its floors (N).
-    pub(crate) fn input<'a>(
-        &'a self,
-        frame: &'a FrameSteps,
-        plan: &Stepping,
-        load: &'a [f64],
-    ) -> FrameInput<'a> {
-        let matrices = &frame.properties.matrices;
-        FrameInput {
-            matrices,
-            operator_stiffness: &matrices.stiffness,
-            integrator: plan.integrator,
-            i_modification: plan.i_modification,
-            tangents: frame.tangents,
-            time_step: frame.time_step,
-            initial_displacement: &self.commanded,
-            initial_restoring_force: &self.reading.force,
-            initial_load: load,
-            force_noise: self.noise.force,
-            resolution: self.noise.resolution,
-        }
-    }
-}
-
-/// How many steps there are, and how long they take.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Pace {
-    /// Δt, s
-    pub time_step: f64,
-    pub steps: u64,
-    /// s
-    pub pause: f64,
-}
-
-/// Why a structure that cannot be stepped by `time_step` (s) is not.
-pub(crate) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
-    let wanted = format!("one that can be stepped: {error}").into();
-    Stop::BadInput {
-        field: "time_step",
-        value: time_step,
-        dimension: Dimension::TIME,
-        wanted,
-    }
-}
 
 /// The energy of a test at the end of a step, J.
 pub(crate) struct Balance {

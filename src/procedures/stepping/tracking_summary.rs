@@ -1,7 +1,7 @@
 //! How the floors of a frame were followed over a run. In: at every step what each axis has come to, and the energy of the test.
 //! Out: a remark where it is worth one, results of all axes together and of each. It stops nothing: that is the guard's.
 
-use super::tracking_remarks::Watch;
+use super::remarks::Watch;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::formula::ResultValue;
 use crate::procedures::results::result;

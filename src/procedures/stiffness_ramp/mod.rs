@@ -14,5 +14,6 @@ pub(crate) mod relaxation_figures;
 pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod tables;
+pub(crate) mod uncertainty;
 
 pub use check::MOST_READINGS;

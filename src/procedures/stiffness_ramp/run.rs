@@ -2,23 +2,22 @@
 //! the mean of some readings. In: the displacements. Out: K by least squares over the outward steps, the secant of the
 //! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
 
+use super::uncertainty::{DIRECT, Readings};
 use super::{curve, hold};
 use crate::physics::identification::backbone::fit_bilinear_stated;
 use crate::physics::identification::{StatedVariance, fit_line};
+use crate::physics::statistics::samples::{mean, scatter};
 use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
-use crate::procedures::inputs::Inputs;
-use crate::procedures::samples::{mean, scatter};
 use crate::record::{
     BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampHistory,
     RampStep,
 };
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::InstrumentUncertainty;
-use crate::uncertainty::ramp;
-use crate::uncertainty::ramp::{DIRECT, Readings};
 use crate::units::Dimension;
 
 pub(crate) fn perform(
@@ -63,7 +62,7 @@ pub(crate) fn perform(
     );
     let mut results = results(readings.direct(plan, declared.force), &fits);
     if session.settings.uncertainty {
-        ramp::propagate(
+        super::uncertainty::propagate(
             &readings,
             plan,
             declared,

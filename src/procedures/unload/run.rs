@@ -2,19 +2,19 @@
 //! the forces are expected to fall. Out: the way there, and where the specimen rests. Each target is on this side of where the forces
 //! are 0, by the slopes that the moves before it showed (`physics/frame/unloading_path.rs`); the guard holds every one against the limits.
 
+use super::uncertainty::RestUncertainty;
 use crate::physics::frame::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::formula::{Formula, ResultValue};
 use crate::plan::{Frame, FrameUnload, Plan, Unload};
-use crate::procedures::inputs::Inputs;
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
 use crate::rig::Reading;
 use crate::run::Performed;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::schema::procedures::unload as schema;
-use crate::uncertainty::rest::RestDoubts;
 use crate::uncertainty::{Contribution, combined};
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -81,7 +81,7 @@ pub(crate) fn perform_frame(
     let mut steps = Vec::new();
     // `check` has seen that the specimen is a frame.
     let frame = whole.specimens[plan.specimen].frame.as_ref();
-    let known = frame.map_or_else(|| Err(no_frame()), of_frame);
+    let known = frame.map_or_else(|| Err(Stop::no_frame()), of_frame);
     let outcome = known.and_then(|unloading| {
         asked(
             (plan.within.as_ref(), plan.speed.as_ref()),
@@ -97,15 +97,6 @@ pub(crate) fn perform_frame(
         history: History::FrameUnload(steps),
         results,
         stop: outcome.err(),
-    }
-}
-
-fn no_frame() -> Stop {
-    Stop::BadInput {
-        field: "specimen",
-        value: 0.0,
-        dimension: Dimension::NUMBER,
-        wanted: "a frame of storeys".into(),
     }
 }
 
@@ -194,7 +185,7 @@ fn asked(
         .transpose()?;
     let speed = inputs.speed(speed)?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
-    RestDoubts::new(whole, inputs, session).unloaded(&mut rest, unloading, steps);
+    RestUncertainty::new(whole, inputs, session).unloaded(&mut rest, unloading, steps);
     Ok(rest)
 }
 

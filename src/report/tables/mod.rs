@@ -14,7 +14,7 @@ use super::{OutputError, Run, tell_apart, wants};
 use crate::plan::Format;
 use crate::procedures;
 use crate::record::Drift;
-use crate::remote::control::DrivenStep;
+use crate::record::remote::DrivenStep;
 use crate::text::sanitize;
 use table::Form;
 pub(crate) use table::Table;

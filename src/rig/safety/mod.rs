@@ -3,10 +3,11 @@
 //! the heartbeat stops. It waits for no reply and knows no protocol. A killed program sends
 //! nothing: the rig's own watchdog and the wired stop are for that.
 
-pub mod failpoint;
 pub(crate) mod final_hold;
 pub(crate) mod live;
 pub(crate) mod stop_request;
+
+pub use crate::record::failpoint;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};

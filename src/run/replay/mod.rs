@@ -52,8 +52,9 @@ use entry::PlanBody;
 use state::{Begin, State};
 
 use super::{Observer, Unwatched, run};
-use crate::remote::control;
-use crate::remote::control::{DrivenRecord, DrivenStep, Driver, Specimen};
+use crate::record::remote::DrivenStep;
+use crate::run::remote_control;
+use crate::run::remote_control::{DrivenRecord, Driver, Specimen};
 
 /// Gives the wall clock, as text; a virtual run has none.
 pub type Wall = Box<dyn Fn() -> Option<String>>;
@@ -92,7 +93,7 @@ pub fn record_driven(
         State::recording(journal, wall),
         |rig, observer, _| {
             let DrivenRecord { record, steps } =
-                control::drive(plan, rig, observer, driver, client);
+                remote_control::drive(plan, rig, observer, driver, client);
             done = steps;
             record
         },
@@ -118,7 +119,7 @@ pub fn replay(plan: &Plan, played: Played) -> Replayed {
     } = if let Some(driver) = driver {
         let plan = as_run.as_ref();
         perform(None, &mut Unwatched, state, |rig, observer, state| {
-            let driven = control::drive(plan, rig, observer, driver, &mut |specimen| {
+            let driven = remote_control::drive(plan, rig, observer, driver, &mut |specimen| {
                 state::ask_again(state, specimen);
             });
             steps = Some(driven.steps);

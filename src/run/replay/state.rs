@@ -14,9 +14,9 @@ use super::entry::{
 use super::replayed::{Mismatch, Played, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
-use crate::remote::control::Specimen;
 use crate::rig::{Rig, RigFault, Tally};
 use crate::run::Request;
+use crate::run::remote_control::Specimen;
 
 /// What a run goes on with where its record ends.
 pub struct GoesOn<'rig> {

@@ -418,9 +418,9 @@ fn what_jumps_is_not_called_smooth() {
 fn a_record_that_does_not_lead_to_its_results_tells_none() {
     use crate::plan::formula::ProcedureId;
     use crate::procedures::impact::run::Setting;
-    use crate::procedures::inputs::Inputs;
     use crate::record::History;
     use crate::rig::DeclaredNoise;
+    use crate::run::inputs::Inputs;
     let plan = all_uncertain(plan(sticking(1e-3)));
     let record = run_unwatched(&plan);
     let ProcedureKind::Impact(blow) = &plan.procedures[0].kind else {
@@ -434,7 +434,8 @@ fn a_record_that_does_not_lead_to_its_results_tells_none() {
     let setting = Setting::evaluate(blow, &plan.strikers[0], &mut inputs, noise)
         .ok()
         .unwrap();
-    let doubts = crate::uncertainty::impact::Doubts::new(blow, &plan, &inputs, noise);
+    let doubts =
+        crate::procedures::impact::uncertainty::ImpactUncertainty::new(blow, &plan, &inputs, noise);
     let summary = ImpactSummary {
         max_displacement: 0.2,
         time_of_max_displacement: 0.2,

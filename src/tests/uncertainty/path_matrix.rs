@@ -10,8 +10,8 @@ use crate::plan::{
     VirtualLink,
 };
 use crate::procedures::impact::run::Setting;
-use crate::procedures::inputs::Inputs;
 use crate::rig::DeclaredNoise;
+use crate::run::inputs::Inputs;
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
 use crate::uncertainty::{Contribution, Source};
 

@@ -4,17 +4,17 @@ use crate::physics::frame::Unloading;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::formula::{NoResults, ProcedureId};
 use crate::plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
-use crate::procedures::inputs::Inputs;
 use crate::procedures::unload::run::{of_frame, to_rest};
+use crate::procedures::unload::uncertainty::RestUncertainty;
 use crate::record::Rest;
 use crate::rig::{
     DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault, virtual_rig,
 };
 use crate::run::Unwatched;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::tests::procedures::frame_sequence::{close, three};
 use crate::tests::testing::elastic_plan;
-use crate::uncertainty::rest::RestDoubts;
 use crate::uncertainty::{Contribution, Source, combined};
 
 /// What the cell of each axis makes of newtons, what it reads of none (N), and what its transducer makes of metres.
@@ -141,7 +141,7 @@ fn rests(plan: &Plan, places: &[&[f64]], axes: Vec<Wrong>, within: Option<f64>) 
     let mut steps = Vec::new();
     let mut rest = to_rest(unloading.clone(), within, None, 0, &mut session, &mut steps).unwrap();
     let inputs = Inputs::new(&NoResults, ProcedureId(0));
-    RestDoubts::new(plan, &inputs, &session).unloaded(&mut rest, &unloading, &steps);
+    RestUncertainty::new(plan, &inputs, &session).unloaded(&mut rest, &unloading, &steps);
     rest
 }
 

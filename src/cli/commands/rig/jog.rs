@@ -19,11 +19,11 @@ use crate::cli::settings::Settings;
 use crate::evidence::Folder;
 use crate::plan::{Datum, Interval, Link, Plan};
 use crate::record::Outcome;
-use crate::remote::control::{Driver, Specimen};
 use crate::report;
 use crate::rig::{
     Connected, Identity, LimitedQuantity, OWN_SPEED, Rig, RigFault, Wish, connect, virtual_rig,
 };
+use crate::run::remote_control::{Driver, Specimen};
 use crate::run::replay;
 use crate::run::replay::BY_HAND;
 use crate::run::{Extent, Motion, Parting, Unwatched};

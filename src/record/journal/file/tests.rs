@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::super::{Durability, EntryKind, Journal, Storage, recover};
 use super::{FileFault, FileStorage, ballast, write_whole};
-use crate::rig::safety::failpoint::{Guarding, without};
+use crate::record::failpoint::{Guarding, without};
 
 fn place() -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();

@@ -7,7 +7,7 @@ use super::super::{
     Doing, Durability, EntryKind, Journal, JournalFault, LINE_BYTES, Refusal, Storage, recover,
 };
 use super::{begun, records};
-use crate::rig::safety::failpoint::{Guarding, without};
+use crate::record::failpoint::{Guarding, without};
 
 fn on(disk: &(impl Storage + Clone + 'static)) -> Journal {
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);

@@ -111,3 +111,18 @@ impl Request {
         Some((targets, speed))
     }
 }
+
+/// Targets carried out and what was read there, one entry an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrivenStep {
+    /// From 1, over all clients.
+    pub step: u64,
+    /// Rig time, s.
+    pub time: f64,
+    /// m
+    pub command: Vec<f64>,
+    /// m
+    pub displacement: Vec<f64>,
+    /// N
+    pub force: Vec<f64>,
+}

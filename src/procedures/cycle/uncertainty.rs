@@ -3,11 +3,11 @@
 
 use std::convert::Infallible;
 
+use super::run::results;
 use crate::physics::identification::cyclic::{LoopPoint, loop_of};
-use crate::physics::identification::loop_sampling::left_open;
 use crate::physics::perturbation::{Perturbation, ReadingErrors};
 use crate::plan::formula::ProcedureId;
-use crate::procedures::cycle::run::results;
+use crate::procedures::loop_sampling::{left_open_by, of_open};
 use crate::procedures::results::{Layout, give, values};
 use crate::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
@@ -137,27 +137,6 @@ pub(crate) fn left_open_by_points(
         )
     };
     history.cycles.iter().map(of_cycle).collect()
-}
-
-/// By how much these points of a loop of this stiffness \[N/m\], each the mean of so many samples, leave its energy open \[J\].
-pub(crate) fn left_open_by(
-    points: &[(f64, f64)],
-    stiffness: f64,
-    errors: ReadingErrors,
-    samples: u32,
-) -> f64 {
-    let [force, displacement] = errors.quantization();
-    let rounding = force.hypot(stiffness * displacement);
-    left_open(
-        points,
-        (errors.noise / f64::from(samples).sqrt()).hypot(rounding),
-    )
-}
-
-/// The standard uncertainty of an energy of which the points leave so much open [J]: a rectangular distribution between the trapezia
-/// and the most.
-pub(crate) fn of_open(most: f64) -> f64 {
-    most / 3.0_f64.sqrt()
 }
 
 /// Uncertainties of the results by the points of the loops. Loops are alike, and so are their corners.

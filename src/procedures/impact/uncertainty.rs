@@ -2,6 +2,7 @@
 //! contributions of each source to each result. The impact is re-integrated along the recorded force–displacement path with perturbed
 //! inputs and readings; no rig is moved.
 
+use super::run::Setting;
 use crate::physics::contact::state::ContactLaw;
 use crate::physics::impact::ImpactError;
 use crate::physics::impact::summary::ImpactSummary;
@@ -10,24 +11,22 @@ use crate::physics::reintegration::hysteresis_replay::{Reading, RecordedPath};
 use crate::physics::reintegration::impact::{OUTCOMES, Outcome, foretold, rerun};
 use crate::plan::formula::{Formula, ProcedureId, Results};
 use crate::plan::{Contact, Impact, Mode, Plan, Striker};
-use crate::procedures::impact::run::Setting;
-use crate::procedures::inputs::{Inputs, with_shifts};
+use crate::procedures::perturbed_inputs::{
+    LEADS_ELSEWHERE, out_of_bounds, uncertain_inputs, with_shifts,
+};
 use crate::procedures::results::{Layout, give, values};
 use crate::record::{ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
+use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
 use crate::uncertainty::engine::{
     CLOSE, Contributions, Evaluate, Evaluation, Shifts, Study, Tick, Unknown,
 };
-use crate::uncertainty::{InstrumentUncertainty, Source, sources_of};
-
-/// Why no uncertainty is told of a run.
-pub(crate) const LEADS_ELSEWHERE: &str =
-    "the recorded way, taken again, does not lead to the recorded results";
+use crate::uncertainty::{InstrumentUncertainty, Source};
 
 /// Everything uncertain about a blow.
 #[derive(Clone, Copy)]
-pub(crate) struct Doubts<'run> {
+pub(crate) struct ImpactUncertainty<'run> {
     plan: &'run Impact,
     whole: &'run Plan,
     results: &'run dyn Results,
@@ -39,7 +38,7 @@ pub(crate) struct Doubts<'run> {
     blow: u16,
 }
 
-impl<'run> Doubts<'run> {
+impl<'run> ImpactUncertainty<'run> {
     pub(crate) fn new(
         plan: &'run Impact,
         whole: &'run Plan,
@@ -172,31 +171,9 @@ impl<'run> Doubts<'run> {
     }
 }
 
-/// Sources of the results and statements that `formulas` read, and `stated` ones with their uncertainties.
-pub(crate) fn uncertain_inputs(
-    formulas: &[&Formula],
-    stated: impl Iterator<Item = (Source, f64)>,
-    results: &dyn Results,
-) -> Vec<Source> {
-    let mut references = Vec::new();
-    for formula in formulas {
-        formula.collect_references(&mut references);
-    }
-    let mut sources = sources_of(&references, results);
-    for formula in formulas {
-        formula.collect_stated(&mut sources);
-    }
-    sources.extend(
-        stated
-            .filter(|(_, uncertainty)| *uncertainty > 0.0)
-            .map(|(source, _)| source),
-    );
-    sources
-}
-
 /// An impact along its recorded path.
 struct RecordedImpact<'a, 'run> {
-    doubts: &'a Doubts<'run>,
+    doubts: &'a ImpactUncertainty<'run>,
     setting: &'a Setting,
     path: RecordedPath,
 }
@@ -218,7 +195,7 @@ impl Evaluate for RecordedImpact<'_, '_> {
 
     /// The time step stays: it was chosen, not measured.
     fn inputs(&self, shifts: Shifts<'_>) -> Result<Setting, String> {
-        let Doubts {
+        let ImpactUncertainty {
             plan,
             whole,
             results,
@@ -276,10 +253,6 @@ impl Evaluate for RecordedImpact<'_, '_> {
             farthest: found.farthest,
         }
     }
-}
-
-pub(crate) fn out_of_bounds(stop: &Stop) -> String {
-    format!("an input moved by its uncertainty is none: {stop}")
 }
 
 /// What a contact law reads.

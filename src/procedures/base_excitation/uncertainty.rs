@@ -1,17 +1,17 @@
 //! The uncertainty of the results of a shake. In: its inputs with their sources of uncertainty, and the recorded steps. Out: the
 //! contributions of each source to each number. The frame is re-integrated along its recorded path, under the same ground.
 
-use super::frame::{FrameDoubts, leads_there};
-use super::impact::LEADS_ELSEWHERE;
+use super::setting::Setting;
 use crate::physics::frame::FrameError;
 use crate::physics::perturbation::Perturbation;
 use crate::physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::structure::ground::acceleration_at;
 use crate::plan::{Ground, Shake};
-use crate::procedures::base_excitation::run::Setting;
+use crate::procedures::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::results::{give, values};
 use crate::procedures::stepping;
+use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::run::FrameSteps;
 use crate::record::{NamedResult, ShakeHistory, ShakeStep};
 use crate::run::stop::Stop;
@@ -24,7 +24,7 @@ const FINEST: u8 = FINER[1];
 
 /// Gives `results` their contributions.
 pub(crate) fn propagate(
-    doubts: &FrameDoubts<'_>,
+    doubts: &FrameUncertainty<'_>,
     plan: &Shake,
     ground: &Ground,
     setting: &Setting,
@@ -94,7 +94,7 @@ pub(crate) fn propagate(
 
 /// A shake along its recorded path.
 struct RecordedShake<'a, 'run> {
-    doubts: &'a FrameDoubts<'run>,
+    doubts: &'a FrameUncertainty<'run>,
     plan: &'a Shake,
     ground: &'a Ground,
     setting: &'a Setting,

@@ -7,9 +7,9 @@ use crate::physics::identification::multilinear_fit::{CurveShares, MultilinearFi
 use crate::physics::perturbation::ReadingErrors;
 use crate::plan::formula::{Formula, ProcedureId, ResultValue};
 use crate::plan::{Calibration, Plan, ProcedureKind};
-use crate::procedures::inputs::Inputs;
 use crate::record::{BilinearFit, BroughtTogether, History, NamedResult};
 use crate::rig::DeclaredNoise;
+use crate::run::inputs::Inputs;
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source, combined, share};
 use crate::units::Dimension;
 

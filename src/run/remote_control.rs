@@ -6,8 +6,8 @@
 
 pub(crate) use std::time::{Duration, Instant};
 
-use super::request::{Parting, Request};
 use crate::plan::{DriftCheck, Plan, ZeroAfter};
+use crate::record::remote::{DrivenStep, Parting, Request};
 use crate::record::{Drift, Event, EventKind, Outcome, Record};
 use crate::rig::{Guard, Rig, RigFault};
 use crate::run::pretest_check;
@@ -32,21 +32,6 @@ pub struct Driven {
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Felt {
     pub displacement: Vec<f64>,
-    pub force: Vec<f64>,
-}
-
-/// Targets carried out and what was read there, one entry an axis.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DrivenStep {
-    /// From 1, over all clients.
-    pub step: u64,
-    /// Rig time, s.
-    pub time: f64,
-    /// m
-    pub command: Vec<f64>,
-    /// m
-    pub displacement: Vec<f64>,
-    /// N
     pub force: Vec<f64>,
 }
 

@@ -1,10 +1,7 @@
 //! The uncertainty of the results of an impact on a storey. In: its inputs with their sources of uncertainty, and the recorded steps. Out:
 //! the contributions of each source to each number. The frame is re-integrated along its recorded path.
 
-use super::frame::{FrameDoubts, leads_there};
-use super::impact::{
-    LEADS_ELSEWHERE, at_least, contact_formulas, no_known_force, same, whole_steps,
-};
+use super::uncertainty::{at_least, contact_formulas, no_known_force, same, whole_steps};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::perturbation::Perturbation;
@@ -14,8 +11,10 @@ use crate::physics::reintegration::impact::OUTCOMES;
 use crate::plan::{StoreyImpact, Striker};
 use crate::procedures::impact::run::law;
 use crate::procedures::impact::storey::Setting;
+use crate::procedures::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::results::{Layout, give, values};
 use crate::procedures::stepping;
+use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::record::{FloorStep, NamedResult};
 use crate::run::stop::Stop;
 use crate::uncertainty::Source;
@@ -39,7 +38,7 @@ const LISTS: [&str; 5] = [
 
 /// Gives `results` their contributions.
 pub(crate) fn propagate(
-    doubts: &FrameDoubts<'_>,
+    doubts: &FrameUncertainty<'_>,
     plan: &StoreyImpact,
     setting: &Setting,
     history: &[FloorStep],
@@ -105,7 +104,7 @@ pub(crate) fn propagate(
 
 /// An impact on a storey along its recorded path.
 struct RecordedStoreyImpact<'a, 'run> {
-    doubts: &'a FrameDoubts<'run>,
+    doubts: &'a FrameUncertainty<'run>,
     plan: &'a StoreyImpact,
     setting: &'a Setting,
     path: FramePath,

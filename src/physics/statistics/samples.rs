@@ -1,15 +1,17 @@
 //! Mean and scatter of the readings at one place. It knows no rig.
 
 /// NaN of nothing.
+#[must_use]
 #[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
-pub(crate) fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+pub fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len();
     values.sum::<f64>() / count as f64
 }
 
 /// Standard deviation of the samples; 0 for one.
+#[must_use]
 #[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
-pub(crate) fn scatter(values: impl ExactSizeIterator<Item = f64>, mean: f64) -> f64 {
+pub fn scatter(values: impl ExactSizeIterator<Item = f64>, mean: f64) -> f64 {
     match values.len() {
         0 | 1 => 0.0,
         count => {

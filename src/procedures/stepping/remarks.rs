@@ -1,6 +1,7 @@
 //! What tracking puts into a test or takes out of it, said once it is worth a remark. In: its share of the input energy, step
 //! by step. Out: an event, and the worst share. It stops nothing: that is the guard's.
 
+use crate::physics::impact::energy::UNBALANCED;
 use crate::physics::tracking::monitor::WARN;
 use crate::record::EventKind;
 use crate::run::session::Session;
@@ -35,5 +36,21 @@ impl Watch {
             );
             session.event(EventKind::Remark, text);
         }
+    }
+}
+
+/// Says that the scheme made or lost more of the energy than a reader may take for the specimen's.
+pub(crate) fn unbalanced(energy_error: f64, session: &mut Session<'_>) {
+    if energy_error.is_nan() || energy_error.abs() > UNBALANCED {
+        let off = if energy_error.is_nan() {
+            "the energy balance cannot be computed: its energies are not finite".to_owned()
+        } else {
+            format!(
+                "the energy balance is off by {} % of the energy put in",
+                significant(100.0 * energy_error, 3)
+            )
+        };
+        let text = format!("{off}: a shorter time step is needed");
+        session.event(EventKind::Remark, text);
     }
 }

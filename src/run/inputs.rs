@@ -3,30 +3,9 @@
 
 use crate::plan::formula::{Estimate, Formula, ProcedureId, Results};
 use crate::run::stop::Stop;
-use crate::uncertainty::engine::Shifts;
-use crate::uncertainty::{Moved, known};
+use crate::uncertainty::known;
 use crate::units::Dimension;
 use crate::units::display::readable;
-
-/// Calls with results that have sources perturbed.
-pub(crate) fn with_shifts<T>(
-    results: &dyn Results,
-    shifts: Shifts<'_>,
-    then: &mut dyn FnMut(&dyn Results) -> T,
-) -> T {
-    match shifts.split_first() {
-        None => then(results),
-        Some(((source, by), rest)) => with_shifts(
-            &Moved {
-                results,
-                source: *source,
-                by: *by,
-            },
-            rest,
-            then,
-        ),
-    }
-}
 
 /// Evaluates, and remembers what came out.
 pub(crate) struct Inputs<'record> {

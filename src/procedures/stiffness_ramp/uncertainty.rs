@@ -3,15 +3,15 @@
 
 use std::convert::Infallible;
 
-use super::cycle::{left_open_by, of_open};
+use super::run::{Point, point, secant};
 use crate::physics::identification::loop_energy;
 use crate::physics::perturbation::{Perturbation, ReadingErrors};
 use crate::physics::statistics::noisy_largest::NoisyLargest;
+use crate::physics::statistics::samples::mean;
 use crate::plan::StiffnessRamp;
 use crate::plan::formula::ProcedureId;
+use crate::procedures::loop_sampling::{left_open_by, of_open};
 use crate::procedures::results::{give, largest};
-use crate::procedures::samples::mean;
-use crate::procedures::stiffness_ramp::run::{Point, point, secant};
 use crate::record::{NamedResult, RampStep};
 use crate::rig::DeclaredNoise;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};

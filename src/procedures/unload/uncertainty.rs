@@ -6,14 +6,14 @@
 //! f are off by −K⁻¹f in that place. With whatever stiffness it was sent there, it rests at the same place: to first order
 //! that is no source. What left the specimen where it is, a blow say, is not measured by where it rests, and no source of it.
 
+use super::run::NOISE;
 use crate::physics::frame::{Loaded, Unloading};
 use crate::physics::integrator::tangent::NOISE_MULTIPLE;
 use crate::plan::Plan;
 use crate::plan::formula::ProcedureId;
-use crate::procedures::inputs::Inputs;
-use crate::procedures::unload::run::NOISE;
 use crate::record::{Rest, UnloadStep};
 use crate::rig::DeclaredNoise;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
@@ -22,7 +22,7 @@ const TOLD: f64 = 1e-6;
 
 /// Everything uncertain about a place of rest.
 #[derive(Clone, Copy)]
-pub(crate) struct RestDoubts<'run> {
+pub(crate) struct RestUncertainty<'run> {
     whole: &'run Plan,
     noise: DeclaredNoise,
     procedure: ProcedureId,
@@ -32,7 +32,7 @@ pub(crate) struct RestDoubts<'run> {
 /// Errors of one reading of an axis: standard deviations, N and m.
 type Errors = Vec<(f64, f64)>;
 
-impl<'run> RestDoubts<'run> {
+impl<'run> RestUncertainty<'run> {
     pub fn new(whole: &'run Plan, inputs: &Inputs<'_>, session: &Session<'_>) -> Self {
         Self {
             whole,
@@ -82,7 +82,7 @@ impl<'run> RestDoubts<'run> {
         let told = NOISE * most(&mut errors.iter().map(|error| error.0));
         let told = told.max(unloading.felt(most(&mut errors.iter().map(|error| error.1))));
         if !exact && most(&mut rest.force.iter().copied()) > told {
-            let RestDoubts {
+            let RestUncertainty {
                 procedure, blow, ..
             } = *self;
             let force = rest.force.clone();
@@ -112,7 +112,7 @@ impl<'run> RestDoubts<'run> {
     }
 
     const fn reading(&self, reading: usize) -> Source {
-        let RestDoubts {
+        let RestUncertainty {
             procedure, blow, ..
         } = *self;
         // Three of each of at most MOST_STOREYS floors.

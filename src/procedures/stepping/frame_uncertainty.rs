@@ -2,16 +2,15 @@
 //! frame of the plan, its damping, the rig's calibration. Out: the sources, inputs with sources moved, the runs to take again.
 //! The run itself is not touched, and no rig is moved.
 
-use super::impact::{out_of_bounds, uncertain_inputs};
+use super::run::FrameSteps;
 use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::plan::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
 use crate::plan::{Frame, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyImpact};
-use crate::procedures::impact::storey::no_frame;
-use crate::procedures::inputs::{Inputs, with_shifts};
-use crate::procedures::stepping::run::FrameSteps;
+use crate::procedures::perturbed_inputs::{out_of_bounds, uncertain_inputs, with_shifts};
 use crate::record::NamedResult;
 use crate::rig::DeclaredNoise;
+use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::uncertainty::engine::{CLOSE, Contributions, Evaluate, Shifts, Study, Tick, Unknown};
@@ -19,7 +18,7 @@ use crate::uncertainty::{InstrumentUncertainty, Source};
 
 /// Everything uncertain about a frame.
 #[derive(Clone, Copy)]
-pub(crate) struct FrameDoubts<'run> {
+pub(crate) struct FrameUncertainty<'run> {
     pub whole: &'run Plan,
     /// By its place among the plan's specimens.
     pub specimen: usize,
@@ -37,7 +36,7 @@ pub(crate) struct FrameDoubts<'run> {
     pub blow: u16,
 }
 
-impl<'run> FrameDoubts<'run> {
+impl<'run> FrameUncertainty<'run> {
     pub fn of_shake(
         plan: &'run Shake,
         whole: &'run Plan,
@@ -186,7 +185,7 @@ impl<'run> FrameDoubts<'run> {
 
     /// The frame with its storeys as they are moved.
     pub fn moved_frame(&self, shifts: Shifts<'_>) -> Result<Frame, String> {
-        let frame = self.frame.ok_or_else(|| out_of_bounds(&no_frame()))?;
+        let frame = self.frame.ok_or_else(|| out_of_bounds(&Stop::no_frame()))?;
         let mut factors = [1.0; 2];
         for (source, by) in shifts {
             match *source {

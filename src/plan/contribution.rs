@@ -1,0 +1,68 @@
+//! Contributions to the uncertainty of a number, one per source. Sources are independent: numbers that share a source are correlated
+//! accordingly (JCGM 100:2008, 5.2 and F.1.2.3). In: contributions. Out: standard uncertainties.
+
+use super::source::Source;
+
+/// What one source does to one number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contribution {
+    pub source: Source,
+    /// Which number of a list it is of, from 0; 0 of a result that is one number.
+    pub entry: usize,
+    /// Change of the number when the source moves by its standard uncertainty, in the number's own unit.
+    pub amount: f64,
+    /// Whether the number follows the source smoothly there. Where it does not, `amount` is the largest change seen.
+    pub smooth: bool,
+}
+
+impl Contribution {
+    #[must_use]
+    pub const fn new(source: Source, amount: f64) -> Self {
+        Self {
+            source,
+            entry: 0,
+            amount,
+            smooth: true,
+        }
+    }
+}
+
+/// What several contributions of one source do to one number is their sum: adds `part` to what `parts` have of its source
+/// already.
+pub fn share(parts: &mut Vec<Contribution>, part: Contribution) {
+    match parts
+        .iter_mut()
+        .find(|known| known.source == part.source && known.entry == part.entry)
+    {
+        Some(known) => {
+            known.amount += part.amount;
+            known.smooth &= part.smooth;
+        }
+        None => parts.push(part),
+    }
+}
+
+/// u of each of `count` entries of a list; None where nothing of an entry is uncertain.
+#[must_use]
+pub fn combined_entries(contributions: &[Contribution], count: usize) -> Vec<Option<f64>> {
+    let mut squares = vec![None; count];
+    for part in contributions {
+        if let Some(square) = squares.get_mut(part.entry) {
+            *square = Some(square.unwrap_or(0.0) + part.amount * part.amount);
+        }
+    }
+    squares
+        .into_iter()
+        .map(|square: Option<f64>| square.map(f64::sqrt))
+        .collect()
+}
+
+/// u = √Σ cᵢ² of independent contributions to one number (JCGM 100:2008, eq. 10); None of nothing.
+#[must_use]
+pub fn combined(contributions: &[Contribution]) -> Option<f64> {
+    let variance = contributions
+        .iter()
+        .map(|part| part.amount * part.amount)
+        .reduce(|sum, square| sum + square)?;
+    Some(variance.sqrt())
+}

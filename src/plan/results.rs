@@ -1,0 +1,291 @@
+//! Results of procedures, as formulas read them. In: a reference to a result. Out: its value and its contributions, or both with one
+//! source perturbed.
+
+use super::contribution::Contribution;
+use super::source::{ProcedureId, Source};
+
+/// Which number of a result is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    Value,
+    /// `.u`, the standard uncertainty.
+    Uncertainty,
+}
+
+/// A result of a procedure: `k0.stiffness`, `k0.stiffness.u`. `name` is the schema's own word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ResultReference {
+    pub procedure: ProcedureId,
+    pub name: &'static str,
+    pub part: Part,
+}
+
+/// What a result may be: one number or a list, with the standard uncertainty of a number where it was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ResultValue {
+    /// `value` is None where the result does not exist in this run (no stop time: the striker did not stop).
+    Number {
+        value: Option<f64>,
+        uncertainty: Option<f64>,
+    },
+    List(Vec<f64>),
+}
+
+/// Where formulas find results.
+pub trait Results: Sync {
+    /// The result, or None if its procedure has not run to it.
+    fn result(&self, reference: ResultReference) -> Option<ResultValue>;
+
+    /// What its uncertainty is made of; of a result that says no more, all of it is its own.
+    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        let ResultReference {
+            procedure, name, ..
+        } = reference;
+        match self.result(reference) {
+            Some(ResultValue::Number {
+                uncertainty: Some(own),
+                ..
+            }) => {
+                vec![Contribution::new(
+                    Source::Fit {
+                        procedure,
+                        result: name,
+                    },
+                    own,
+                )]
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Degrees of freedom by which the size of a source is known; infinite of what was not estimated from readings.
+    fn degrees(&self, _: Source) -> f64 {
+        f64::INFINITY
+    }
+
+    /// By how many of its standard uncertainties a source is moved here.
+    fn moved(&self, _: Source) -> f64 {
+        0.0
+    }
+
+    /// Why a measured result that exists has no expanded uncertainty; None where it has one, or is exact.
+    fn no_uncertainty(&self, _: ResultReference) -> Option<String> {
+        None
+    }
+}
+
+/// No procedure has run: constants only.
+pub struct NoResults;
+
+impl Results for NoResults {
+    fn result(&self, _: ResultReference) -> Option<ResultValue> {
+        None
+    }
+}
+
+/// Results as they would be with one source moved.
+pub struct Moved<'a> {
+    pub results: &'a dyn Results,
+    pub source: Source,
+    /// In standard uncertainties of the source.
+    pub by: f64,
+}
+
+impl Results for Moved<'_> {
+    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+        let found = self.results.result(reference)?;
+        if reference.part != Part::Value {
+            return Some(found);
+        }
+        let parts = self.results.contributions(reference);
+        let mine = parts.iter().filter(|part| part.source == self.source);
+        Some(match found {
+            ResultValue::Number {
+                value: Some(value),
+                uncertainty,
+            } => {
+                let value = mine.fold(value, |value, part| value + self.by * part.amount);
+                ResultValue::Number {
+                    value: Some(value),
+                    uncertainty,
+                }
+            }
+            ResultValue::List(mut values) => {
+                for part in mine {
+                    if let Some(value) = values.get_mut(part.entry) {
+                        *value += self.by * part.amount;
+                    }
+                }
+                ResultValue::List(values)
+            }
+            none @ ResultValue::Number { .. } => none,
+        })
+    }
+
+    fn moved(&self, source: Source) -> f64 {
+        self.results.moved(source) + if source == self.source { self.by } else { 0.0 }
+    }
+
+    fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+        self.results.contributions(reference)
+    }
+
+    fn degrees(&self, source: Source) -> f64 {
+        self.results.degrees(source)
+    }
+
+    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
+        self.results.no_uncertainty(reference)
+    }
+}
+
+/// Every source of the results that are read, each once, in the order they are met.
+#[must_use]
+pub fn sources_of(references: &[ResultReference], results: &dyn Results) -> Vec<Source> {
+    let mut sources = Vec::new();
+    for reference in references
+        .iter()
+        .filter(|reference| reference.part == Part::Value)
+    {
+        for part in results.contributions(*reference) {
+            if part.amount != 0.0 && !sources.contains(&part.source) {
+                sources.push(part.source);
+            }
+        }
+    }
+    sources
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::contribution::{combined, combined_entries, share};
+    use crate::plan::formula::{Formula, Operator};
+
+    /// Slope and intercept of one line, and a number of its own.
+    struct OneLine;
+
+    const CORRELATION: f64 = -0.8;
+
+    const fn reference(name: &'static str) -> ResultReference {
+        ResultReference {
+            procedure: ProcedureId(0),
+            name,
+            part: Part::Value,
+        }
+    }
+
+    const fn source(result: &'static str) -> Source {
+        Source::Fit {
+            procedure: ProcedureId(0),
+            result,
+        }
+    }
+
+    impl Results for OneLine {
+        fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+            let (value, uncertainty) = match reference.name {
+                "stiffness" => (100.0, 2.0),
+                "intercept_force" => (5.0, 0.5),
+                _ => (7.0, 0.3),
+            };
+            Some(ResultValue::Number {
+                value: Some(value),
+                uncertainty: Some(uncertainty),
+            })
+        }
+
+        fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
+            match reference.name {
+                "stiffness" => vec![Contribution::new(source("stiffness"), 2.0)],
+                "intercept_force" => vec![
+                    Contribution::new(source("stiffness"), 0.5 * CORRELATION),
+                    Contribution::new(source("intercept_force"), 0.5 * 0.6),
+                ],
+                name => vec![Contribution::new(source(name), 0.3)],
+            }
+        }
+    }
+
+    /// R = K·x + R₀ at x: u² = x²u(K)² + u(R₀)² + 2x·r·u(K)·u(R₀) (JCGM 100:2008, eq. 16), not their plain sum.
+    #[test]
+    fn numbers_of_one_fit_are_correlated() {
+        let line = |x: f64| {
+            let slope = Formula::Binary(
+                Operator::Multiply,
+                Box::new(Formula::Result(reference("stiffness"))),
+                Box::new(Formula::Constant(x)),
+            );
+            Formula::Binary(
+                Operator::Add,
+                Box::new(slope),
+                Box::new(Formula::Result(reference("intercept_force"))),
+            )
+        };
+        for x in [0.0, 0.1, 0.2, 1.0] {
+            let by_hand = (4.0 * x * x + 0.25 + 2.0 * x * CORRELATION * 2.0 * 0.5_f64).sqrt();
+            let u = line(x)
+                .evaluate(&OneLine, None)
+                .unwrap()
+                .uncertainty
+                .unwrap();
+            assert!((u - by_hand).abs() < 1e-12, "at {x}: {u} {by_hand}");
+        }
+        // And independent of others.
+        let other = Formula::Binary(
+            Operator::Add,
+            Box::new(line(0.0)),
+            Box::new(Formula::Result(reference("mass"))),
+        );
+        let u = other.evaluate(&OneLine, None).unwrap().uncertainty.unwrap();
+        assert!((u - 0.5_f64.hypot(0.3)).abs() < 1e-12);
+    }
+
+    /// Σ over one source before the square, each entry of a list for itself.
+    #[test]
+    fn what_shares_a_source_adds_up_entry_by_entry() {
+        let of = |entry, amount| Contribution {
+            entry,
+            ..Contribution::new(source("stiffness"), amount)
+        };
+        let mut parts = Vec::new();
+        for part in [
+            of(0, 3.0),
+            of(1, 1.0),
+            of(0, 1.0),
+            Contribution::new(source("mass"), 3.0),
+        ] {
+            share(&mut parts, part);
+        }
+        assert_eq!(parts.len(), 3);
+        assert_eq!(combined_entries(&parts, 3), [Some(5.0), Some(1.0), None]);
+    }
+
+    #[test]
+    fn a_moved_source_moves_what_it_is_in_and_nothing_else() {
+        let moved = Moved {
+            results: &OneLine,
+            source: source("stiffness"),
+            by: -0.5,
+        };
+        let value = |name| match moved.result(reference(name)) {
+            Some(ResultValue::Number {
+                value: Some(value), ..
+            }) => value,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(
+            (value("stiffness"), value("intercept_force"), value("mass")),
+            (99.0, 5.2, 7.0)
+        );
+        assert_eq!(
+            sources_of(
+                &[reference("intercept_force"), reference("stiffness")],
+                &OneLine
+            )
+            .len(),
+            2
+        );
+        assert_eq!(combined(&[]), None);
+    }
+}

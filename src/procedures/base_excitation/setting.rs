@@ -1,0 +1,61 @@
+//! The inputs of a base excitation, evaluated before its first time step. In: the plan, its frame and ground motion. Out: the time
+//! steps of the frame, the scale of the ground motion, its energy.
+
+use crate::physics::structure::ground::peak_velocity;
+use crate::plan::formula::Formula;
+use crate::plan::{Frame, Ground, Shake};
+use crate::procedures::stepping;
+use crate::procedures::stepping::run::FrameSteps;
+use crate::run::inputs::Inputs;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+use crate::units::Dimension;
+
+/// Everything known before the first step.
+pub(crate) struct Setting {
+    pub(crate) frame: FrameSteps,
+    /// Factor on the record.
+    pub(crate) scale: f64,
+    /// ½ ιᵀMι v², v the largest velocity of the ground, J: what its motion can put in, before it has.
+    pub(crate) ground_energy: f64,
+}
+
+impl Setting {
+    pub(crate) fn evaluate(
+        plan: &Shake,
+        frame: &Frame,
+        ground: &Ground,
+        inputs: &mut Inputs<'_>,
+        session: &Session<'_>,
+    ) -> Result<Self, Stop> {
+        let properties = stepping::run::properties(frame, &plan.damping, inputs)?;
+        let critical = properties.critical_time_step();
+        let time_step = stepping::run::time_step(
+            &plan.stepping,
+            (frame, &properties),
+            critical,
+            inputs,
+            session,
+        )?;
+        let to_the_end = Formula::Constant(ground.duration());
+        let duration = inputs.positive(
+            "duration",
+            plan.duration.as_ref().unwrap_or(&to_the_end),
+            Dimension::TIME,
+        )?;
+        let scale = inputs.number("scale", &plan.scale, Dimension::NUMBER)?;
+        let steps = FrameSteps::new(
+            properties,
+            &plan.stepping,
+            (time_step, critical, duration),
+            inputs,
+        )?;
+        let velocity = scale * peak_velocity(&ground.times, &ground.accelerations);
+        let ground_energy = 0.5 * frame.total_mass() * velocity * velocity;
+        Ok(Self {
+            frame: steps,
+            scale,
+            ground_energy,
+        })
+    }
+}

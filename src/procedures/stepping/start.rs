@@ -1,0 +1,56 @@
+//! The state of rig and structure before the first time step. In: the first reading, the frame of the plan. Out: what a solver starts
+//! from.
+
+use std::fmt::Display;
+
+use super::run::FrameSteps;
+use crate::physics::frame::FrameInput;
+use crate::plan::Stepping;
+use crate::rig::{DeclaredNoise, Reading};
+use crate::run::stop::Stop;
+use crate::units::Dimension;
+
+/// What is known when the first step begins.
+pub(crate) struct Start {
+    /// Where the actuators were sent to, m: X starts there.
+    pub commanded: Vec<f64>,
+    /// What was read there, once: R₀ is in it.
+    pub reading: Reading,
+    pub noise: DeclaredNoise,
+}
+
+impl Start {
+    /// What a frame is stepped from, with these loads on its floors (N).
+    pub(crate) fn input<'a>(
+        &'a self,
+        frame: &'a FrameSteps,
+        plan: &Stepping,
+        load: &'a [f64],
+    ) -> FrameInput<'a> {
+        let matrices = &frame.properties.matrices;
+        FrameInput {
+            matrices,
+            operator_stiffness: &matrices.stiffness,
+            integrator: plan.integrator,
+            i_modification: plan.i_modification,
+            tangents: frame.tangents,
+            time_step: frame.time_step,
+            initial_displacement: &self.commanded,
+            initial_restoring_force: &self.reading.force,
+            initial_load: load,
+            force_noise: self.noise.force,
+            resolution: self.noise.resolution,
+        }
+    }
+}
+
+/// Why a structure that cannot be stepped by `time_step` (s) is not.
+pub(crate) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
+    let wanted = format!("one that can be stepped: {error}").into();
+    Stop::BadInput {
+        field: "time_step",
+        value: time_step,
+        dimension: Dimension::TIME,
+        wanted,
+    }
+}
