@@ -3,7 +3,7 @@
 //! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
 
 use super::{curve, hold};
-use crate::physics::identification::backbone::fit_bilinear_stated;
+use crate::physics::identification::bilinear_fit::fit_bilinear_stated;
 use crate::physics::identification::{StatedVariance, fit_line};
 use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
 use crate::procedures::inputs::Inputs;
@@ -382,8 +382,11 @@ fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult>
             schema::YIELD_DISPLACEMENT.found_with(of(|fit| {
                 (fit.yield_displacement, fit.yield_displacement_error)
             })),
-            schema::HARDENED_STIFFNESS.found_with(of(|fit| (fit.hardened, fit.hardened_error))),
-            schema::HARDENING.found_with(of(|fit| (fit.hardening, fit.hardening_error))),
+            schema::HARDENED_STIFFNESS.found_with(of(|fit| {
+                (fit.post_yield_stiffness, fit.post_yield_stiffness_error)
+            })),
+            schema::HARDENING
+                .found_with(of(|fit| (fit.post_yield_ratio, fit.post_yield_ratio_error))),
         ]);
     } else {
         results.extend(curve::yielding(multilinear));
