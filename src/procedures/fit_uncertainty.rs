@@ -2,7 +2,7 @@
 //! the results of a ramp or a sweep with the standard errors of their fits. Out: the same with their contributions, so that
 //! what follows from them knows what they share.
 
-use crate::physics::identification::backbone::SHARED;
+use crate::physics::identification::bilinear_fit::SHARED;
 use crate::physics::identification::multilinear_fit::{CurveShares, MultilinearFit};
 use crate::physics::perturbation::ReadingErrors;
 use crate::plan::formula::{Formula, ProcedureId, ResultValue};
@@ -265,7 +265,7 @@ fn parts_of_curve(
         entry,
     };
     let further = (1..fit.stiffnesses.len()).map(|entry| of_list("curve_stiffnesses", entry));
-    let breaks = (0..fit.breaks.len()).map(|entry| of_list("breaks", entry));
+    let breaks = (0..fit.breakpoints.len()).map(|entry| of_list("breaks", entry));
     let first = [
         of_list("curve_stiffnesses", 0),
         Source::Fit {
@@ -295,10 +295,10 @@ fn shares_of_curve(
     let share = match name {
         "stiffness" => shares.stiffnesses.first(),
         "intercept_force" => Some(&shares.intercept),
-        "yield_displacement" => softens.and_then(|knee| shares.breaks.get(knee)),
+        "yield_displacement" => softens.and_then(|knee| shares.breakpoints.get(knee)),
         "yield_force" => softens.and_then(|knee| shares.forces.get(knee)),
         "hardened_stiffness" => shares.stiffnesses.last(),
-        "hardening" => Some(&shares.hardening),
+        "hardening" => Some(&shares.post_yield_ratio),
         _ => None,
     };
     let parts = share.map_or_else(Vec::new, |share| parts_of_curve(procedure, fit, share));
@@ -324,13 +324,13 @@ fn of_lists(
 ) {
     let CurveShares {
         stiffnesses,
-        breaks,
+        breakpoints,
         forces,
         ..
     } = &fit.shares;
     for (name, shares) in [
         ("curve_stiffnesses", stiffnesses),
-        ("breaks", breaks),
+        ("breaks", breakpoints),
         ("break_forces", forces),
     ] {
         let Some(result) = results.iter_mut().find(|result| result.name == name) else {

@@ -19,12 +19,13 @@ use serde::{Deserialize, Serialize};
 pub use crate::physics::contact::state::StepState;
 pub use crate::physics::frame::{FrameEnergies, Modes};
 pub use crate::physics::identification::LineFit;
-pub use crate::physics::identification::backbone::BilinearFit;
+pub use crate::physics::identification::bilinear_fit::BilinearFit;
 pub use crate::physics::identification::multilinear_fit::MultilinearFit;
 use crate::physics::impact::energy::Energies;
 use crate::physics::impact::summary::still_rising;
-pub use crate::physics::relaxation::fit::{Hold, RelaxationFit};
-pub use crate::physics::relaxation::reached_fit::{LawFit, ReachedFit};
+pub use crate::physics::relaxation::hold::Hold;
+pub use crate::physics::relaxation::superposition::{LawFit, SuperpositionFit};
+pub use crate::physics::relaxation::time_constant::RelaxationFit;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::formula::{Estimate, ResultReference, ResultValue, Results};
 use crate::schema::block_of_words;
@@ -205,7 +206,7 @@ pub struct RampHistory {
     pub holds: Vec<Hold>,
     pub relaxation: Option<Box<RelaxationFit>>,
     /// By which law the reached force relaxes, where the plan asks for that.
-    pub reached: Option<Box<ReachedFit>>,
+    pub reached: Option<Box<SuperpositionFit>>,
 }
 
 /// One reading of a damping sweep.
@@ -400,7 +401,7 @@ impl History {
         match self {
             Self::Ramp(RampHistory {
                 reached: Some(fit), ..
-            }) if ReachedFit::RESULTS.contains(&result) => Some(fit.best().degrees),
+            }) if SuperpositionFit::RESULTS.contains(&result) => Some(fit.best().degrees),
             Self::Ramp(ramp) => match (result, ramp.relaxation.as_deref()) {
                 ("relaxed_stiffness", Some(fit)) => Some(fit.degrees_of_stiffness()),
                 (

@@ -2,8 +2,8 @@
 //! stand, how they went there. Out: the restoring force of each. It knows no rig and no sensor.
 
 use crate::physics::frame::{drifts, floor_forces};
-use crate::physics::relaxation::maxwell::Travel;
-use crate::physics::relaxation::state::Relaxing;
+use crate::physics::relaxation::maxwell::Motion;
+use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use crate::physics::specimen::SpecimenModel;
 use crate::physics::structure::damping::CellDamping;
 use crate::plan::{Behaviour, Frame, Storey};
@@ -13,14 +13,14 @@ pub(crate) enum Structure {
     One {
         specimen: Box<SpecimenModel>,
         damping: CellDamping,
-        relaxing: Box<Relaxing>,
+        relaxing: Box<RelaxationState>,
         force: f64,
     },
     /// Each storey resists its drift, and has what damps it beside.
     Storeys {
         models: Vec<SpecimenModel>,
         dampers: Vec<CellDamping>,
-        relaxing: Vec<Relaxing>,
+        relaxing: Vec<RelaxationState>,
         shear: Vec<f64>,
     },
     /// R = K X, row by row.
@@ -35,7 +35,7 @@ impl Structure {
         Self::One {
             specimen,
             damping,
-            relaxing: Box::new(Relaxing::of(behaviour)),
+            relaxing: Box::new(RelaxationState::new(behaviour)),
             force: 0.0,
         }
     }
@@ -57,7 +57,7 @@ impl Structure {
             relaxing: frame
                 .storeys
                 .iter()
-                .map(|storey| Relaxing::of(&storey.behaviour))
+                .map(|storey| RelaxationState::new(&storey.behaviour))
                 .collect(),
             shear: vec![0.0; frame.storeys.len()],
         }
@@ -73,22 +73,28 @@ impl Structure {
         seconds: f64,
     ) -> Vec<f64> {
         let bent = |specimen: &mut SpecimenModel,
-                    relaxing: &mut Relaxing,
+                    relaxing: &mut RelaxationState,
                     force: f64,
                     place: f64,
                     moved: f64| {
             let velocity = if moved == 0.0 { 0.0 } else { moved / going };
-            let force = relaxing.bend(
+            let force = relaxing.advance(
                 specimen,
-                &Travel::even(velocity, going),
-                (place - moved, place),
-                force,
+                &Motion::even(velocity, going),
+                Deformed {
+                    displacement: place - moved,
+                    force,
+                },
+                place,
             );
-            relaxing.bend(
+            relaxing.advance(
                 specimen,
-                &Travel::rest(seconds - going),
-                (place, place),
-                force,
+                &Motion::rest(seconds - going),
+                Deformed {
+                    displacement: place,
+                    force,
+                },
+                place,
             )
         };
         match self {
@@ -154,7 +160,7 @@ impl Structure {
                 let mut apart = vec![0.0; velocities.len()];
                 drifts(velocities, &mut apart);
                 // What a fault took of the specimen's force is not felt again: only what is beside it is added.
-                let relaxing = relaxing.iter().map(Relaxing::force);
+                let relaxing = relaxing.iter().map(RelaxationState::force);
                 let storeys = dampers.iter_mut().zip(&*shear).zip(apart).zip(relaxing);
                 let beside = storeys.map(|(((damper, shear), v), relaxing)| {
                     damper.felt(*shear, v) - shear + relaxing

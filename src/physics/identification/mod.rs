@@ -1,12 +1,15 @@
 //! Identification from measured forces: lines, curves of several segments, loops. In: readings.
 //! Out: parameters with standard errors. It knows no rig and no plan.
 
-pub mod backbone;
+pub mod bilinear_fit;
 pub mod breakpoints;
 pub mod cyclic;
 pub mod damping_strokes;
 pub mod loop_sampling;
 pub mod multilinear_fit;
+#[cfg(test)]
+mod multilinear_fit_tests;
+pub mod polyline;
 
 /// Straight line with standard errors: y = intercept + slope·x.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,16 +1,16 @@
-//! Laws by which a reached force relaxes. In: how long ago a move ended, how long it took, the law's time. Out: what is lost by then
-//! of the force that the move brought, by a share of one, and how fast. It knows no specimen and no fit.
+//! Laws of relaxation of an instantaneous force. In: the time since a move ended, its duration, the time of the law. Out: the lost fraction of
+//! the increment of force, for a share of 1, and its rate. It knows no specimen and no fit.
 //!
-//! A force that came at once and is then held loses, of each newton, `share` times
-//! - 1 − e^(−t/τ): exponential; a Maxwell branch has that of what it relaxes;
-//! - ln(1 + t/t₀): with the logarithm of time, as creep goes by Lomnitz's law (Garra, Mainardi & Spada, *A generalization of the
-//!   Lomnitz logarithmic creep law via Hadamard fractional calculus*, 2017, arXiv:1701.03068). Each factor of time takes as much as the one
-//!   before, and there is no last one: what can be stated is not the force still to be lost but how fast it goes.
+//! A force that is applied instantly and held loses, per newton, `share` times
+//! - 1 − e^(−t/τ): exponential, as a Maxwell branch;
+//! - ln(1 + t/t₀): with the logarithm of time, as creep by Lomnitz's law (Garra, Mainardi & Spada, *A generalization of the
+//!   Lomnitz logarithmic creep law via Hadamard fractional calculus*, 2017, arXiv:1701.03068). Every decade of time takes the same
+//! part, without end: the result is therefore the rate of relaxation, not the remaining force.
 //!
-//! What is reached in many moves is the sum of them, each forgotten from its own instant on (Boltzmann's superposition of the increments of
-//! force, Fung's quasi-linear viscoelasticity): a step does not wipe out what the steps before it still lose.
+//! The relaxations of all increments of force are superposed, each from its own instant on (Boltzmann's superposition; Fung's
+//! quasi-linear viscoelasticity).
 
-/// What a force has lost a time t (s) after it was reached, over its share.
+/// The loss of a force a time t \[s\] after it was applied, over its share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RelaxationLaw {
     /// 1 − e^(−t/τ)
@@ -22,8 +22,8 @@ pub enum RelaxationLaw {
 impl RelaxationLaw {
     pub const BOTH: [Self; 2] = [Self::Exponential, Self::Logarithmic];
 
-    /// What is lost `since` (s) a move ended that brought one newton evenly in `moved_for` (s), with a share of 1: the mean of the law over
-    /// the instants of the move. `time` is τ or t₀, s.
+    /// Loss of 1 N with a share of 1, `since` \[s\] the end of a move that brought it at a constant rate in `moved_for` \[s\]: the mean of the
+    /// law over the instants of the move. `time` is τ or t₀ \[s\].
     ///
     /// Exponential: 1 − e^(−u/τ)·(1 − e^(−m/τ))·τ/m. Logarithmic, with A = 1 + u/t₀ and r = m/(t₀A):
     /// ln A + (1 + r) ln(1 + r)/r − 1.
@@ -35,7 +35,7 @@ impl RelaxationLaw {
         }
     }
 
-    /// How fast that grows, 1/s.
+    /// Rate of that loss \[1/s\].
     #[must_use]
     pub fn rate(self, since: f64, moved_for: f64, time: f64) -> f64 {
         match self {
@@ -51,7 +51,7 @@ impl RelaxationLaw {
         }
     }
 
-    /// What people call its time.
+    /// Symbol of its time.
     #[must_use]
     pub const fn time_name(self) -> &'static str {
         match self {
@@ -70,7 +70,7 @@ fn mean_fall(x: f64) -> f64 {
     }
 }
 
-/// (1 + r) ln(1 + r)/r − 1, below 1/100 by its series Σ (−1)^(k+1) rᵏ/(k(k + 1)), for the parts nearly cancel.
+/// (1 + r) ln(1 + r)/r − 1, below 1/100 by its series Σ (−1)^(k+1) rᵏ/(k(k + 1)) because the parts nearly cancel.
 fn mean_rise(r: f64) -> f64 {
     if r < 0.01 {
         return (1..=8_i32)
@@ -111,15 +111,12 @@ mod tests {
                     "{law:?}: {rate} is not {slope}"
                 );
             }
-            assert!(
-                law.lost(0.0, 0.0, 1.0).abs() < 1e-15,
-                "nothing is lost at once"
-            );
+            assert!(law.lost(0.0, 0.0, 1.0).abs() < 1e-15, "no loss in no time");
         }
         let below_and_above = [0.009_999_999, 0.010_000_001].map(mean_rise);
         assert!(
             (below_and_above[1] - below_and_above[0] - 1e-9).abs() < 1e-11,
-            "the series goes on where the closed form ends"
+            "the series continues the closed form"
         );
     }
 }

@@ -1,43 +1,43 @@
-//! Force that relaxes with the logarithm of time: what a specimen loses of the force it has reached. In: how the force changed, in
-//! time. Out: what is lost, in closed form, so that a pause of months costs as much as none and the number of looks changes nothing.
+//! Force that relaxes with the logarithm of time. In: the instantaneous force of a specimen in time. Out: the part of it that is lost, in
+//! closed form, so that neither the length of a dwell nor the number of evaluations matters. It knows no specimen.
 //!
-//! Of a force reached at once, `a`·ln(1 + t/t₀) is lost ([`super::law`]). By Frullani's integral ln(1 + t/t₀) = ∫₀^∞ (1 −
+//! An instantaneous force R̂ loses R̂·a ln(1 + t/t₀) ([`super::law`]). By Frullani's integral ln(1 + t/t₀) = ∫₀^∞ (1 −
 //! e^(−t/τ)) e^(−t₀/τ) dτ/τ: the law is a spectrum of Maxwell branches, positive everywhere (Gonzáles-Santander & Mainardi, *A comparative
 //! view of Becker, Lomnitz, and Lambert linear viscoelastic models*, Mathematics 12 (2024) 3426, arXiv:2411.17025). Here it ends at τ = T,
-//! the `longest`: up to some thousandth of T nobody sees it, and after long `a`·E₁(t₀/T) ≈ `a`·(ln(T/t₀) − 0.5772) is gone. In steps of ln
-//! τ the integral is a sum of branches, and the sum of an analytic function converges faster than any power of the step: at half, 10⁻⁸ of
-//! the law is left (tested).
+//! the `longest`: up to some thousandth of T the difference is negligible, and after long a·E₁(t₀/T) ≈ a·(ln(T/t₀) − 0.5772) is lost. In
+//! steps of ln τ the integral is a sum of branches, and the sum of an analytic function converges faster than any power of the step: with
+//! a step of ½ the error is 10⁻⁸ of the law (tested).
 
-use super::maxwell::{MaxwellBranch, Travel};
+use super::maxwell::{MaxwellBranch, Motion};
 
 /// Steps of ln τ, at most.
 const STEP: f64 = 0.5;
-/// Branches below t₀ times this have no part: e^(−e^3.7) is 10⁻¹⁸.
+/// Branches below t₀ times this are negligible: e^(−e^3.7) is 10⁻¹⁸.
 const FASTEST: f64 = 0.024_7;
 
-/// How a specimen went from one force to another.
+/// A move of a specimen, and the instantaneous force at its end.
 #[derive(Clone, Copy, Debug)]
-pub struct Went {
-    /// m
+pub struct Increment {
+    /// \[m\]
     pub moved: f64,
-    /// The force then, N.
+    /// \[N\]
     pub force: f64,
 }
 
-/// y = Σ gᵢ·(R − qᵢ), qᵢ' = R' − qᵢ/τᵢ: what is lost of R.
+/// The lost part Σ gᵢ·(R − qᵢ) of an instantaneous force R, with qᵢ' = R' − qᵢ/τᵢ.
 #[derive(Clone, Debug)]
-pub struct LossOfReached {
-    /// Each with gᵢ for its stiffness: driven by a force, its force is gᵢ·qᵢ.
+pub struct LogarithmicLoss {
+    /// Each with gᵢ for its stiffness and R for its displacement: its force is gᵢ·qᵢ.
     branches: Vec<MaxwellBranch>,
-    /// Σ gᵢ: the share that is lost after long.
+    /// Σ gᵢ: the fraction that is lost after long.
     all: f64,
-    /// R, N
+    /// R \[N\]
     reached: f64,
-    /// No slope dR/dX is steeper, N/m: what seems to be is a way there and back.
+    /// Bound of the slope dR/dX \[N/m\]: a steeper one is a move there and back.
     steepest: f64,
 }
 
-/// The share of a reached force that is lost after long.
+/// The fraction of an instantaneous force that is lost after long.
 #[must_use]
 pub fn lost_after_long(share: f64, reference_time: f64, longest: f64) -> f64 {
     spectrum(share, reference_time, longest)
@@ -45,7 +45,7 @@ pub fn lost_after_long(share: f64, reference_time: f64, longest: f64) -> f64 {
         .sum()
 }
 
-/// gᵢ and τᵢ (s), from the slowest.
+/// gᵢ and τᵢ \[s\], from the slowest.
 fn spectrum(share: f64, reference_time: f64, longest: f64) -> impl Iterator<Item = (f64, f64)> {
     let range = (longest / (FASTEST * reference_time)).ln().max(STEP);
     #[expect(
@@ -61,8 +61,8 @@ fn spectrum(share: f64, reference_time: f64, longest: f64) -> impl Iterator<Item
     })
 }
 
-impl LossOfReached {
-    /// `steepest`: the largest slope of the specimen, N/m.
+impl LogarithmicLoss {
+    /// `steepest`: the largest slope of the specimen \[N/m\].
     #[must_use]
     pub fn new(share: f64, reference_time: f64, longest: f64, steepest: f64) -> Self {
         let parts: Vec<(f64, f64)> = spectrum(share, reference_time, longest).collect();
@@ -79,34 +79,34 @@ impl LossOfReached {
         }
     }
 
-    /// What the cell feels of it beside the reached force, N: against it.
+    /// Force beside the instantaneous one \[N\], of the opposite direction.
     #[must_use]
     pub fn force(&self) -> f64 {
         self.branches.iter().map(MaxwellBranch::force).sum::<f64>() - self.all * self.reached
     }
 
-    /// What dies away at rest.
+    /// The branches whose force decays at rest.
     #[must_use]
     pub fn branches(&self) -> &[MaxwellBranch] {
         &self.branches
     }
 
-    /// The force changed with the way, as far as the slope between the two ends can be one; else evenly in time.
-    pub fn follow(&mut self, travel: &Travel, went: Went) {
-        let gained = went.force - self.reached;
-        self.reached = went.force;
-        let slope = gained / went.moved;
+    /// The force changes in proportion to the displacement where the slope between the two ends is possible, else at a constant rate.
+    pub fn follow(&mut self, motion: &Motion, increment: Increment) {
+        let gained = increment.force - self.reached;
+        self.reached = increment.force;
+        let slope = gained / increment.moved;
         let changed = if gained == 0.0 {
-            Travel::rest(travel.seconds)
-        } else if travel.seconds <= 0.0 {
+            Motion::rest(motion.seconds)
+        } else if motion.seconds <= 0.0 {
             for branch in &mut self.branches {
                 branch.jump(gained);
             }
             return;
         } else if slope.abs() <= self.steepest * (1.0 + 1e-9) {
-            travel.times(slope)
+            motion.times(slope)
         } else {
-            Travel::even(gained / travel.seconds, travel.seconds)
+            Motion::even(gained / motion.seconds, motion.seconds)
         };
         for branch in &mut self.branches {
             branch.follow(&changed);
@@ -123,18 +123,18 @@ mod tests {
     const TIME: f64 = 2.0;
     const LONGEST: f64 = 2e12;
 
-    fn loss() -> LossOfReached {
-        LossOfReached::new(SHARE, TIME, LONGEST, 1e6)
+    fn loss() -> LogarithmicLoss {
+        LogarithmicLoss::new(SHARE, TIME, LONGEST, 1e6)
     }
 
-    /// 1 kN at once: 10 N ln(1 + t/2 s) are lost, from a millisecond to a month, however often one looks.
+    /// A step of 1 kN: 10 N ln(1 + t/2 s) are lost, from a millisecond to a month, with any number of evaluations.
     #[test]
     fn a_step_loses_the_logarithm_of_time() {
         let (mut once, mut often) = (loss(), loss());
         for loss in [&mut once, &mut often] {
             loss.follow(
-                &Travel::even(1e6, 1e-9),
-                Went {
+                &Motion::even(1e6, 1e-9),
+                Increment {
                     moved: 1e-3,
                     force: 1000.0,
                 },
@@ -144,16 +144,16 @@ mod tests {
         for decade in -3..=6 {
             let until = 2.592 * 10_f64.powi(decade);
             once.follow(
-                &Travel::rest(until - held),
-                Went {
+                &Motion::rest(until - held),
+                Increment {
                     moved: 0.0,
                     force: 1000.0,
                 },
             );
             for _ in 0..10 {
                 often.follow(
-                    &Travel::rest(0.1 * (until - held)),
-                    Went {
+                    &Motion::rest(0.1 * (until - held)),
+                    Increment {
                         moved: 0.0,
                         force: 1000.0,
                     },
@@ -161,7 +161,7 @@ mod tests {
             }
             held = until;
             let by_hand = -1000.0 * SHARE * f64::ln_1p(until / TIME);
-            // A thousand million times shorter than the longest: t/T of `a` is missing besides.
+            // The finite spectrum lacks t/T of a.
             assert!(
                 (once.force() - by_hand).abs()
                     < 1e-6 * SHARE * 1000.0 + 1000.0 * SHARE * until / LONGEST,
@@ -180,8 +180,8 @@ mod tests {
             );
         }
         once.follow(
-            &Travel::rest(1e20),
-            Went {
+            &Motion::rest(1e20),
+            Increment {
                 moved: 0.0,
                 force: 1000.0,
             },
@@ -195,7 +195,7 @@ mod tests {
         assert!((lost_after_long(SHARE, TIME, LONGEST) / after_long - 1.0).abs() < 1e-6);
     }
 
-    /// Ramps with holds between: each force is forgotten from its own instants on, as the law says of a move that takes its time.
+    /// Ramps with holds between: each increment relaxes from its own instants on, by the mean of the law over the move.
     #[test]
     fn steps_are_superposed() {
         let mut loss = loss();
@@ -203,10 +203,10 @@ mod tests {
         for step in 1..=4 {
             let force = 250.0 * f64::from(step);
             loss.follow(
-                &Travel::even(1e-3 / moved_for, moved_for),
-                Went { moved: 1e-3, force },
+                &Motion::even(1e-3 / moved_for, moved_for),
+                Increment { moved: 1e-3, force },
             );
-            loss.follow(&Travel::rest(pause), Went { moved: 0.0, force });
+            loss.follow(&Motion::rest(pause), Increment { moved: 0.0, force });
             let lost = |earlier: i32| {
                 RelaxationLaw::Logarithmic.lost(
                     pause + f64::from(step - earlier) * (pause + moved_for),
@@ -225,40 +225,43 @@ mod tests {
         }
     }
 
-    /// A jump in no time, and a way there and back within one look, in which the force changes though nothing moved.
+    /// A jump in no time; and a move there and back within one evaluation, over which the force changes and the displacement does not.
     #[test]
-    fn no_slope_is_steeper_than_the_specimen() {
+    fn no_slope_is_steeper_than_that_of_the_specimen() {
         let mut loss = loss();
         loss.follow(
-            &Travel::rest(0.0),
-            Went {
+            &Motion::rest(0.0),
+            Increment {
                 moved: 1e-3,
                 force: 1000.0,
             },
         );
-        assert!(loss.force().abs() < 1e-9, "nothing is lost in no time");
+        assert!(loss.force().abs() < 1e-9, "no loss in no time");
         loss.follow(
-            &Travel::even(0.0, 1.0),
-            Went {
+            &Motion::even(0.0, 1.0),
+            Increment {
                 moved: 0.0,
                 force: 400.0,
             },
         );
         let mut even = self::tests::loss();
         even.follow(
-            &Travel::rest(0.0),
-            Went {
+            &Motion::rest(0.0),
+            Increment {
                 moved: 1e-3,
                 force: 1000.0,
             },
         );
         even.follow(
-            &Travel::even(-6e-4, 1.0),
-            Went {
+            &Motion::even(-6e-4, 1.0),
+            Increment {
                 moved: -6e-4,
                 force: 400.0,
             },
         );
-        assert!((loss.force() - even.force()).abs() < 1e-9, "evenly in time");
+        assert!(
+            (loss.force() - even.force()).abs() < 1e-9,
+            "at a constant rate"
+        );
     }
 }

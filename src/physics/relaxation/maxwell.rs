@@ -1,29 +1,32 @@
-//! Force that relaxes: a spring and a dashpot one behind the other (a Maxwell branch), beside a specimen. In: how the specimen was
-//! moved, in time. Out: the force of the branch, in closed form, so that a pause of hours costs as much as none and the number
-//! of looks changes nothing. Of a force that relaxes by a share of itself, read force for displacement and a number for stiffness.
+//! A Maxwell branch: a spring and a dashpot in series, in parallel with a specimen. In: the motion of the specimen. Out: the force of
+//! the branch, in closed form, so that neither the length of a dwell nor the number of evaluations matters. It knows no specimen.
+//!
+//! The branch force q follows q' = K₁ x' − q/τ with τ = c/K₁. The same equation describes the relaxed part of a force that relaxes by a
+//! fraction of itself, with the force for x and a number for K₁.
 
 use crate::tracking::trajectory::Rate;
 
-/// How a piston moves over some time: v(t) = v + a t + ½ j t² + `fading`·exp(−t/`lag`).
+/// Motion of an actuator over some time: v(t) = v + a t + ½ j t² + `fading`·exp(−t/`lag`).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Travel {
-    /// At the beginning.
+pub struct Motion {
+    /// At its begin.
     pub start: Rate,
-    /// m/s at the beginning, of what a first-order lag lets die away.
+    /// Velocity at the begin that decays by a first-order lag \[m/s\].
     pub fading: f64,
-    /// s; 0 where nothing fades.
+    /// Time constant of that decay \[s\]; 0 without it.
     pub lag: f64,
+    /// Duration \[s\].
     pub seconds: f64,
 }
 
-impl Travel {
+impl Motion {
     /// At rest.
     #[must_use]
     pub const fn rest(seconds: f64) -> Self {
         Self::even(0.0, seconds)
     }
 
-    /// At one velocity (m/s).
+    /// At constant velocity \[m/s\].
     #[must_use]
     pub const fn even(velocity: f64, seconds: f64) -> Self {
         Self {
@@ -38,7 +41,7 @@ impl Travel {
         }
     }
 
-    /// The same way with every motion times `factor`: a force that follows it has this for its rate.
+    /// The motion with every rate times `factor`: the rate of a force with the slope `factor`.
     #[must_use]
     pub fn times(&self, factor: f64) -> Self {
         let Rate {
@@ -58,9 +61,9 @@ impl Travel {
         }
     }
 
-    /// How far it goes in the first `seconds`.
+    /// Displacement over the first `seconds` \[m\].
     #[must_use]
-    pub fn way(&self, seconds: f64) -> f64 {
+    pub fn displacement(&self, seconds: f64) -> f64 {
         let Rate {
             velocity,
             acceleration,
@@ -74,7 +77,7 @@ impl Travel {
         seconds * (velocity + seconds * (0.5 * acceleration + seconds * jerk / 6.0)) + faded
     }
 
-    /// The part of it between two times, s.
+    /// The part between two times \[s\].
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
         let Rate {
@@ -101,16 +104,16 @@ impl Travel {
         }
     }
 
-    /// Motion of this piston relative to one below it, over the same time and with the same lag.
+    /// Motion relative to that of the storey below, over the same time and with the same lag.
     #[must_use]
-    pub fn less(&self, below: &Self) -> Self {
+    pub fn relative_to(&self, below: &Self) -> Self {
         let (one, other) = (self.start, below.start);
         let start = Rate {
             velocity: one.velocity - other.velocity,
             acceleration: one.acceleration - other.acceleration,
             jerk: one.jerk - other.jerk,
         };
-        // Of a piston that stands, nothing fades.
+        // The motion of an actuator at rest does not decay.
         let lag = if self.fading == 0.0 {
             below.lag
         } else {
@@ -128,16 +131,16 @@ impl Travel {
 /// q' = K₁ x' − q/τ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaxwellBranch {
-    /// K₁, N/m
+    /// K₁ \[N/m\]
     stiffness: f64,
-    /// τ = c/K₁, s
+    /// τ = c/K₁ \[s\]
     time_constant: f64,
-    /// q, N
+    /// q \[N\]
     force: f64,
 }
 
 impl MaxwellBranch {
-    /// K₁ (N/m) and τ (s), at rest.
+    /// K₁ \[N/m\] and τ \[s\], without force.
     #[must_use]
     pub const fn new(stiffness: f64, time_constant: f64) -> Self {
         Self {
@@ -147,37 +150,37 @@ impl MaxwellBranch {
         }
     }
 
-    /// N/m
+    /// K₁ \[N/m\]
     #[must_use]
     pub const fn stiffness(&self) -> f64 {
         self.stiffness
     }
 
-    /// N
+    /// q \[N\]
     #[must_use]
     pub const fn force(&self) -> f64 {
         self.force
     }
 
-    /// Size of dq/dt after so many seconds at rest from now, N/s.
+    /// |dq/dt| after a dwell of `seconds` \[N/s\].
     #[must_use]
     pub fn rate_after(&self, seconds: f64) -> f64 {
         (self.force / self.time_constant).abs() * (-seconds / self.time_constant).exp()
     }
 
-    /// It is moved so far (m) in no time.
+    /// An instantaneous displacement \[m\].
     pub fn jump(&mut self, moved: f64) {
         self.force += self.stiffness * moved;
     }
 
     /// q(T) = q e^(−T/τ) + K₁ ∫ v(s) e^(−(T−s)/τ) ds.
-    pub fn follow(&mut self, travel: &Travel) {
-        let Travel {
+    pub fn follow(&mut self, motion: &Motion) {
+        let Motion {
             start,
             fading,
             lag,
             seconds,
-        } = *travel;
+        } = *motion;
         if seconds <= 0.0 {
             return;
         }
@@ -230,14 +233,14 @@ fn faded(seconds: f64, lag: f64, tau: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn by_midpoints(branch: &MaxwellBranch, travel: &Travel) -> f64 {
+    fn by_midpoints(branch: &MaxwellBranch, motion: &Motion) -> f64 {
         let (mut force, parts) = (branch.force, 100_000);
-        let step = travel.seconds / f64::from(parts);
+        let step = motion.seconds / f64::from(parts);
         let half = 0.5 * step / branch.time_constant;
         for part in 0..parts {
             let time = step * (f64::from(part) + 0.5);
-            let fading = if travel.lag > 0.0 {
-                travel.fading * (-time / travel.lag).exp()
+            let fading = if motion.lag > 0.0 {
+                motion.fading * (-time / motion.lag).exp()
             } else {
                 0.0
             };
@@ -245,7 +248,7 @@ mod tests {
                 velocity,
                 acceleration,
                 jerk,
-            } = travel.start;
+            } = motion.start;
             let velocity = velocity + time * (acceleration + 0.5 * time * jerk) + fading;
             force = (force * (1.0 - half) + step * branch.stiffness * velocity) / (1.0 + half);
         }
@@ -268,7 +271,7 @@ mod tests {
                 acceleration: -0.04,
                 jerk: 0.3,
             };
-            let travel = Travel {
+            let motion = Motion {
                 start,
                 fading,
                 lag,
@@ -278,8 +281,8 @@ mod tests {
                 force: 7.0,
                 ..MaxwellBranch::new(4000.0, tau)
             };
-            let by_steps = by_midpoints(&branch, &travel);
-            branch.follow(&travel);
+            let by_steps = by_midpoints(&branch, &motion);
+            branch.follow(&motion);
             assert!(
                 (branch.force - by_steps).abs() < 1e-6,
                 "τ {tau}: {} N, by steps {by_steps} N",
@@ -292,15 +295,15 @@ mod tests {
     #[test]
     fn a_ramp_and_a_hold_are_those_of_the_standard_linear_solid() {
         let mut branch = MaxwellBranch::new(2e5, 1.5);
-        branch.follow(&Travel::even(1e-3, 2.0));
+        branch.follow(&Motion::even(1e-3, 2.0));
         let held = 2e5 * 1e-3 * 1.5 * (1.0 - (-2.0_f64 / 1.5).exp());
         assert!((branch.force / held - 1.0).abs() < 1e-14);
         assert!((branch.rate_after(0.6) - held / 1.5 * (-0.4_f64).exp()).abs() < 1e-12);
-        branch.follow(&Travel::rest(0.6));
+        branch.follow(&Motion::rest(0.6));
         assert!((branch.force / (held * (-0.4_f64).exp()) - 1.0).abs() < 1e-14);
         // In an instant it is a spring of K₁, and after long nothing.
-        branch.follow(&Travel::rest(1e4));
-        branch.follow(&Travel::even(1e3, 1e-9));
+        branch.follow(&Motion::rest(1e4));
+        branch.follow(&Motion::even(1e3, 1e-9));
         assert!(
             (branch.force / 0.2 - 1.0).abs() < 1e-8,
             "1 µm on 200 kN/m: {}",
@@ -308,9 +311,9 @@ mod tests {
         );
     }
 
-    /// Many looks end where one does, on either side of T = τ.
+    /// On either side of T = τ.
     #[test]
-    fn it_does_not_depend_on_the_number_of_looks() {
+    fn it_does_not_depend_on_the_number_of_evaluations() {
         for (seconds, tau) in [(0.9, 1.0), (1.1, 1.0), (1e-3, 1e3)] {
             let (mut once, mut often) =
                 (MaxwellBranch::new(1e5, tau), MaxwellBranch::new(1e5, tau));
@@ -319,7 +322,7 @@ mod tests {
                 acceleration: 0.02 + time * 0.5,
                 jerk: 0.5,
             };
-            once.follow(&Travel {
+            once.follow(&Motion {
                 start: rate(0.0),
                 fading: 0.0,
                 lag: 0.0,
@@ -327,7 +330,7 @@ mod tests {
             });
             for part in 0..64 {
                 let from = seconds * f64::from(part) / 64.0;
-                often.follow(&Travel {
+                often.follow(&Motion {
                     start: rate(from),
                     fading: 0.0,
                     lag: 0.0,

@@ -1,6 +1,7 @@
-//! Statistics of readings: Student's t, quantization, the maximum of noisy values. In: numbers.
+//! Statistics of readings: least squares, Student's t, the maximum of noisy values. In: numbers.
 //! Out: numbers. It knows no instrument.
 
+pub mod least_squares;
 pub mod noisy_largest;
 pub mod samples;
 pub mod student_t;

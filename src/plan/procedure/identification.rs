@@ -2,8 +2,8 @@
 //! and fitted. It fits nothing itself.
 
 pub use crate::physics::identification::multilinear_fit::BreakCount;
-pub use crate::physics::relaxation::fit::RelaxationModel;
 pub use crate::physics::relaxation::law::RelaxationLaw;
+pub use crate::physics::relaxation::time_constant::RelaxationModel;
 use crate::plan::formula::Formula;
 
 /// Sec. 5 step 1: prescribed displacements, a pause at each, the mean of some samples.

@@ -100,7 +100,7 @@ fn sides(fit: &MultilinearFit, history: &CycleHistory) -> Vec<Series> {
         .fold(0.0, f64::max);
     let places: Vec<f64> = [0.0]
         .into_iter()
-        .chain(fit.breaks.iter().map(|(place, _)| *place))
+        .chain(fit.breakpoints.iter().map(|(place, _)| *place))
         .chain([reach])
         .collect();
     let went = |way: f64| {

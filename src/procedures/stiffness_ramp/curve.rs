@@ -35,8 +35,8 @@ const HIDDEN: f64 = 0.1;
 pub(crate) fn bends(points: &[(f64, f64)], line: &LineFit) -> Option<String> {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
     let fit = fit_multilinear(&x, &r, BreakCount::ByCriterion { most: 1 })
-        .filter(|fit| fit.doubtful().is_empty())?;
-    let (place, _) = fit.breaks.first()?;
+        .filter(|fit| fit.indistinct_breakpoints().is_empty())?;
+    let (place, _) = fit.breakpoints.first()?;
     let ((first, _), (last, _)) = (fit.stiffnesses.first()?, fit.stiffnesses.last()?);
     let hidden = (last - first).abs() > HIDDEN * first.abs();
     (hidden && 1.0 - line.r_squared > MISSED).then(|| {
@@ -65,19 +65,20 @@ fn remarks(
         )];
     };
     let mut told = Vec::new();
-    if fit.breaks.is_empty() {
+    if fit.breakpoints.is_empty() {
         told.push(format!(
             "no break: by BIC one straight line fits the {what} best, elastic as far as they went"
         ));
     }
-    if matches!(count, BreakCount::ByCriterion { most } if most > 1 && fit.breaks.len() == most) {
+    if matches!(count, BreakCount::ByCriterion { most } if most > 1 && fit.breakpoints.len() == most)
+    {
         told.push(format!(
             "BIC took as many breaks as it may ({}): the curve may well bend smoothly",
-            fit.breaks.len()
+            fit.breakpoints.len()
         ));
     }
-    told.extend(fit.doubtful().into_iter().map(|at| {
-        let place = readable(fit.breaks[at].0, Dimension::LENGTH);
+    told.extend(fit.indistinct_breakpoints().into_iter().map(|at| {
+        let place = readable(fit.breakpoints[at].0, Dimension::LENGTH);
         format!("the {what} hardly show the break at {place}: its change of stiffness is less than twice its standard error")
     }));
     told
@@ -100,8 +101,8 @@ pub(crate) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
         };
     let (value, error): (Part, Part) = (|pair| pair.0, |pair| pair.1);
     vec![
-        list(curves::BREAKS, |fit| &fit.breaks, value),
-        list(curves::BREAK_UNCERTAINTIES, |fit| &fit.breaks, error),
+        list(curves::BREAKS, |fit| &fit.breakpoints, value),
+        list(curves::BREAK_UNCERTAINTIES, |fit| &fit.breakpoints, error),
         list(curves::BREAK_FORCES, |fit| &fit.forces, value),
         list(curves::BREAK_FORCE_UNCERTAINTIES, |fit| &fit.forces, error),
         list(curves::CURVE_STIFFNESSES, |fit| &fit.stiffnesses, value),
@@ -116,13 +117,13 @@ pub(crate) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
 /// What a curve says of yielding, in the order of the reference: force, place, last stiffness, its ratio to the first.
 pub(crate) fn yielding(fit: Option<&MultilinearFit>) -> [NamedResult; 4] {
     let told = |pair: (f64, f64)| (pair.0, Some(pair.1));
-    let knee = fit.and_then(MultilinearFit::knee);
-    let broken = fit.filter(|fit| !fit.breaks.is_empty());
+    let knee = fit.and_then(MultilinearFit::yield_point);
+    let broken = fit.filter(|fit| !fit.breakpoints.is_empty());
     let last = broken.and_then(|fit| fit.stiffnesses.last()).copied();
     [
         schema::YIELD_FORCE.found_with(knee.map(|[_, force]| told(force))),
         schema::YIELD_DISPLACEMENT.found_with(knee.map(|[place, _]| told(place))),
         schema::HARDENED_STIFFNESS.found_with(last.map(told)),
-        schema::HARDENING.found_with(broken.map(|fit| told(fit.hardening))),
+        schema::HARDENING.found_with(broken.map(|fit| told(fit.post_yield_ratio))),
     ]
 }

@@ -11,7 +11,7 @@ pub(crate) fn table(fit: &MultilinearFit, reach: f64, body: &mut Vec<Block>) {
         Text::from(number::with_uncertainty(value, Some(error), dimension))
     };
     let row = |(index, stiffness): (usize, &(f64, f64))| {
-        let end = fit.breaks.get(index).zip(fit.forces.get(index));
+        let end = fit.breakpoints.get(index).zip(fit.forces.get(index));
         vec![
             Text::from((index + 1).to_string()),
             with(*stiffness, Dimension::STIFFNESS),
@@ -41,7 +41,10 @@ pub(crate) fn table(fit: &MultilinearFit, reach: f64, body: &mut Vec<Block>) {
         fit.r_squared,
         criterion(fit)
     )));
-    if let Some(corners) = fit.corners(reach).filter(|_| !fit.breaks.is_empty()) {
+    if let Some(corners) = fit
+        .backbone_points(reach)
+        .filter(|_| !fit.breakpoints.is_empty())
+    {
         let list = |index: usize, factor: f64| {
             corners
                 .iter()

@@ -94,7 +94,7 @@ fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
             .map(|step| step.displacement),
     );
     let mut places: Vec<f64> = fit
-        .breaks
+        .breakpoints
         .iter()
         .map(|(place, _)| *place)
         .chain([low, high])
@@ -105,7 +105,7 @@ fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
         Some(fit.stiffnesses[0].1),
         Dimension::STIFFNESS,
     );
-    let label = match fit.breaks.len() {
+    let label = match fit.breakpoints.len() {
         0 => format!("fit, no break, K = {stiffness}"),
         1 => format!("fit, 1 break, K = {stiffness} at first"),
         count => format!("fit, {count} breaks, K = {stiffness} at first"),

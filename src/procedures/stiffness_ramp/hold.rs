@@ -2,9 +2,10 @@
 //! of all holds the fit, its results and what a person should know. It fits nothing itself.
 
 use crate::physics::identification::StatedVariance;
-use crate::physics::relaxation::fit::{Hold, RelaxationFit, Unrelaxed, fit_relaxation_stated};
+use crate::physics::relaxation::hold::{Hold, Unrelaxed};
 use crate::physics::relaxation::law::RelaxationLaw;
-use crate::physics::relaxation::reached_fit::{ReachedFit, fit_reached_stated};
+use crate::physics::relaxation::superposition::{SuperpositionFit, fit_superposition_stated};
+use crate::physics::relaxation::time_constant::{RelaxationFit, fit_relaxation_stated};
 use crate::plan::WatchedModel;
 use crate::record::NamedResult;
 use crate::rig::Reading;
@@ -50,7 +51,7 @@ pub(crate) fn parts(before: f64, moved: Option<[f64; 2]>, after: f64) -> [f64; 3
 #[derive(Default)]
 pub(crate) struct Told {
     pub relaxation: Option<RelaxationFit>,
-    pub reached: Option<ReachedFit>,
+    pub reached: Option<SuperpositionFit>,
     pub results: Vec<NamedResult>,
     pub remarks: Vec<String>,
 }
@@ -81,7 +82,7 @@ pub(crate) fn told(
             }
         }
         Some(WatchedModel::Reached { law, rate }) => {
-            match fit_reached_stated(holds, start.1, law, rate, stated) {
+            match fit_superposition_stated(holds, start.1, law, rate, stated) {
                 Ok(fit) => {
                     told.remarks = reached_remarks(&fit, holds, rate, noise);
                     told.reached = Some(fit);
@@ -117,7 +118,12 @@ const FAR: f64 = 2.0;
 /// Differences of BIC below this are not strong (Kass & Raftery, *Bayes factors*, J. Amer. Stat. Assoc. 90 (1995) 773–795).
 const STRONG: f64 = 6.0;
 
-fn reached_remarks(fit: &ReachedFit, holds: &[Hold], rate: f64, noise: Option<f64>) -> Vec<String> {
+fn reached_remarks(
+    fit: &SuperpositionFit,
+    holds: &[Hold],
+    rate: f64,
+    noise: Option<f64>,
+) -> Vec<String> {
     let mut told = Vec::new();
     let best = fit.best();
     if fit.margin().is_some_and(|margin| margin.abs() < STRONG) {
@@ -144,7 +150,7 @@ fn reached_remarks(fit: &ReachedFit, holds: &[Hold], rate: f64, noise: Option<f6
             readable(longest, Dimension::TIME),
             readable(best.rate.0, Dimension::FORCE_RATE),
             readable(rate, Dimension::FORCE_RATE),
-            readable(best.needed_pause.0, Dimension::TIME),
+            readable(best.required_pause.0, Dimension::TIME),
         ));
     }
     told
@@ -168,7 +174,7 @@ fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<St
             readable(longest, Dimension::TIME),
             readable(fit.remaining.0, Dimension::FORCE),
             readable(accuracy, Dimension::FORCE),
-            readable(fit.needed_pause(accuracy).0, Dimension::TIME),
+            readable(fit.required_pause(accuracy).0, Dimension::TIME),
         ));
     }
     told
@@ -181,15 +187,15 @@ const fn told_with((value, error): (f64, f64)) -> (f64, Option<f64>) {
 /// In the order of the reference.
 fn results(
     fit: Option<&RelaxationFit>,
-    reached: Option<&ReachedFit>,
+    reached: Option<&SuperpositionFit>,
     accuracy: Option<f64>,
 ) -> [NamedResult; 5] {
     let of = |kind: ResultKind, value: Option<(f64, f64)>| kind.found_with(value.map(told_with));
-    let reached = reached.map(ReachedFit::best);
+    let reached = reached.map(SuperpositionFit::best);
     let decays = reached.filter(|fit| fit.law == RelaxationLaw::Exponential);
     let needed = fit
         .zip(accuracy)
-        .map(|(fit, accuracy)| fit.needed_pause(accuracy));
+        .map(|(fit, accuracy)| fit.required_pause(accuracy));
     [
         of(
             schema::TIME_CONSTANT,
@@ -211,20 +217,20 @@ fn results(
         ),
         of(
             schema::NEEDED_PAUSE,
-            needed.or(reached.map(|fit| fit.needed_pause)),
+            needed.or(reached.map(|fit| fit.required_pause)),
         ),
     ]
 }
 
 /// What only a law of the reached force has.
-fn of_the_law(fit: Option<&ReachedFit>) -> [NamedResult; 4] {
+fn of_the_law(fit: Option<&SuperpositionFit>) -> [NamedResult; 4] {
     let of = |kind: ResultKind, value: Option<(f64, f64)>| kind.found_with(value.map(told_with));
-    let best = fit.map(ReachedFit::best);
+    let best = fit.map(SuperpositionFit::best);
     let by_logarithm = best.filter(|fit| fit.law == RelaxationLaw::Logarithmic);
     [
         of(schema::RELAXATION_SHARE, best.map(|fit| fit.share)),
         of(schema::REFERENCE_TIME, by_logarithm.map(|fit| fit.time)),
         of(schema::RELAXATION_RATE, best.map(|fit| fit.rate)),
-        schema::BIC_MARGIN.found(fit.and_then(ReachedFit::margin)),
+        schema::BIC_MARGIN.found(fit.and_then(SuperpositionFit::margin)),
     ]
 }

@@ -1,9 +1,9 @@
 //! Charts of a relaxation: what each hold had still to lose, or has lost by one law and by another, against the time it was held. In: the
 //! holds and their fit. Out: a [`Chart`] in SI.
 
-use crate::physics::relaxation::fit::RelaxationFit;
 use crate::physics::relaxation::law::RelaxationLaw;
-use crate::record::{Hold, LawFit, RampHistory, ReachedFit};
+use crate::physics::relaxation::time_constant::RelaxationFit;
+use crate::record::{Hold, LawFit, RampHistory, SuperpositionFit};
 use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
@@ -25,7 +25,7 @@ fn drawn_of(count: usize) -> Vec<usize> {
 }
 
 /// What some holds have lost since their first reading, and what the laws say: the better one drawn through, the other dashed.
-pub(crate) fn lost(holds: &[Hold], fit: &ReachedFit) -> Chart {
+pub(crate) fn lost(holds: &[Hold], fit: &SuperpositionFit) -> Chart {
     let mut series = Vec::new();
     let best = fit.best();
     let mut chosen = drawn_of(best.reached.len());

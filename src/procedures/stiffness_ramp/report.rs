@@ -3,7 +3,7 @@
 
 use super::curve_report;
 use crate::plan::{RelaxationLaw, RelaxationModel};
-use crate::record::{Hold, RampHistory, ReachedFit, RelaxationFit};
+use crate::record::{Hold, RampHistory, RelaxationFit, SuperpositionFit};
 use crate::report::content::line_fit::fitted;
 use crate::report::document::Block;
 use crate::report::number;
@@ -20,7 +20,7 @@ pub(crate) fn report(history: &RampHistory, body: &mut Vec<Block>) {
         curve_report::table(
             fit,
             reach.fold(0.0, |most, x| {
-                if fit.way * x > fit.way * most {
+                if fit.direction * x > fit.direction * most {
                     x
                 } else {
                     most
@@ -74,7 +74,7 @@ fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
 }
 
 /// The law by which the reached force relaxes, why that one, and how fast the pauses were still losing.
-fn relaxed_by_a_law(fit: &ReachedFit, holds: &[Hold]) -> Block {
+fn relaxed_by_a_law(fit: &SuperpositionFit, holds: &[Hold]) -> Block {
     let with = |(value, error): (f64, f64), dimension| {
         number::with_uncertainty(value, Some(error), dimension)
     };

@@ -4,7 +4,7 @@
 
 use super::uncertainty::{DIRECT, Readings};
 use super::{curve, hold};
-use crate::physics::identification::backbone::fit_bilinear_stated;
+use crate::physics::identification::bilinear_fit::fit_bilinear_stated;
 use crate::physics::identification::{StatedVariance, fit_line};
 use crate::physics::statistics::samples::{mean, scatter};
 use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
@@ -381,8 +381,11 @@ fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult>
             schema::YIELD_DISPLACEMENT.found_with(of(|fit| {
                 (fit.yield_displacement, fit.yield_displacement_error)
             })),
-            schema::HARDENED_STIFFNESS.found_with(of(|fit| (fit.hardened, fit.hardened_error))),
-            schema::HARDENING.found_with(of(|fit| (fit.hardening, fit.hardening_error))),
+            schema::HARDENED_STIFFNESS.found_with(of(|fit| {
+                (fit.post_yield_stiffness, fit.post_yield_stiffness_error)
+            })),
+            schema::HARDENING
+                .found_with(of(|fit| (fit.post_yield_ratio, fit.post_yield_ratio_error))),
         ]);
     } else {
         results.extend(curve::yielding(multilinear));

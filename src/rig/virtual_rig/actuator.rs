@@ -1,7 +1,7 @@
 //! The virtual actuator. In: reference motion, s of rig time. Out: where the piston stands and how fast it moves.
 //! In closed form, so that a settling of minutes costs as much as none. It knows no specimen and no load cell.
 
-use crate::physics::relaxation::maxwell::Travel;
+use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::tracking::trajectory::Rate;
 
 /// A servo whose piston follows its reference with a first-order lag: ẋ = (reference − x) / lag.
@@ -66,12 +66,12 @@ impl Actuator {
 
     /// The reference moves evenly to `to` in `seconds`. With e = reference − x: ė = v − e/lag, so
     /// e(t) = v·lag + (e₀ − v·lag)·exp(−t/lag). The reference goes on at this velocity until `stop`. How the piston went.
-    pub(crate) fn advance(&mut self, to: f64, seconds: f64) -> Travel {
+    pub(crate) fn advance(&mut self, to: f64, seconds: f64) -> Motion {
         if seconds <= 0.0 {
-            return Travel::rest(0.0);
+            return Motion::rest(0.0);
         }
         let velocity = (to - self.reference) / seconds;
-        let mut travel = Travel::even(velocity, seconds);
+        let mut travel = Motion::even(velocity, seconds);
         if self.lag > 0.0 {
             (travel.fading, travel.lag) = (self.lagging / self.lag - velocity, self.lag);
             let steady = velocity * self.lag;
@@ -83,15 +83,15 @@ impl Actuator {
     }
 
     /// The reference stands where it is to be, and passes there at `velocity` (m/s): a way that was cut off is gone on with.
-    pub(crate) const fn pass(&mut self, velocity: f64) -> Travel {
+    pub(crate) const fn pass(&mut self, velocity: f64) -> Motion {
         self.reference_velocity = velocity;
-        Travel::rest(0.0)
+        Motion::rest(0.0)
     }
 
     /// The reference runs to `to` in `seconds`, its velocity a parabola in time with these ends. With e = reference − x:
     /// ė = q − e/lag, so e = `e_p` + (e₀ − `e_p0`)·exp(−t/lag) with `e_p` = lag·q − lag²·q' + lag³·q''.
-    pub(crate) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) -> Travel {
-        let mut travel = Travel {
+    pub(crate) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) -> Motion {
+        let mut travel = Motion {
             start: before,
             fading: 0.0,
             lag: 0.0,
@@ -127,9 +127,9 @@ impl Actuator {
     }
 
     /// `seconds` pass with the reference at rest.
-    pub(crate) fn rest(&mut self, seconds: f64) -> Travel {
+    pub(crate) fn rest(&mut self, seconds: f64) -> Motion {
         self.stop();
-        let mut travel = Travel::rest(seconds);
+        let mut travel = Motion::rest(seconds);
         if self.lag > 0.0 && self.lagging != 0.0 {
             (travel.fading, travel.lag) = (self.lagging / self.lag, self.lag);
             self.lagging *= (-seconds / self.lag).exp();

@@ -2,7 +2,7 @@
 //! directions. Out: readings. The pistons follow in closed form, so that the number of readings changes none of them.
 
 use super::{Axis, VirtualRig};
-use crate::physics::relaxation::maxwell::Travel;
+use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::tracking::trajectory::{Path, Rate};
 use crate::rig::virtual_rig::actuator::Actuator;
 use crate::rig::{EachReading, Rig as _, RigFault};
@@ -44,7 +44,7 @@ impl Course {
     }
 
     /// The actuator goes on from one time on the path to another, s. How the piston went.
-    pub(crate) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Travel {
+    pub(crate) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Motion {
         let place = self.sign * self.path.place(to) - (self.missed + self.drifts * to);
         actuator.run(place, self.rate(from), self.rate(to), to - from)
     }
@@ -119,7 +119,7 @@ impl VirtualRig {
         let began = self.time - instants.get(done).copied().unwrap_or(0.0);
         for pair in instants.windows(2).skip(done) {
             let axes = courses.iter().zip(&mut self.axes);
-            let travels: Vec<Travel> = axes
+            let travels: Vec<Motion> = axes
                 .map(|(course, axis)| course.advance(&mut axis.actuator, pair[0], pair[1]))
                 .collect();
             self.time = began + pair[1];

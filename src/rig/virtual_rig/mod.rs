@@ -19,7 +19,7 @@ use super::virtual_rig::actuator::Actuator;
 use super::virtual_rig::load_cell::{LoadCell, to_quantum};
 use super::virtual_rig::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
 use super::{CutOff, DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
-use crate::physics::relaxation::maxwell::Travel;
+use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Frame, Plan, Settle, Specimen, VirtualLink};
 
@@ -85,7 +85,7 @@ impl VirtualRig {
         let at_rest = vec![0.0; axes.len()];
         let mut restoring_force = at_rest.clone();
         springs.bend(
-            &vec![Travel::rest(0.0); axes.len()],
+            &vec![Motion::rest(0.0); axes.len()],
             &at_rest,
             &mut restoring_force,
         );
@@ -162,7 +162,7 @@ impl VirtualRig {
     }
 
     /// The specimen, what relaxes with it and the friction on it follow the pistons.
-    fn follow(&mut self, travels: &[Travel]) {
+    fn follow(&mut self, travels: &[Motion]) {
         let mut moved = false;
         for (bent, axis) in self.bent.iter_mut().zip(&self.axes) {
             let position = axis.actuator.position();
@@ -187,7 +187,7 @@ impl VirtualRig {
 
     /// `seconds` pass with the references at rest.
     fn rest(&mut self, seconds: f64) {
-        let travels: Vec<Travel> = self
+        let travels: Vec<Motion> = self
             .axes
             .iter_mut()
             .map(|axis| axis.actuator.rest(seconds))
@@ -384,7 +384,7 @@ impl Rig for VirtualRig {
             .iter_mut()
             .zip(&aims)
             .map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
-        let travels: Vec<Travel> = went.collect();
+        let travels: Vec<Motion> = went.collect();
         // A first-order lag delays a motion by its time constant, and adds the square of it to the variance.
         let lag = self.link.lag;
         self.moved = Some(even(

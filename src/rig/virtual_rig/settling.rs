@@ -1,7 +1,7 @@
 //! When the virtual rig counts as settled. In: the plan's criterion and how far the piston lags. Out: seconds to wait.
 
 use crate::physics::relaxation::maxwell::MaxwellBranch;
-use crate::physics::relaxation::state::Relaxing;
+use crate::physics::relaxation::relaxation_state::RelaxationState;
 use crate::physics::structure::damping::StrengthRate;
 use crate::plan::Settle;
 
@@ -76,10 +76,10 @@ pub(crate) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
 }
 
 /// All that dies away of what some specimens lose.
-pub(crate) fn dying(relaxing: &[&Relaxing]) -> Vec<MaxwellBranch> {
+pub(crate) fn dying(relaxing: &[&RelaxationState]) -> Vec<MaxwellBranch> {
     relaxing
         .iter()
-        .flat_map(|relaxing| relaxing.dying())
+        .flat_map(|relaxing| relaxing.decaying())
         .copied()
         .collect()
 }
@@ -156,7 +156,7 @@ fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::relaxation::maxwell::Travel;
+    use crate::physics::relaxation::maxwell::Motion;
 
     const SETTLE: Settle = Settle {
         band: 1e-5,
@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn what_relaxes_keeps_the_rig_unsettled_until_it_is_slow() {
         let mut branch = MaxwellBranch::new(1e5, 2.0);
-        branch.follow(&Travel::even(2e-3 / 1e-6, 1e-6));
+        branch.follow(&Motion::even(2e-3 / 1e-6, 1e-6));
         let settle = Settle {
             force_rate: 5.0,
             ..SETTLE

@@ -2,8 +2,8 @@
 //! and how they went there. Out: forces, and what is still settling. It knows no actuator and no load cell.
 
 use crate::physics::frame::{SymmetricBand, drifts, floor_forces};
-use crate::physics::relaxation::maxwell::Travel;
-use crate::physics::relaxation::state::Relaxing;
+use crate::physics::relaxation::maxwell::Motion;
+use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use crate::physics::specimen::{RestoringForce as _, SpecimenModel};
 use crate::physics::structure::damping::{CellDamping, StrengthRate};
 use crate::plan::{Behaviour, Frame, Specimen};
@@ -24,7 +24,7 @@ pub(super) struct Storey {
     model: SpecimenModel,
     /// What it resists more with the faster it is bent is felt by the cells, and gone at rest; its friction stays.
     damper: CellDamping,
-    relaxing: Relaxing,
+    relaxing: RelaxationState,
     /// N/m, the initial one.
     stiffness: f64,
     /// m
@@ -40,7 +40,7 @@ impl Storey {
             shear: model.move_to(0.0),
             model,
             damper: CellDamping::new(damping, coulomb).with_rate_of(behaviour),
-            relaxing: Relaxing::of(behaviour),
+            relaxing: RelaxationState::new(behaviour),
             stiffness,
             drift: 0.0,
         }
@@ -98,7 +98,7 @@ impl Springs {
     /// The axes go to these displacements (m), each as its travel says.
     pub(super) fn bend(
         &mut self,
-        travels: &[Travel],
+        travels: &[Motion],
         displacement: &[f64],
         restoring_force: &mut [f64],
     ) {
@@ -108,12 +108,15 @@ impl Springs {
                 drifts(displacement, &mut drift);
                 let mut below = None;
                 for ((storey, axis), drift) in storeys.iter_mut().zip(travels).zip(drift) {
-                    let travel = below.map_or(*axis, |below| axis.less(below));
-                    storey.shear = storey.relaxing.bend(
+                    let travel = below.map_or(*axis, |below| axis.relative_to(below));
+                    storey.shear = storey.relaxing.advance(
                         &mut storey.model,
                         &travel,
-                        (storey.drift, drift),
-                        storey.shear,
+                        Deformed {
+                            displacement: storey.drift,
+                            force: storey.shear,
+                        },
+                        drift,
                     );
                     storey.drift = drift;
                     below = Some(axis);
@@ -164,7 +167,7 @@ impl Springs {
 
     /// What relaxes in the force of an axis: in its own storey and in the one above. An axis's force is the difference of two shears, and
     /// steady where both relax alike: they are taken by their sizes, so that no shear is on its way either.
-    pub(super) fn relaxing_at(&self, axis: usize) -> Vec<&Relaxing> {
+    pub(super) fn relaxing_at(&self, axis: usize) -> Vec<&RelaxationState> {
         self.beside(axis)
             .map(|storey| &storey.relaxing)
             .filter(|relaxing| !relaxing.is_none())

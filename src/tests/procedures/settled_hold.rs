@@ -1,7 +1,7 @@
 //! Holds of a rig that waits until it has settled: that is time at rest, and what relaxes meanwhile is not lost to the fit.
 
-use crate::physics::relaxation::fit::RelaxationModel;
 use crate::physics::relaxation::law::RelaxationLaw;
+use crate::physics::relaxation::time_constant::RelaxationModel;
 use crate::plan::formula::Formula;
 use crate::plan::{
     Behaviour, Link, Plan, ProcedureKind, Settle, StiffnessRamp, VirtualLink, WatchedHold,

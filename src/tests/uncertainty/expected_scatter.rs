@@ -1,7 +1,7 @@
 //! Standard uncertainties that a dry run foretells of fits, against those that runs with other noise come to.
 
 use crate::physics::identification::multilinear_fit::BreakCount;
-use crate::physics::relaxation::fit::RelaxationModel;
+use crate::physics::relaxation::time_constant::RelaxationModel;
 use crate::plan::formula::Formula;
 use crate::plan::{
     Behaviour, Cycle, DampingSweep, Level, Link, Plan, ProcedureKind, RampFit, Sides,

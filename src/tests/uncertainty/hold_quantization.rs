@@ -1,7 +1,7 @@
 //! What rounding leaves open of holds and of secants, against replays on rigs that differ in where the zero of their grid lies.
 
-use crate::physics::relaxation::fit::RelaxationModel;
 use crate::physics::relaxation::law::RelaxationLaw;
+use crate::physics::relaxation::time_constant::RelaxationModel;
 use crate::plan::formula::Formula;
 use crate::plan::{
     Behaviour, Calibration, Link, Plan, ProcedureKind, StiffnessRamp, VirtualLink, WatchedHold,

@@ -2,8 +2,8 @@
 //! cycles.
 
 use psd::physics::relaxation::law::RelaxationLaw;
-use psd::physics::relaxation::maxwell::{MaxwellBranch, Travel};
-use psd::physics::relaxation::state::Relaxing;
+use psd::physics::relaxation::maxwell::{MaxwellBranch, Motion};
+use psd::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use psd::physics::specimen::SpecimenModel;
 use psd::physics::tracking::trajectory::Path;
 use psd::plan::{Behaviour, Settle, Specimen, VirtualLink};
@@ -156,7 +156,7 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
         let (amplitude, parts) = (1e-3, 4000);
         let seconds = 2.0 * amplitude / velocity;
         let mut branch = MaxwellBranch::new(K1, TAU);
-        branch.follow(&Travel::even(velocity, 0.5 * seconds));
+        branch.follow(&Motion::even(velocity, 0.5 * seconds));
         let mut energy = 0.0;
         // Thirty time constants, and a whole cycle at least: e^(−30) is left of how it began.
         let whole = (15.0 * TAU / seconds).ceil().max(1.0);
@@ -166,7 +166,7 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
             energy = if half % 2 == 0 { 0.0 } else { energy };
             for _ in 0..parts {
                 let before = branch.force();
-                branch.follow(&Travel::even(way, seconds / f64::from(parts)));
+                branch.follow(&Motion::even(way, seconds / f64::from(parts)));
                 energy += 0.5 * (before + branch.force()) * way * seconds / f64::from(parts);
             }
         }
@@ -306,29 +306,34 @@ fn what_relaxes_gives_back_no_more_than_it_took() {
                 reference_time: 0.4,
                 longest: 4e6,
             };
-            let (mut model, mut relaxing) = (SpecimenModel::new(&base), Relaxing::of(&behaviour));
+            let (mut model, mut relaxation) =
+                (SpecimenModel::new(&base), RelaxationState::new(&behaviour));
             let (mut at, mut own, mut force, mut work) = (0.0, 0.0, 0.0, 0.0);
             for turn in turns {
                 let parts = 2000;
                 let part = (turn - at) / f64::from(parts);
                 for _ in 0..parts {
                     at += part;
-                    own = relaxing.bend(
-                        &mut model,
-                        &Travel::even(part / 1e-3, 1e-3),
-                        (at - part, at),
-                        own,
-                    );
-                    let felt = own + relaxing.force();
-                    work += 0.5 * (force + felt) * part;
-                    force = felt;
+                    let from = Deformed {
+                        displacement: at - part,
+                        force: own,
+                    };
+                    own =
+                        relaxation.advance(&mut model, &Motion::even(part / 1e-3, 1e-3), from, at);
+                    let measured = own + relaxation.force();
+                    work += 0.5 * (force + measured) * part;
+                    force = measured;
                     assert!(
                         work >= -1e-9,
                         "{base:?} gave back {work} J after rests of {rest} s"
                     );
                 }
-                own = relaxing.bend(&mut model, &Travel::rest(rest), (at, at), own);
-                force = own + relaxing.force();
+                let from = Deformed {
+                    displacement: at,
+                    force: own,
+                };
+                own = relaxation.advance(&mut model, &Motion::rest(rest), from, at);
+                force = own + relaxation.force();
             }
         }
     }

@@ -1,31 +1,32 @@
-//! The choice between two laws of relaxation: the right one from noisy readings, its numbers within their standard errors, and
-//! silence where nothing relaxes.
+//! The choice between two laws of relaxation: the right one from noisy readings, its parameters within their standard errors, and
+//! none where nothing relaxes.
 
-use super::fit::{Hold, Unrelaxed};
-use super::law::RelaxationLaw;
-use super::law::RelaxationLaw::{Exponential, Logarithmic};
-use super::reached_fit::{LawFit, ReachedFit, corrected_bic, fit_reached};
+use super::{LawFit, SuperpositionFit, fit_superposition};
+use crate::relaxation::hold::{Hold, Unrelaxed};
+use crate::relaxation::law::RelaxationLaw;
+use crate::relaxation::law::RelaxationLaw::{Exponential, Logarithmic};
+use crate::statistics::least_squares::corrected_bic;
 use crate::statistics::testing::normal;
 
 /// N/s, at the end of a pause.
 const SLOW: f64 = 2.0;
 const PAUSE: f64 = 6.0;
 const MOVED_FOR: f64 = 0.5;
-/// Forces without relaxation: an elastic way, then a yielding one, from 12 N.
+/// Forces without relaxation: elastic increments, then yielding ones, from 12 N.
 const BEFORE: f64 = 12.0;
 const REACHED: [f64; 6] = [2000.0, 4000.0, 6000.0, 7000.0, 7200.0, 7300.0];
 
 /// Share and time of each law: either loses some 200 N of the first force in a pause.
-const fn numbers(law: RelaxationLaw) -> (f64, f64) {
+const fn parameters(law: RelaxationLaw) -> (f64, f64) {
     match law {
         Exponential => (0.04, 1.5),
         Logarithmic => (0.012, 0.3),
     }
 }
 
-/// By the definition, instant for instant: every move brings its force in 400 small steps, each forgotten by itself.
+/// By the definition: every move brings its force in 400 small increments, each of which relaxes separately.
 fn holds(law: RelaxationLaw, readings: u32) -> Vec<Hold> {
-    holds_with(law, numbers(law), readings)
+    holds_with(law, parameters(law), readings)
 }
 
 fn holds_with(law: RelaxationLaw, (share, time): (f64, f64), readings: u32) -> Vec<Hold> {
@@ -35,14 +36,14 @@ fn holds_with(law: RelaxationLaw, (share, time): (f64, f64), readings: u32) -> V
     };
     let began = |hold: usize| f64::from(u32::try_from(hold).unwrap()) * (MOVED_FOR + PAUSE);
     let lost = |now: f64, upto: usize| {
-        let of = |step: usize| {
+        let increment = |step: usize| {
             let force = REACHED[step] - if step == 0 { BEFORE } else { REACHED[step - 1] };
             let parts = (0..400).map(|part| {
                 instant(now - began(step) - MOVED_FOR * (f64::from(part) + 0.5) / 400.0)
             });
             force * parts.sum::<f64>() / 400.0
         };
-        share * (0..=upto).map(of).sum::<f64>()
+        share * (0..=upto).map(increment).sum::<f64>()
     };
     let hold = |index: usize| {
         let reading = |number: u32| {
@@ -74,10 +75,10 @@ fn noisy(exact: &[Hold], size: f64, state: &mut u64) -> Vec<Hold> {
 }
 
 #[test]
-fn without_noise_it_finds_the_law_and_its_numbers() {
+fn without_noise_the_law_and_its_parameters_are_exact() {
     for law in RelaxationLaw::BOTH {
-        let found = fit_reached(&holds(law, 20), BEFORE, None, SLOW).expect("it relaxes");
-        let (fit, (share, time)) = (found.best(), numbers(law));
+        let found = fit_superposition(&holds(law, 20), BEFORE, None, SLOW).expect("it relaxes");
+        let (fit, (share, time)) = (found.best(), parameters(law));
         assert_eq!(fit.law, law);
         assert!(
             (fit.share.0 / share - 1.0).abs() < 1e-4 && (fit.time.0 / time - 1.0).abs() < 1e-4,
@@ -97,17 +98,17 @@ fn without_noise_it_finds_the_law_and_its_numbers() {
             },
             "{margin}"
         );
-        let alone = fit_reached(&holds(law, 20), BEFORE, Some(law), SLOW).unwrap();
+        let alone = fit_superposition(&holds(law, 20), BEFORE, Some(law), SLOW).unwrap();
         assert_eq!((alone.fits.len(), alone.margin()), (1, None));
         assert_eq!(alone.best(), fit);
     }
 }
 
-/// One step of 2000 N in no time: how fast it loses, and when slowly enough, by hand.
+/// One instantaneous increment of 2000 N: rate and required dwell in closed form.
 #[test]
-fn the_pause_that_it_needs_is_the_closed_form() {
+fn the_required_pause_is_the_closed_form() {
     for law in RelaxationLaw::BOTH {
-        let (share, time) = numbers(law);
+        let (share, time) = parameters(law);
         let lost = |t: f64| {
             if law == Exponential {
                 1.0 - f64::exp(-t / time)
@@ -127,7 +128,7 @@ fn the_pause_that_it_needs_is_the_closed_form() {
             settled_for: 0.0,
             readings: (0..=20).map(reading).collect(),
         }];
-        let found = fit_reached(&one, 0.0, None, SLOW).expect("it relaxes");
+        let found = fit_superposition(&one, 0.0, None, SLOW).expect("it relaxes");
         let fit = found.best();
         let (rate, needed) = match law {
             Exponential => (
@@ -146,9 +147,9 @@ fn the_pause_that_it_needs_is_the_closed_form() {
             fit.rate
         );
         assert!(
-            (fit.needed_pause.0 / needed - 1.0).abs() < 1e-5,
+            (fit.required_pause.0 / needed - 1.0).abs() < 1e-5,
             "{:?} s is not {needed} s",
-            fit.needed_pause
+            fit.required_pause
         );
         let remaining = (law == Exponential).then(|| 2000.0 * share * f64::exp(-PAUSE / time));
         assert_eq!(fit.remaining.is_some(), remaining.is_some());
@@ -158,37 +159,37 @@ fn the_pause_that_it_needs_is_the_closed_form() {
                 .is_none_or(|((found, _), exact)| (found / exact - 1.0).abs() < 1e-4)
         );
         assert!((fit.force(0, 2.5).unwrap() - 2000.0 * (1.0 - share * lost(2.5))).abs() < 1e-3);
-        let calm = fit_reached(&one, 0.0, None, 1e6).unwrap();
-        assert_eq!(calm.best().needed_pause, (0.0, 0.0), "no pause at all");
+        let calm = fit_superposition(&one, 0.0, None, 1e6).unwrap();
+        assert_eq!(calm.best().required_pause, (0.0, 0.0), "no pause at all");
     }
 }
 
 type Read = fn(&LawFit) -> (f64, f64);
 
-/// Data of each law with a noise of 4 N, 120 times: the right law is chosen in all but few, and what it says has the spread that it
-/// states and holds the truth within twice its standard error in some 95 of a hundred.
+/// 120 series of readings by each law with a noise of 4 N: the right law is chosen in nearly all, the standard deviation of its
+/// results is the stated error, and twice that error covers the exact value in about 95 of 100.
 #[test]
-fn of_many_noisy_runs_the_right_law_is_chosen_and_its_errors_are_their_spread() {
+fn the_right_law_is_chosen_from_noisy_readings_and_its_errors_are_their_scatter() {
     const RUNS: u32 = 120;
     let read: [Read; 4] = [
         |fit| fit.share,
         |fit| fit.time,
         |fit| fit.rate,
-        |fit| fit.needed_pause,
+        |fit| fit.required_pause,
     ];
     for law in RelaxationLaw::BOTH {
         let exact = holds(law, 20);
-        let truth = fit_reached(&exact, BEFORE, Some(law), SLOW).unwrap();
+        let noiseless = fit_superposition(&exact, BEFORE, Some(law), SLOW).unwrap();
         let mut state = 77;
         let found: Vec<_> = (0..RUNS)
             .map(|_| {
-                fit_reached(&noisy(&exact, 4.0, &mut state), BEFORE, None, SLOW)
+                fit_superposition(&noisy(&exact, 4.0, &mut state), BEFORE, None, SLOW)
                     .expect("it relaxes")
             })
             .collect();
         let right: Vec<&LawFit> = found
             .iter()
-            .map(ReachedFit::best)
+            .map(SuperpositionFit::best)
             .filter(|fit| fit.law == law)
             .collect();
         assert!(
@@ -202,9 +203,9 @@ fn of_many_noisy_runs_the_right_law_is_chosen_and_its_errors_are_their_spread() 
         assert!((scatter / 4.0 - 1.0).abs() < 0.02, "{scatter} N of 4 N");
         for (index, read) in read.into_iter().enumerate() {
             let values: Vec<(f64, f64)> = right.iter().map(|fit| read(fit)).collect();
-            let exact = read(truth.best()).0;
+            let exact = read(noiseless.best()).0;
             let mean = values.iter().map(|(value, _)| value).sum::<f64>() / count;
-            let spread = (values
+            let deviation = (values
                 .iter()
                 .map(|(value, _)| (value - mean).powi(2))
                 .sum::<f64>()
@@ -212,64 +213,66 @@ fn of_many_noisy_runs_the_right_law_is_chosen_and_its_errors_are_their_spread() 
                 .sqrt();
             let stated =
                 (values.iter().map(|(_, error)| error.powi(2)).sum::<f64>() / count).sqrt();
-            // 120 runs tell a spread to 6.5 %.
+            // The standard deviation of 120 runs has a relative uncertainty of 6.5 %.
             assert!(
-                (spread / stated - 1.0).abs() < 0.2,
-                "{law:?} {index}: {spread} is stated as {stated}"
+                (deviation / stated - 1.0).abs() < 0.2,
+                "{law:?} {index}: {deviation} is stated as {stated}"
             );
             assert!(
-                (mean - exact).abs() < 4.0 * spread / count.sqrt() + 0.02 * spread,
+                (mean - exact).abs() < 4.0 * deviation / count.sqrt() + 0.02 * deviation,
                 "{law:?} {index}: {mean} is not {exact}"
             );
-            let held = values
+            let covered = values
                 .iter()
                 .filter(|(value, error)| (value - exact).abs() < 2.0 * error)
                 .count();
-            // 114 of 120 by the normal law, three binomial deviations 7.
+            // 114 of 120 by the normal distribution; three binomial deviations are 7.
             assert!(
-                (107..=120).contains(&held),
-                "{law:?} {index}: held {held} times"
+                (107..=120).contains(&covered),
+                "{law:?} {index}: covered {covered} times"
             );
         }
     }
 }
 
-/// With more noise the laws are harder to tell apart: the right one is still chosen in nine of ten, then in few more than half; but as
-/// strongly as the run calls strong, a wrong one is chosen hardly ever.
+/// With more noise the laws differ less: the right one is still chosen in nine of ten, then in a little more than half; but the wrong
+/// one is almost never chosen by a large margin.
 #[test]
-fn with_more_noise_the_choice_is_less_sure_and_says_so() {
+fn with_more_noise_the_margin_is_smaller() {
     let exact = holds(Logarithmic, 20);
     let mut state = 9;
     for (noise, least, strong) in [(10.0, 90, 60), (40.0, 25, 0)] {
         let found: Vec<_> = (0..100)
-            .filter_map(|_| fit_reached(&noisy(&exact, noise, &mut state), BEFORE, None, SLOW).ok())
+            .filter_map(|_| {
+                fit_superposition(&noisy(&exact, noise, &mut state), BEFORE, None, SLOW).ok()
+            })
             .collect();
-        let of = |law: RelaxationLaw, margin: f64| {
-            let chosen = |fit: &&ReachedFit| {
+        let chosen = |law: RelaxationLaw, margin: f64| {
+            let by_margin = |fit: &&SuperpositionFit| {
                 fit.best().law == law && fit.margin().is_some_and(|found| found.abs() >= margin)
             };
-            found.iter().filter(chosen).count()
+            found.iter().filter(by_margin).count()
         };
         assert!(
-            of(Logarithmic, 0.0) >= least,
+            chosen(Logarithmic, 0.0) >= least,
             "{noise} N: right {} times",
-            of(Logarithmic, 0.0)
+            chosen(Logarithmic, 0.0)
         );
         assert!(
-            of(Logarithmic, 6.0) >= strong,
+            chosen(Logarithmic, 6.0) >= strong,
             "{noise} N: strongly right {} times",
-            of(Logarithmic, 6.0)
+            chosen(Logarithmic, 6.0)
         );
         assert!(
-            of(Exponential, 6.0) <= 3,
+            chosen(Exponential, 6.0) <= 3,
             "{noise} N: strongly wrong {} times",
-            of(Exponential, 6.0)
+            chosen(Exponential, 6.0)
         );
     }
 }
 
 #[test]
-fn what_does_not_relax_has_no_law() {
+fn a_steady_force_has_no_law() {
     let still = || -> Vec<Hold> {
         let hold = |(hold, force): (Hold, f64)| {
             let readings = hold
@@ -286,15 +289,19 @@ fn what_does_not_relax_has_no_law() {
             .collect()
     };
     assert_eq!(
-        fit_reached(&still(), BEFORE, None, SLOW),
+        fit_superposition(&still(), BEFORE, None, SLOW),
         Err(Unrelaxed::Steady)
     );
     let mut state = 11;
     let seen = (0..40).filter(|_| {
-        fit_reached(&noisy(&still(), 4.0, &mut state), BEFORE, None, SLOW) != Err(Unrelaxed::Steady)
+        fit_superposition(&noisy(&still(), 4.0, &mut state), BEFORE, None, SLOW)
+            != Err(Unrelaxed::Steady)
     });
     assert!(seen.count() <= 3, "relaxation is seen in noise");
-    assert_eq!(fit_reached(&[], BEFORE, None, SLOW), Err(Unrelaxed::TooFew));
+    assert_eq!(
+        fit_superposition(&[], BEFORE, None, SLOW),
+        Err(Unrelaxed::TooFew)
+    );
     let short: Vec<Hold> = still()
         .into_iter()
         .map(|hold| Hold {
@@ -303,22 +310,22 @@ fn what_does_not_relax_has_no_law() {
         })
         .collect();
     assert_eq!(
-        fit_reached(&short, BEFORE, None, SLOW),
+        fit_superposition(&short, BEFORE, None, SLOW),
         Err(Unrelaxed::TooFew)
     );
-    // What goes on for hours.
+    // Relaxation over hours.
     for law in RelaxationLaw::BOTH {
         let slow = holds_with(law, (0.5, 5000.0), 10);
         assert_eq!(
-            fit_reached(&slow, BEFORE, Some(law), SLOW),
+            fit_superposition(&slow, BEFORE, Some(law), SLOW),
             Err(Unrelaxed::OutOfReach)
         );
     }
 }
 
-/// n ln(S/n) + k ln n·n/(n − k − 2), by hand; and more numbers cost more with fewer readings.
+/// n ln(S/n) + k ln n·n/(n − k − 2), by hand.
 #[test]
-fn the_criterion_by_hand() {
+fn the_criterion_is_the_closed_form() {
     let by_hand = 20.0 * f64::ln(5.0 / 20.0) + 3.0 * f64::ln(20.0) * 20.0 / 15.0;
     assert!((corrected_bic(5.0, 20.0, 3.0) - by_hand).abs() < 1e-12);
     assert_eq!(corrected_bic(5.0, 5.0, 3.0), f64::INFINITY);

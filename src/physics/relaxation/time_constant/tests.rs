@@ -1,14 +1,15 @@
-//! The fit of relaxation: exact without noise, honest with it, and silent where nothing relaxes.
+//! The fit of one time constant: exact without noise, its standard errors those of many fits, none where nothing relaxes.
 
-use super::fit::{Hold, RelaxationFit, RelaxationModel, Unrelaxed, fit_relaxation};
-use super::maxwell::{MaxwellBranch, Travel};
+use super::{RelaxationFit, RelaxationModel, fit_relaxation};
+use crate::relaxation::hold::{Hold, Unrelaxed};
+use crate::relaxation::maxwell::{MaxwellBranch, Motion};
 use crate::statistics::testing::normal;
 
 const BOTH: [RelaxationModel; 2] = [
     RelaxationModel::Exponential,
     RelaxationModel::StandardLinearSolid,
 ];
-/// 300 kN/m, beside it 200 kN/m that relax with 1.5 s; 12 N at no displacement.
+/// 300 kN/m, beside it 200 kN/m that relax with 1.5 s; 12 N at zero displacement.
 const K: f64 = 3e5;
 const K1: f64 = 2e5;
 const TAU: f64 = 1.5;
@@ -19,7 +20,7 @@ fn holds(stiffness: f64, pause: f64, noise: &mut dyn FnMut() -> f64) -> Vec<Hold
     (1_u32..=8)
         .map(|step| {
             let displacement = 1e-3 * f64::from(step);
-            branch.follow(&Travel::even(2e-3, 0.5));
+            branch.follow(&Motion::even(2e-3, 0.5));
             let begins = branch.force();
             let reading = |index: u32| {
                 let time = pause * (f64::from(index) / 20.0).powi(2);
@@ -29,7 +30,7 @@ fn holds(stiffness: f64, pause: f64, noise: &mut dyn FnMut() -> f64) -> Vec<Hold
                 )
             };
             let readings = (0..=20).map(reading).collect();
-            branch.follow(&Travel::rest(pause));
+            branch.follow(&Motion::rest(pause));
             Hold {
                 step: u64::from(step),
                 displacement,
@@ -54,7 +55,7 @@ fn by_hand(pause: f64) -> Vec<f64> {
 }
 
 #[test]
-fn without_noise_it_finds_the_solid() {
+fn without_noise_the_parameters_are_exact() {
     let pause = 2.0;
     for model in BOTH {
         let fit = fit_relaxation(&holds(K1, pause, &mut || 0.0), 0.0, model).expect("it relaxes");
@@ -74,8 +75,12 @@ fn without_noise_it_finds_the_solid() {
         assert!((fit.relaxed_stiffness.unwrap().0 / K - 1.0).abs() < 1e-7);
         let last = by_hand(pause)[7];
         assert!((fit.remaining.0 - last * f64::exp(-pause / TAU)).abs() < 1e-4);
-        assert!((fit.needed_pause(1.0).0 - TAU * last.ln()).abs() < 1e-5);
-        assert_eq!(fit.needed_pause(2.0 * last), (0.0, 0.0), "no pause at all");
+        assert!((fit.required_pause(1.0).0 - TAU * last.ln()).abs() < 1e-5);
+        assert_eq!(
+            fit.required_pause(2.0 * last),
+            (0.0, 0.0),
+            "no pause at all"
+        );
         assert!(
             (fit.force(7, 0.7).unwrap() - 12.0 - K * 8e-3 - last * f64::exp(-0.7 / TAU)).abs()
                 < 1e-4
@@ -92,15 +97,15 @@ fn without_noise_it_finds_the_solid() {
 
 type Read = fn(&RelaxationFit) -> (f64, f64);
 
-/// The spread of 300 fits is the standard error that each states, and twice it holds the truth in 95 of a hundred.
+/// The standard deviation of 300 fits is the standard error that each states, and twice that error covers the value in 95 of 100.
 #[test]
-fn its_standard_errors_are_the_spread_of_many_fits() {
+fn the_standard_errors_are_the_scatter_of_many_fits() {
     let last = by_hand(2.0)[7];
     let (left, needed) = (last * f64::exp(-2.0 / TAU), TAU * (last / 10.0).ln());
     let readings: [(Read, f64); 5] = [
         (|fit| fit.time_constant, TAU),
         (|fit| fit.relaxed_stiffness.unwrap(), K),
-        (|fit| fit.needed_pause(10.0), needed),
+        (|fit| fit.required_pause(10.0), needed),
         (|fit| fit.remaining, left),
         (|fit| fit.branch_stiffness.unwrap(), K1),
     ];
@@ -116,15 +121,15 @@ fn its_standard_errors_are_the_spread_of_many_fits() {
                 .expect("it relaxes")
             })
             .collect();
-        let known = if model == RelaxationModel::Exponential {
+        let results = if model == RelaxationModel::Exponential {
             2
         } else {
             5
         };
-        for (index, (read, exact)) in readings.into_iter().enumerate().take(known) {
+        for (index, (read, exact)) in readings.into_iter().enumerate().take(results) {
             let values: Vec<(f64, f64)> = fits.iter().map(read).collect();
             let mean = values.iter().map(|(value, _)| value).sum::<f64>() / 300.0;
-            let spread = (values
+            let deviation = (values
                 .iter()
                 .map(|(value, _)| (value - mean).powi(2))
                 .sum::<f64>()
@@ -132,31 +137,31 @@ fn its_standard_errors_are_the_spread_of_many_fits() {
                 .sqrt();
             let stated =
                 (values.iter().map(|(_, error)| error.powi(2)).sum::<f64>() / 300.0).sqrt();
-            // 300 fits tell a spread to 4.1 %.
+            // The standard deviation of 300 fits has a relative uncertainty of 4.1 %.
             assert!(
-                (spread / stated - 1.0).abs() < 0.13,
-                "{model:?} {index}: {spread} is stated as {stated}"
+                (deviation / stated - 1.0).abs() < 0.13,
+                "{model:?} {index}: {deviation} is stated as {stated}"
             );
             assert!(
-                (mean - exact).abs() < 4.0 * spread / 300_f64.sqrt(),
+                (mean - exact).abs() < 4.0 * deviation / 300_f64.sqrt(),
                 "{model:?} {index}: {mean} is not {exact}"
             );
-            let held = values
+            let covered = values
                 .iter()
                 .filter(|(value, error)| (value - exact).abs() < 2.0 * error)
                 .count();
-            // 286 by the normal law, three binomial deviations 11.
+            // 286 by the normal distribution; three binomial deviations are 11.
             assert!(
-                (272..=298).contains(&held),
-                "{model:?} {index}: held {held} times of 300"
+                (272..=298).contains(&covered),
+                "{model:?} {index}: covered {covered} times of 300"
             );
         }
     }
 }
 
-/// One hold tells its own amplitude: its error with that of τ, and how both go together.
+/// A single hold determines its amplitude, the error of it, and its covariance with τ.
 #[test]
-fn of_one_hold_too() {
+fn one_hold_is_enough() {
     let mut state = 4;
     let mut one = || {
         let all = holds(K1, 4.0, &mut || 5.0 * normal(&mut state));
@@ -168,12 +173,12 @@ fn of_one_hold_too() {
         (|fit| fit.time_constant, TAU),
         (|fit| (fit.worst.force, fit.worst.error), first),
         (|fit| fit.remaining, first * f64::exp(-4.0 / TAU)),
-        (|fit| fit.needed_pause(10.0), TAU * (first / 10.0).ln()),
+        (|fit| fit.required_pause(10.0), TAU * (first / 10.0).ln()),
     ];
     for (index, (read, exact)) in readings.into_iter().enumerate() {
         let values: Vec<(f64, f64)> = fits.iter().map(read).collect();
         let mean = values.iter().map(|(value, _)| value).sum::<f64>() / 400.0;
-        let spread = (values
+        let deviation = (values
             .iter()
             .map(|(value, _)| (value - mean).powi(2))
             .sum::<f64>()
@@ -181,19 +186,19 @@ fn of_one_hold_too() {
             .sqrt();
         let stated = (values.iter().map(|(_, error)| error.powi(2)).sum::<f64>() / 400.0).sqrt();
         assert!(
-            (spread / stated - 1.0).abs() < 0.12,
-            "{index}: {spread} is stated as {stated}"
+            (deviation / stated - 1.0).abs() < 0.12,
+            "{index}: {deviation} is stated as {stated}"
         );
-        // A time constant is not quite normal: it is off by some of its own error squared.
+        // The distribution of a time constant is not quite normal: its bias is of the order of its squared error.
         assert!(
-            (mean - exact).abs() < 0.3 * spread,
+            (mean - exact).abs() < 0.3 * deviation,
             "{index}: {mean} is not {exact}"
         );
     }
 }
 
 #[test]
-fn what_does_not_relax_and_what_cannot_be_told_has_no_fit() {
+fn a_steady_force_and_an_unresolved_time_have_no_fit() {
     let mut state = 8;
     for model in BOTH {
         assert_eq!(
