@@ -1,5 +1,5 @@
-//! Checked expressions. Names are resolved, units are gone, dimensions agree; what is left to do at run time is
-//! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
+//! Checked expressions: names are resolved, units converted, dimensions checked. At run time only arithmetic on constants and on the
+//! results of finished procedures is left. In: a [`Formula`] and [`Results`].
 //! Out: an [`Estimate`], the value with its standard uncertainty.
 
 use crate::uncertainty::{Contribution, Moved, Source, combined, combined_entries, sources_of};
@@ -8,7 +8,7 @@ use crate::uncertainty::{Contribution, Moved, Source, combined, combined_entries
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProcedureId(pub usize);
 
-/// Which number of a result is meant.
+/// Which number of a result is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     Value,
@@ -16,7 +16,7 @@ pub enum Part {
     Uncertainty,
 }
 
-/// A result of a procedure: `k0.stiffness`, `k0.stiffness.u`. `name` is the schema's own word.
+/// A result of a procedure: `k0.stiffness`, `k0.stiffness.u`. `name` is the schema's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ResultReference {
     pub procedure: ProcedureId,
@@ -31,7 +31,7 @@ pub enum Formula {
     /// A number that the plan states with its uncertainty.
     Stated(Stated),
     Result(ResultReference),
-    /// Δt of eq. 7 for the impact at hand; stands only in `time_step`.
+    /// Δt of eq. 7 for the current impact; allowed in `time_step` alone.
     CriticalTimeStep,
     List(Vec<Formula>),
     Index(Box<Formula>, usize),
@@ -40,12 +40,12 @@ pub enum Formula {
     Call(Function, Vec<Formula>),
 }
 
-/// A number of the plan, SI, and how well it is known.
+/// A number of the plan in SI units, with its standard uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stated {
     pub source: Source,
     pub value: f64,
-    /// Standard.
+    /// Standard uncertainty.
     pub uncertainty: f64,
 }
 
@@ -84,14 +84,14 @@ pub enum Function {
     Cos,
 }
 
-/// A value and its standard uncertainty (both SI); no uncertainty where nothing measured went in.
+/// A value and its standard uncertainty, both in SI units; no uncertainty where no measured result is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     pub value: f64,
     pub uncertainty: Option<f64>,
 }
 
-/// What a result may be: one number or a list, with the standard uncertainty of a number where it was measured.
+/// The value of a result: one number or a list, with the standard uncertainty of a number that was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResultValue {
     /// `value` is None where the result does not exist in this run (no stop time: the striker did not stop).
@@ -102,12 +102,12 @@ pub enum ResultValue {
     List(Vec<f64>),
 }
 
-/// Where formulas find results.
+/// The results that formulas read.
 pub trait Results: Sync {
     /// The result, or None if its procedure has not run to it.
     fn result(&self, reference: ResultReference) -> Option<ResultValue>;
 
-    /// What its uncertainty is made of; of a result that says no more, all of it is its own.
+    /// The uncertainty contributions of the result; by default all of its uncertainty is one contribution of its own.
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         let ResultReference {
             procedure, name, ..
@@ -129,12 +129,12 @@ pub trait Results: Sync {
         }
     }
 
-    /// Degrees of freedom by which the size of a source is known; infinite of what was not estimated from readings.
+    /// Degrees of freedom of the uncertainty of a source; infinite where it was not estimated from readings.
     fn degrees(&self, _: Source) -> f64 {
         f64::INFINITY
     }
 
-    /// By how many of its standard uncertainties a source is moved here.
+    /// The perturbation of a source, in its standard uncertainties.
     fn moved(&self, _: Source) -> f64 {
         0.0
     }
@@ -176,9 +176,9 @@ enum Value {
 }
 
 impl Formula {
-    /// The value, and its standard uncertainty propagated to first order: the root sum of squares of what each source of the
-    /// results it reads does to the value (JCGM 100:2008, 5.1.2 and, of results that share sources, 5.2.2). `critical` is Δtc
-    /// (s), for `time_step` only.
+    /// The value, and its standard uncertainty propagated to first order: the root sum of squares of the effect of each source
+    /// on the value (JCGM 100:2008, 5.1.2; for results that share sources, 5.2.2). `critical` is Δtc
+    /// \[s\], for `time_step` only.
     ///
     /// # Errors
     /// A result that does not exist in this run, or a value that is not finite.
@@ -192,7 +192,7 @@ impl Formula {
         Ok(Estimate { value, uncertainty })
     }
 
-    /// What each source of the results it reads does to the value.
+    /// The effect of each source of the results that it reads on the value.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
@@ -210,7 +210,7 @@ impl Formula {
         }
         let value = self.number(results, critical)?;
         let effect = |source| {
-            // Half the effect of moving the source by ±u: exact for a linear formula.
+            // Half the effect of a perturbation by ±u: exact for a linear formula.
             let up = self.number(
                 &Moved {
                     results,
@@ -228,7 +228,7 @@ impl Formula {
                 critical,
             )?;
             let (above, below) = (up - value, value - down);
-            // Both sides move it the same way: it folds there, as `abs` does about 0, and the halves would cancel.
+            // Both perturbations have an effect of the same sign, as for `abs` about 0, where the halves would cancel.
             let folds = above * below < 0.0;
             Ok(Contribution::new(
                 source,
@@ -242,13 +242,13 @@ impl Formula {
         sources.into_iter().map(effect).collect()
     }
 
-    /// The value where no result is needed: constants folded by `check`.
+    /// The value where no result is needed: constants, folded by `check`.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
         self.number(&NoResults, None).ok()
     }
 
-    /// The result this formula is, if it is nothing but one.
+    /// The result that this formula is, if it is only that.
     #[must_use]
     pub fn as_result(&self) -> Option<ResultReference> {
         if let Self::Result(reference) = self {
@@ -258,7 +258,7 @@ impl Formula {
         }
     }
 
-    /// Adds every result the formula reads, each once.
+    /// Adds every result that the formula reads, each once.
     pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
         match self {
             Self::Constant(_) | Self::Stated(_) | Self::CriticalTimeStep => {}
@@ -280,7 +280,7 @@ impl Formula {
         }
     }
 
-    /// Adds the source of every number that it states with an uncertainty, each once.
+    /// Adds the source of every number that is stated with an uncertainty, each once.
     pub fn collect_stated(&self, into: &mut Vec<Source>) {
         match self {
             Self::Constant(_) | Self::Result(_) | Self::CriticalTimeStep => {}
@@ -310,7 +310,7 @@ impl Formula {
         !stated.is_empty()
     }
 
-    /// Everything in it that is no constant and no list.
+    /// The number of its parts that are neither constants nor lists.
     #[must_use]
     pub fn terms(&self) -> usize {
         match self {
@@ -323,7 +323,7 @@ impl Formula {
         }
     }
 
-    /// Whether `critical` stands in it.
+    /// Whether it contains `critical`.
     #[must_use]
     pub fn reads_critical_time_step(&self) -> bool {
         match self {
@@ -434,7 +434,7 @@ impl Function {
         ("cos", Self::Cos),
     ];
 
-    /// Value of the function over its arguments, lists spread out; NaN of nothing.
+    /// Value of the function over its arguments, with lists expanded; NaN without arguments.
     fn apply(self, values: &[f64]) -> f64 {
         let Some(&first) = values.first() else {
             return f64::NAN;
@@ -510,7 +510,7 @@ mod tests {
         );
     }
 
-    /// ½mv² of m = 20 ± 0.1 kg and v = 1 ± 0.01 m/s: u = √((½v²u_m)² + (mv·u_v)²), and nothing of what it is taken from itself.
+    /// ½mv² of m = 20 ± 0.1 kg and v = 1 ± 0.01 m/s: u = √((½v²u_m)² + (mv·u_v)²), and nothing of a number that is subtracted from itself.
     #[test]
     fn a_stated_number_carries_its_uncertainty() {
         let of = |source, value, uncertainty| {
@@ -552,7 +552,7 @@ mod tests {
         );
     }
 
-    /// |K − 99.9| with K = 100 ± 2: one way and the other it grows by nearly 2, and half of their difference is nearly nothing.
+    /// abs(K − 99.9) with K = 100 ± 2: it increases by nearly 2 for either sign of the perturbation, and half of their difference is nearly zero.
     #[test]
     fn what_folds_within_its_uncertainty_is_as_uncertain_as_what_is_folded() {
         let off = |by: f64| {

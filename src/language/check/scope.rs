@@ -10,6 +10,7 @@ use crate::plan::formula::ProcedureId;
 use crate::schema::{self, BlockKind, Kind, Naming};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{FileId, Span, Spanned};
+use crate::units::Quantity;
 
 /// A block of a kind that this version knows.
 pub struct DeclaredBlock<'a> {
@@ -35,8 +36,17 @@ pub struct DeclaredValue<'a> {
     pub name: &'a Ident,
     pub value: &'a Expr,
     pub bounds: Option<&'a Expr>,
-    /// The value `--set` gives in its place.
-    pub setting: Option<&'a Expr>,
+    /// The value given in its place from outside the plan.
+    pub setting: Option<&'a Setting>,
+}
+
+/// A value of a parameter that is given from outside the plan.
+#[derive(Clone, Debug)]
+pub enum Setting {
+    /// An expression, as `--set` has it.
+    Written(Expr),
+    /// A number in SI units, bound without any text.
+    Bound(Quantity),
 }
 
 /// What a name stands for.
@@ -75,10 +85,10 @@ pub struct Scope<'a> {
 }
 
 impl<'a> Scope<'a> {
-    /// Declares all that the files say; `settings` are the values given by `--set`, by name.
+    /// Declares all that the files say; `settings` are the values given from outside, by name.
     pub fn collect(
         asts: &'a [Ast],
-        settings: &'a BTreeMap<String, Expr>,
+        settings: &'a BTreeMap<String, Setting>,
         faults: &mut Vec<Diagnostic>,
     ) -> Self {
         let mut scope = Self {
@@ -199,7 +209,7 @@ impl<'a> Scope<'a> {
         name: &'a Ident,
         value: &'a Expr,
         bounds: Option<&'a Expr>,
-        setting: Option<&'a Expr>,
+        setting: Option<&'a Setting>,
         faults: &mut Vec<Diagnostic>,
     ) {
         self.declare(name, Meaning::Value(self.values.len()), faults);

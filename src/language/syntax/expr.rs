@@ -1,4 +1,4 @@
-//! The grammar's pairs → expressions. Precedence below ranges is a Pratt parser's work: `+ -`, `* /`, unary `-`, `^`
+//! Pairs of the grammar → expressions. A Pratt parser handles the precedence below ranges: `+ -`, `* /`, unary `-`, `^`
 //! (to the right), then `.` and `[0]`.
 
 use std::sync::LazyLock;
@@ -225,7 +225,7 @@ impl Lowering {
         };
         let unit: Option<UnitToken> = parts.next().map(|unit| self.ident(&unit));
         let span = unit.as_ref().map_or(start, |unit| start.to(unit.span));
-        // `tokens` has refused what is not finite before the grammar is asked.
+        // `tokens` has rejected a number that is not finite before the grammar is applied.
         let value = text.parse().unwrap_or(f64::NAN);
         Expr {
             span,

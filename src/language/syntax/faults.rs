@@ -1,17 +1,17 @@
-//! Every fault of the text, as a diagnostic: the code, the sentence, the place and the way out. Found elsewhere, worded
-//! here.
+//! Every syntax error as a diagnostic: the code, the message, the span and the suggestion. Other files find the errors, this one words
+//! them.
 
 use super::{letters, limits, misspelt::Slip, numbers};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 
-/// What to write in place of an `or`.
+/// The replacement for an `or`.
 const EITHER: &str = "all that is required must hold, so there is no `or`: of two values of which one is enough, require the \
     smaller or the larger, as in `min(a, b) < 5 mm`";
 
 const COMPARED: &str = "values are compared by `<=`, `>=`, `==` or `within 5 % of`";
 
-/// `found` and `expected` are in human words, marks included.
+/// `found` and `expected` are phrases, with their backquotes.
 pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("found {found}, expected {expected}"))
         .at(span, format!("expected {expected}"))
@@ -71,7 +71,7 @@ pub fn field_outside(span: Span, key: &str) -> Diagnostic {
     ))
 }
 
-/// A line of words that opens no block.
+/// A line of words that does not open a block.
 pub fn stray_words(span: Span, words: &str) -> Diagnostic {
     let mut short: String = words.chars().take(30).collect();
     if short.len() < words.len() {
@@ -82,14 +82,14 @@ pub fn stray_words(span: Span, words: &str) -> Diagnostic {
         .help("a block opens with `{` on this same line, as in `striker hammer { … }`; a remark stands behind `#`")
 }
 
-/// A line that begins with a word that other languages begin a line with.
+/// A line that begins with a keyword of another language.
 pub fn word_of_another_language(span: Span, word: &str, help: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("`{word}` is no word of the language"))
         .at(span, "begins no item")
         .help(help)
 }
 
-/// A condition or a loop: `whole` is not read.
+/// A condition or a loop: `whole` is skipped.
 pub fn no_control(message: &str, help: &str, begins: Span, whole: Span) -> Diagnostic {
     Diagnostic::new(Code::Syntax, message)
         .at(begins, "begins no item")
@@ -103,7 +103,7 @@ pub fn arguments_in_braces(span: Span, call: &str) -> Diagnostic {
         .help(format!("write `{call}`"))
 }
 
-/// `rest`: what follows `require`.
+/// `rest`: the text after `require`.
 pub fn requirement_without_name(span: Span, rest: &str) -> Diagnostic {
     let short = rest.len() <= 60 && !rest.contains('\n');
     let rest = if short { rest } else { "…" };
@@ -114,7 +114,7 @@ pub fn requirement_without_name(span: Span, rest: &str) -> Diagnostic {
         ))
 }
 
-/// A line that goes on with an expression of the line before.
+/// A line that continues an expression of the line before.
 pub fn operator_begins_line(span: Span, operator: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("this line begins with `{operator}`"))
         .at(span, "belongs to the line before")
@@ -179,7 +179,7 @@ pub fn bad_number(span: Span, written: &str, fault: &numbers::Fault) -> Diagnost
     .help(help)
 }
 
-/// `mended`: number and unit without the parentheses.
+/// `corrected`: number and unit without the parentheses.
 pub fn unit_in_parentheses(span: Span, mended: &str) -> Diagnostic {
     Diagnostic::new(Code::UnitWithoutBlank, "a unit has no parentheses")
         .at(span, "read as one unit")
@@ -281,7 +281,7 @@ pub fn too_many_operators(span: Span, limit: usize) -> Diagnostic {
     .help("name parts of it with `let`, or write `sum([ … ])`")
 }
 
-/// A file whose every line ends with CR, so that for every other program it is one line.
+/// A file whose every line ends with CR: other programs take it for one line.
 pub fn carriage_returns(span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadText,
@@ -291,7 +291,7 @@ pub fn carriage_returns(span: Span) -> Diagnostic {
     .help("save the file with LF or CR LF line ends")
 }
 
-/// What was written for something else, at the first of `places` places.
+/// A confusable character or word, at the first of `count` positions.
 pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic {
     let often = match places {
         1 => String::new(),
@@ -388,7 +388,7 @@ pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic
     }
 }
 
-/// A name with letters that are none of a–z; the place is the first of them.
+/// A name with letters outside a–z; the span is that of the first.
 fn foreign_word(word: &str, span: Span, often: &str) -> Diagnostic {
     let start = word.find(letters::is_foreign).unwrap_or(0);
     let letter = word[start..].chars().next().unwrap_or_default();

@@ -1,5 +1,5 @@
-//! Recovery: cuts a faulty file into items and fields by its lines and brackets, so that each can be read alone and
-//! none swallows the next. In: tokens. Out: [`Piece`]s and the faults of brackets. Knows lines, not grammar.
+//! Error recovery: cuts a file with errors into items and fields by its lines and brackets, so that each can be parsed separately and
+//! none includes the next. In: tokens. Out: [`Piece`]s and the errors of brackets. Knows lines, not grammar.
 
 use super::{
     control, faults,
@@ -7,18 +7,18 @@ use super::{
 };
 use crate::text::diagnostic::Diagnostic;
 
-/// One statement: tokens `start..end`, the last of which is no line end.
+/// One statement: tokens `start..end`, the last of which is not a line end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Statement {
     pub start: usize,
     pub end: usize,
-    /// Its brackets are at fault, and that has been said.
+    /// Its brackets do not match, and that has been reported.
     pub broken: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Piece {
-    /// `let`, `param`, `use`, `require`, or something that is no item at all.
+    /// `let`, `param`, `use`, `require`, or a statement that is not an item.
     Item(Statement),
     /// `open` is the token of `{`, `close` that of `}`.
     Block {
@@ -65,7 +65,7 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
 /// Words a top-level item starts with, other than a block.
 pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
 
-/// Words and signs of the fields of a block that lacks its `{`, at most.
+/// Most words and signs of the fields of a block that lacks its `{`.
 const FIELDS_WITHOUT_BRACE: usize = 500;
 
 /// Signs between two values.
@@ -91,7 +91,7 @@ impl Cutter<'_> {
         )
     }
 
-    /// Past line ends and comments; whether anything is left.
+    /// Skips line ends and comments; returns whether anything is left.
     fn skip_lines(&mut self) -> bool {
         while matches!(
             self.tokens.kind(self.at),
@@ -123,8 +123,8 @@ impl Cutter<'_> {
         ));
     }
 
-    /// One statement from here: to the end of its line, further where a bracket is open or an operator stands last,
-    /// but never past a line that starts something new, nor past a brace.
+    /// One statement from here: to the end of its line, further where a bracket is open or an operator is last,
+    /// but never beyond a line that starts a new statement, nor beyond a brace.
     fn statement(&mut self) -> Statement {
         let start = self.at;
         let mut end = start;
@@ -168,7 +168,7 @@ impl Cutter<'_> {
         Statement { start, end, broken }
     }
 
-    /// Whether the next line begins with an operator, which is told: it goes on with the expression of this one.
+    /// Whether the next line begins with an operator, which is reported: it continues the expression of this line.
     fn goes_on_below(&mut self) -> bool {
         let next = self.at + 1;
         let joins = |word: &&str| self.tokens.is(next, word) && !self.tokens.is(next + 1, "=");
@@ -184,7 +184,7 @@ impl Cutter<'_> {
         true
     }
 
-    /// A brace that stands on a line of its own below the head that it belongs to: told, and read as that block's.
+    /// A brace on a separate line below the head of its block: it is reported, and read as that block's.
     fn brace_below(&mut self, head: Statement) {
         let mut next = self.at;
         while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
@@ -204,7 +204,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// Whether these are the words of a block that is closed and never opened, which is told: fields follow, and a `}`.
+    /// Whether these are the words of a block that is closed and never opened, which is reported: fields follow, and a `}`.
     fn lacks_its_brace(&mut self, head: Statement) -> bool {
         let words = (head.start..head.end)
             .all(|at| matches!(self.tokens.kind(at), Some(Kind::Word | Kind::Text)));
@@ -216,7 +216,7 @@ impl Cutter<'_> {
             next += 1;
         }
         let field = self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "=");
-        // Looked for so far only: reading a file takes as long as the file is.
+        // The search is bounded, so that the time for a file is proportional to its length.
         let closed = || {
             let brace = (next..next + FIELDS_WITHOUT_BRACE)
                 .find(|at| self.tokens.is(*at, "{") || self.tokens.is(*at, "}"));
@@ -232,7 +232,7 @@ impl Cutter<'_> {
         lacks
     }
 
-    /// Whether the token before `end` wants a value after it.
+    /// Whether the token before `end` must be followed by a value.
     fn continues(&self, end: usize) -> bool {
         let Some(last) = end.checked_sub(1) else {
             return false;
@@ -271,7 +271,7 @@ impl Cutter<'_> {
         (keyword && named) || self.tokens.is(after, "{")
     }
 
-    /// Past a condition or a loop of another language, with all that is in its braces: told once.
+    /// Skips a condition or a loop of another language, with everything in its braces; it is reported once.
     fn skips_control(&mut self) -> bool {
         let first = self.tokens.list[self.at];
         let Some((message, help)) = control::of_another_language(self.tokens.text_of(first)) else {
@@ -320,7 +320,7 @@ impl Cutter<'_> {
 
     /// The block whose `{` is here.
     fn block(&mut self, head: Statement) -> Piece {
-        // One that lacks its brace opens behind its last word.
+        // A block that lacks its brace opens after its last word.
         let open = if self.is("{") { self.at } else { head.end - 1 };
         let mut fields = Vec::new();
         self.at += usize::from(self.is("{"));
@@ -347,7 +347,7 @@ impl Cutter<'_> {
                 continue;
             }
             if self.starts_item(self.at) {
-                // A line no further in than the block's own head is the next item: this block was never closed.
+                // A line that is indented no further than the block's own head is the next item: this block was never closed.
                 if self.column(self.at) <= self.column(head.start.min(open)) {
                     self.unclosed(open);
                     return Piece::Block {
@@ -378,7 +378,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// Past `{0.5}` of `contact = restitution{0.5}`, on one line: told.
+    /// Skips `{0.5}` of `contact = restitution{0.5}`, on one line, and reports it.
     fn arguments_in_braces(&mut self, field: Statement) -> bool {
         let close = (self.at..)
             .take_while(|at| !matches!(self.tokens.kind(*at), None | Some(Kind::Newline)));
@@ -415,7 +415,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// Past the `{` here and the `}` that belongs to it, whatever is between, or past this one token.
+    /// Skips the `{` here with everything up to its `}`, or this one token.
     fn skip_braces(&mut self) {
         let mut depth = 0_usize;
         while self.at < self.tokens.list.len() {

@@ -1,6 +1,6 @@
-//! Signs, blanks, quotes and letters that a person takes for those of the language and that are others: a no-break space, `≤`,
-//! `“x”`, `=<`, a Cyrillic і. In: the text of a file. Out: the text as it was meant, byte for byte of the same length, so that
-//! every place in it stays what it was, and one fault for each sort of slip. It knows no grammar.
+//! Characters that look like those of the language and are others: a no-break space, `≤`,
+//! `“x”`, `=<`, a Cyrillic і. In: the text of a file. Out: the normalized text, with the same length in bytes, so that
+//! every span in it stays valid, and one error for each sort of confusable. It knows no grammar.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -10,37 +10,37 @@ use super::{faults, letters, limits};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{FileId, Span};
 
-/// A text read as it was meant.
+/// A text with its confusables replaced.
 pub struct Mended<'a> {
     pub text: Cow<'a, str>,
-    /// One for each sort of slip, at its first place.
+    /// One for each sort of confusable, at its first position.
     pub faults: Vec<Diagnostic>,
-    /// Every place that is read otherwise than it is written, in order.
+    /// Every span that is read otherwise than it is written, in order.
     pub places: Vec<Span>,
 }
 
-/// What was written for something else. The same slip is told once, however often it was made.
+/// A character or word that was written for another. Each is reported once, however often it appears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Slip<'a> {
     /// A byte order mark at the start.
     ByteOrderMark,
-    /// A blank that is not the one of the keyboard.
+    /// A space other than the one of the keyboard.
     Blank(char),
-    /// A sign, and the one that was meant.
+    /// A sign, and the one it is read as.
     Sign(&'a str, &'static str),
     /// `²`
     Superscript(&'a str),
-    /// `“x”`, by the quote that opens it.
+    /// `“x”`, by its opening quote.
     Quotes(char),
     /// `//` or `/*`
     Comment(&'static str),
     /// `;` at the end of a field
     Semicolon,
-    /// A word that holds letters of another alphabet.
+    /// A word with letters of another alphabet.
     Word(&'a str),
 }
 
-/// Signs that look like one of the language, or mean it elsewhere. The longer stand first.
+/// Signs that look like one of the language, or have its meaning elsewhere. The longer ones come first.
 const SIGNS: &[(&str, &str)] = &[
     ("===", "=="),
     ("!==", "!="),
@@ -98,7 +98,7 @@ const SUPERSCRIPTS: [(char, char); 11] = [
     ('⁹', '9'),
 ];
 
-/// Quotes that open a text, each with those that close it; `"` closes all of them.
+/// Opening quotes, each with its closing quotes; `"` closes all of them.
 const QUOTES: &[(char, &str)] = &[
     ('“', "”“"),
     ('”', "”"),
@@ -114,7 +114,7 @@ const QUOTES: &[(char, &str)] = &[
     ('"', "”“＂"),
 ];
 
-/// Blanks that are no blanks of the language.
+/// Spaces that the language does not know.
 const fn is_odd_blank(c: char) -> bool {
     matches!(
         c,
@@ -122,7 +122,7 @@ const fn is_odd_blank(c: char) -> bool {
     )
 }
 
-/// Reads a text as it was meant.
+/// Replaces every confusable.
 #[must_use]
 pub fn mend(text: &str, file: FileId) -> Mended<'_> {
     let mut mender = Mender {
@@ -160,15 +160,15 @@ pub fn mend(text: &str, file: FileId) -> Mended<'_> {
 struct Mender<'a> {
     text: &'a str,
     at: usize,
-    /// Empty while nothing is to be mended.
+    /// Empty while nothing is replaced.
     mended: Vec<u8>,
     slips: Vec<(Slip<'a>, Vec<Range<usize>>)>,
-    /// Where each is among them.
+    /// The index of each among them.
     known: BTreeMap<Slip<'a>, usize>,
 }
 
 impl<'a> Mender<'a> {
-    /// What stands here; how many bytes it is.
+    /// Reads one character or confusable; returns its length in bytes.
     fn turn(&mut self) -> usize {
         let rest = &self.text[self.at..];
         let Some(first) = rest.chars().next() else {
@@ -177,7 +177,7 @@ impl<'a> Mender<'a> {
         match first {
             'a'..='z' | 'A'..='Z' | '0'..='9' | '_' | ' ' | '\n' | ',' => 1,
             '#' => line(rest).len(),
-            // One that is never closed is told of as such: nothing behind it is a sign.
+            // A string that is never closed has a separate error: nothing after it is a sign.
             '"' => text_extent(rest).unwrap_or_else(|| match self.quoted(rest, first) {
                 1 => line(rest).len(),
                 length => length,
@@ -189,7 +189,7 @@ impl<'a> Mender<'a> {
             }
             '/' if rest.starts_with("/*") => self.long_comment(rest),
             '\u{feff}' if self.at == 0 => self.slip(Slip::ByteOrderMark, first.len_utf8(), ""),
-            // Between digits it groups them, which is a fault of the number.
+            // Between digits it groups them, which is an error of the number.
             blank if is_odd_blank(blank) && self.groups_digits(rest) => {
                 self.write(self.at, blank.len_utf8(), "");
                 blank.len_utf8()
@@ -208,7 +208,7 @@ impl<'a> Mender<'a> {
         }
     }
 
-    /// Notes a slip of `length` bytes here, and what is read in its place.
+    /// Records a confusable of `length` bytes here, and replaces it.
     fn slip(&mut self, slip: Slip<'a>, length: usize, meant: &str) -> usize {
         self.note(slip, self.at..self.at + length);
         self.write(self.at, length, meant);
@@ -223,7 +223,7 @@ impl<'a> Mender<'a> {
         }
     }
 
-    /// Puts `meant` into the place of `length` bytes, with blanks behind it.
+    /// Replaces `length` bytes by `meant` and spaces.
     fn write(&mut self, at: usize, length: usize, meant: &str) {
         if self.mended.is_empty() {
             self.mended = self.text.as_bytes().to_vec();
@@ -233,7 +233,7 @@ impl<'a> Mender<'a> {
         place[..meant.len()].copy_from_slice(meant.as_bytes());
     }
 
-    /// Whether a digit stands before this one character, and three behind it, as in `1 000`.
+    /// Whether this one character has a digit before it, and three after it, as in `1 000`.
     fn groups_digits(&self, rest: &str) -> bool {
         let after = rest
             .chars()
@@ -258,14 +258,14 @@ impl<'a> Mender<'a> {
         length
     }
 
-    /// A text in quotes that are not `"`. One that cannot be told where it ends is left as it is.
+    /// A string in quotes other than `"`. One whose end is unclear is unchanged.
     fn quoted(&mut self, rest: &'a str, open: char) -> usize {
         let begin = open.len_utf8();
         let closing = QUOTES
             .iter()
             .find(|(known, _)| *known == open)
             .map_or("", |(_, closing)| closing);
-        // A longer one is refused anyway; and each is looked through for so far only.
+        // A longer one is invalid anyway; the bound limits the search.
         let inside =
             rest[begin..].split_at_checked(rest[begin..].floor_char_boundary(limits::TEXT_BYTES));
         let inside = line(inside.map_or("", |(inside, _)| inside));
@@ -303,14 +303,14 @@ impl<'a> Mender<'a> {
         self.slip(Slip::Superscript(&rest[..length]), length, &meant)
     }
 
-    /// The word whose first foreign letter stands here. How many bytes are left of it.
+    /// The word whose first foreign letter is here. Returns the length of its rest in bytes.
     fn word(&mut self) -> usize {
         let text = self.text;
         let before = &text[..self.at];
         let start = before.rfind(|c| !letters::in_word(c)).map_or(0, |at| {
             at + before[at..].chars().next().map_or(1, char::len_utf8)
         });
-        // A unit may stand right behind its number.
+        // A unit may follow its number directly.
         let start = start
             + before[start..]
                 .find(|c: char| !c.is_ascii_digit())
@@ -331,7 +331,7 @@ fn line(rest: &str) -> &str {
     line.strip_suffix('\r').unwrap_or(line)
 }
 
-/// Bytes of the text in `"` that begins here; `None` where its line does not close it.
+/// Length in bytes of the string in `"` that begins here; `None` where its line does not close it.
 fn text_extent(rest: &str) -> Option<usize> {
     let mut escaped = false;
     for (at, c) in line(rest).char_indices().skip(1) {

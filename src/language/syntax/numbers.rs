@@ -1,16 +1,16 @@
-//! What is wrong with a number, and how it should have been written. In: the text of one number, good or bad.
+//! Errors of numbers, and their corrections. In: the text of one number, valid or not.
 
 use super::limits;
 
-/// Why a number is refused, and what to write instead.
+/// Why a number is invalid, and its corrections.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
     pub why: &'static str,
-    /// The ways to write it, the likeliest first.
+    /// The corrections, the most probable first.
     pub write: Vec<String>,
 }
 
-/// A power of ten as it is written by hand.
+/// A power of ten in handwriting.
 const TIMES_TEN: &str = "x10^";
 
 fn digits(text: &str) -> usize {
@@ -20,8 +20,8 @@ fn digits(text: &str) -> usize {
             .len()
 }
 
-/// Bytes of the number at the start of `text`, taking in what was meant as part of it: `1_000`, `0x10`, `1,5`, `5.`,
-/// `1.2.3`, `1 000`. A comma counts only where no bracket is open, a blank where no list is.
+/// Length in bytes of the number at the start of `text`, with everything that was meant as part of it: `1_000`, `0x10`, `1,5`, `5.`,
+/// `1.2.3`, `1 000`. A comma counts only outside brackets, a space only outside lists.
 #[must_use]
 pub fn extent(text: &str, comma: bool, blank: bool) -> usize {
     let hexadecimal = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
@@ -82,11 +82,11 @@ pub fn extent(text: &str, comma: bool, blank: bool) -> usize {
     end
 }
 
-/// Bytes of a mark that groups digits and the three digits behind it: ` 000`, `'000`.
+/// Length in bytes of a digit separator and the three digits after it: ` 000`, `'000`.
 fn grouped(text: &str, blank: bool) -> Option<usize> {
     let mark = match text.chars().next()? {
         mark @ ('\'' | '’') => mark.len_utf8(),
-        // A blank of another sort was up to three bytes long.
+        // A space of another sort was up to three bytes long.
         ' ' if blank => (text.len() - text.trim_start_matches(' ').len()).min(4),
         _ => return None,
     };
@@ -99,7 +99,7 @@ fn grouped(text: &str, blank: bool) -> Option<usize> {
     (mark < 4 && digits(after) == 3 && ends).then_some(mark + 3)
 }
 
-/// What is wrong with a number that holds commas.
+/// The error of a number with commas.
 fn commas(written: &str) -> Fault {
     let none = written.replace(',', "");
     let point = written.replace('.', "").replace(',', ".");
@@ -128,7 +128,7 @@ fn commas(written: &str) -> Fault {
     }
 }
 
-/// What is wrong with the number `written`, if anything.
+/// The error of the number `written`, if any.
 #[must_use]
 pub fn fault(written: &str) -> Option<Fault> {
     let fault = |why, write: Option<String>| {

@@ -1,5 +1,5 @@
-//! One file, read whole: [`parse`] gives the tree of all that could be read and every fault of the text. A sound file
-//! goes through the grammar at once; a faulty one is cut into pieces (`layout`) and each piece is read alone.
+//! Parses one file: [`parse`] returns the tree of everything that could be parsed, and every syntax error. A valid file
+//! is parsed as a whole; one with errors is cut into pieces (`layout`), which are parsed separately.
 
 use std::collections::BTreeSet;
 
@@ -26,8 +26,8 @@ use crate::text::source::{FileId, Sources, Span, Spanned};
 #[grammar = "../grammar/psd.pest"]
 pub struct Grammar;
 
-/// Reads one file. Never panics; what could be read of a faulty file is in the tree, with
-/// [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) where a value could not.
+/// Parses one file. Never panics; the valid parts of a file with errors are in the tree, with
+/// [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) in place of an invalid value.
 #[must_use]
 pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let text = sources.file(file).text.as_str();
@@ -85,7 +85,7 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     faults.extend(mended.faults);
     ast.misspelt = mended.places;
     if faults.is_empty() {
-        // The grammar refused what its pieces allow: say where it stopped.
+        // The grammar rejected the whole but accepts the pieces: report where it stopped.
         faults.extend(
             Grammar::parse(Rule::file, text)
                 .err()
@@ -96,7 +96,7 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     (ast, faults)
 }
 
-/// Whether a fault says no more than that a line cannot be read, which a slip on the same line may be the reason of.
+/// Whether an error says only that a line cannot be parsed, which may follow from a confusable on the same line.
 fn follows(fault: &Diagnostic) -> bool {
     matches!(
         fault.code,
@@ -104,7 +104,7 @@ fn follows(fault: &Diagnostic) -> bool {
     )
 }
 
-/// A sound file; `None` where there is any fault.
+/// A valid file; `None` where there is any error.
 fn whole(text: &str, file: FileId) -> Option<Vec<Item>> {
     let lowering = Lowering::new(file, 0);
     let pairs = Grammar::parse(Rule::file, text).ok()?.next()?.into_inner();
@@ -113,7 +113,7 @@ fn whole(text: &str, file: FileId) -> Option<Vec<Item>> {
     lowering.faults.into_inner().is_empty().then_some(items)?
 }
 
-/// Every piece of a file read alone. A sound file gives the same items as [`whole`].
+/// Every piece of a file, parsed separately. A valid file has the same items as from [`whole`].
 fn piecewise(tokens: &mut Tokens) -> (Vec<Item>, Vec<Diagnostic>) {
     let found = std::mem::take(&mut tokens.faults);
     let mut reader = Pieces {
@@ -126,7 +126,7 @@ fn piecewise(tokens: &mut Tokens) -> (Vec<Item>, Vec<Diagnostic>) {
     (items, reader.faults)
 }
 
-/// Why the grammar's `rule` refuses `text`, which starts at byte `base`.
+/// The error of `text`, which starts at byte `base` and does not match `rule`.
 fn refused(
     tokens: &Tokens,
     text: &str,
@@ -173,10 +173,10 @@ fn refused(
     faults::unexpected(tokens.span(end, end), place, &expected)
 }
 
-/// Reads the pieces of a faulty file.
+/// Parses the pieces of a file with errors.
 struct Pieces<'a> {
     tokens: &'a Tokens<'a>,
-    /// How many of `faults` were found by `tokens`.
+    /// How many of the errors were found by `tokens`.
     lexical: usize,
     faults: Vec<Diagnostic>,
 }
@@ -212,7 +212,7 @@ impl Pieces<'_> {
         )
     }
 
-    /// Reads one statement by `rule`. `None`: it is at fault, and that has been said.
+    /// Parses one statement by `rule`. `None`: it has an error, which has been reported.
     fn alone<T>(
         &mut self,
         statement: Statement,
@@ -258,7 +258,7 @@ impl Pieces<'_> {
         ))
     }
 
-    /// An item that is no block; of a faulty one, its name with a faulty value.
+    /// An item other than a block; with an error, its name and a faulty value.
     fn item(&mut self, statement: Statement) -> Option<Item> {
         if !layout::ITEM_WORDS
             .iter()
@@ -317,7 +317,7 @@ impl Pieces<'_> {
         Some(Item { span, kind })
     }
 
-    /// What stands among the items and is none: a field, or a block without its `{`.
+    /// A statement among the items that is not an item: a field, or a block without its `{`.
     fn no_item(&mut self, statement: Statement) {
         let key = self
             .word(statement.start)
@@ -340,7 +340,7 @@ impl Pieces<'_> {
         }
     }
 
-    /// A line that begins as it would in another language, and how it is said in this one.
+    /// A line that begins as in another language, and its form in this one.
     fn other_language(&self, statement: Statement) -> Option<(Ident, String)> {
         let word = self.word(statement.start)?;
         let help = match word.node.as_str() {
@@ -395,7 +395,7 @@ impl Pieces<'_> {
         })
     }
 
-    /// The words of a head that could not be read.
+    /// The words of a head that could not be parsed.
     fn faulty_head(&self, head: Statement) -> Option<Block> {
         let words: Vec<Ident> = (head.start..head.end)
             .map_while(|index| self.word(index))
@@ -409,12 +409,12 @@ impl Pieces<'_> {
         })
     }
 
-    /// A field; of a faulty one, its key with a faulty value, so that it is not missed as well.
+    /// A field; with an error, its key and a faulty value, so that it does not count as missing.
     fn entry(&mut self, statement: Statement) -> Option<Entry> {
         if let Some(entry) = self.alone(statement, Rule::entry_alone, Lowering::entry) {
             return Some(entry);
         }
-        // A word alone is no field.
+        // A single word is not a field.
         let key = self
             .word(statement.start)
             .filter(|_| statement.end > statement.start + 1)?;

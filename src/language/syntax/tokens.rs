@@ -1,6 +1,6 @@
-//! The first look at a file: its words, numbers, texts, signs and line ends, and every fault that can be seen without
-//! grammar (bad characters, bad numbers, units glued to expressions, all size limits). In: text. Out: [`Tokens`].
-//! The grammar reads the text itself; tokens serve recovery (`layout`), messages and the formatter.
+//! Lexical analysis: words, numbers, strings, signs and line ends of a file, and every error that needs no
+//! grammar (invalid characters, invalid numbers, units attached to expressions, all size limits). In: text. Out: [`Tokens`].
+//! The grammar parses the text itself; tokens serve recovery (`layout`), messages and the formatter.
 
 use super::{characters, faults, layout::ITEM_WORDS, limits, numbers};
 use crate::text::diagnostic::Diagnostic;
@@ -27,7 +27,7 @@ pub struct Token {
     pub end: usize,
 }
 
-/// What a file is made of. Comments are in `list` too, so that the formatter finds them where they stand.
+/// The tokens of a file. Comments are in `list` too, so that the formatter finds their positions.
 #[derive(Debug)]
 pub struct Tokens<'a> {
     pub text: &'a str,
@@ -93,12 +93,12 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// Signs of two characters; they win over those of one.
+/// Signs of two characters; they have priority over those of one.
 const LONG_SIGNS: [&str; 5] = ["..", "<=", ">=", "==", "!="];
 /// Words that join two values or follow a value, so that none of them is a unit.
 pub const JOINING_WORDS: [&str; 5] = ["and", "within", "of", "step", "between"];
 
-/// Lines over which a text may have been written.
+/// Most lines of a string that is not closed on its first line.
 const LINES_OF_A_TEXT: usize = 20;
 
 struct Reader<'a> {
@@ -169,7 +169,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A line end. No bracket reaches past a line that starts a field or an item, so an open one is forgotten there.
+    /// A line end. No bracket extends beyond a line that starts a field or an item, so an open one is dropped there.
     fn newline(&mut self, length: usize) {
         self.push(Kind::Newline, length);
         let line = self.rest().trim_start_matches([' ', '\t']);
@@ -243,7 +243,7 @@ impl<'a> Reader<'a> {
         }
         if end.is_none() {
             self.fault(faults::unclosed_text(self.span(1)));
-            // What was meant as one text is one, so that its other lines are not read as fields.
+            // A string over several lines is one token, so that its other lines are not read as fields.
             return self.push(Kind::Text, closed_below(self.rest()).unwrap_or(length));
         } else if length - 2 > limits::TEXT_BYTES {
             self.fault(faults::too_large(
@@ -270,7 +270,7 @@ impl<'a> Reader<'a> {
         self.unit();
     }
 
-    /// The unit that may follow a number or a `]`, after blanks.
+    /// The unit that may follow a number or a `]`, after spaces.
     fn unit(&mut self) {
         let blanks = self.rest().len() - self.rest().trim_start_matches([' ', '\t']).len();
         let length = unit_extent(&self.rest()[blanks..]);
@@ -303,7 +303,7 @@ impl<'a> Reader<'a> {
         if after.starts_with(['*', '/', '^'])
             || (unit.contains(['*', '/']) && (member || after.starts_with('(')))
         {
-            // The operator in question is the one after the unit, else the last one in it.
+            // The operator that separates is the one after the unit, else the last one in it.
             let operator = if member || after.starts_with('(') {
                 unit.rfind(['*', '/']).unwrap_or(length)
             } else {
@@ -312,7 +312,7 @@ impl<'a> Reader<'a> {
             let glued = after
                 .find([' ', '\t', '\n', '\r', ',', ')', ']', '#'])
                 .unwrap_or(after.len());
-            // A parenthesis that opens there is closed there.
+            // A parenthesis that opens in it is closed in it.
             let closes = after[..glued].contains('(') && after[glued..].starts_with(')');
             let glued = glued + usize::from(closes);
             let span = self.span(length + glued);
@@ -402,7 +402,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Bytes of a text that is closed some lines below the one on which it opens; None where something else begins before that.
+/// Length in bytes of a string that is closed some lines below the one on which it opens; None where another statement begins before that.
 fn closed_below(text: &str) -> Option<usize> {
     let mut end = 0;
     for (index, line) in text.split_inclusive('\n').take(LINES_OF_A_TEXT).enumerate() {
@@ -423,8 +423,8 @@ fn closed_below(text: &str) -> Option<usize> {
     None
 }
 
-/// A unit in parentheses at the start of `text`, behind `*` or `/` unless it is `alone`: its bytes, the sign included, and
-/// the same without parentheses. What is no unit is an expression.
+/// A unit in parentheses at the start of `text`, after `*` or `/` unless it is `alone`: its length in bytes, the operator included, and
+/// the same without parentheses. Anything that is not a unit is an expression.
 fn unit_in_parentheses(text: &str, alone: bool) -> Option<(usize, String)> {
     let sign = if alone {
         ""
@@ -449,7 +449,7 @@ fn unit_in_parentheses(text: &str, alone: bool) -> Option<(usize, String)> {
     Some((sign.len() + 1 + unit.len() + 1, flat))
 }
 
-/// Bytes of the unit token at the start of `text`: `name[^power]` joined by `*` or `/`. 0 where there is none.
+/// Length in bytes of the unit token at the start of `text`: `name[^power]` joined by `*` or `/`; 0 where there is none.
 fn unit_extent(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = if bytes.starts_with(b"1/") {

@@ -1,7 +1,7 @@
 //! Data files that a plan names: `record = "ground/quake.csv"`. In: the text in quotes and where it stands. Out: the file's
 //! text, which from then on belongs to the plan as a used file does. What the text means is for the block that asked.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::language::check::checker::Checker;
 use crate::language::check::imports::{MOST_FILES, refused, resolved};
@@ -15,7 +15,7 @@ use crate::text::source::Span;
 pub struct DataFile {
     /// Relative to the plan's folder, with `/`.
     pub name: String,
-    pub text: Rc<str>,
+    pub text: Arc<str>,
 }
 
 impl Checker<'_> {

@@ -5,8 +5,8 @@ use crate::language::check::checker::Typed;
 use crate::schema::{BlockKind, Field, Kind, Variant};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
-use crate::units::Dimension;
 use crate::units::unit::{PREFIXES, UNITS};
+use crate::units::{Dimension, Quantity};
 
 /// "a length", "an energy", "a value in kg/m"
 fn article(dimension: Dimension) -> String {
@@ -166,6 +166,29 @@ pub fn wrong_dimension(
     )
     .at(span, format!("this is {}", article(found)))
     .help(help)
+}
+
+/// A parameter is bound to a number of another dimension.
+pub fn wrong_dimension_of_quantity(
+    bound: Quantity,
+    wanted: Dimension,
+    parameter: &str,
+    declared_at: Span,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::WrongDimension,
+        format!(
+            "`{parameter}` wants {}, found {}",
+            article(wanted),
+            article(bound.dimension)
+        ),
+    )
+    .at(declared_at, format!("this is {}", article(wanted)))
+    .help(format!(
+        "bind `{parameter}` to {}, not to {}",
+        article(wanted),
+        bound.in_plan_syntax()
+    ))
 }
 
 pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {

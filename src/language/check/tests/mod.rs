@@ -1,6 +1,7 @@
 //! Tests of the check on whole plans: the plan that results, and the diagnostics with their
 //! positions.
 
+mod binding;
 mod bounds;
 mod faults;
 mod plan;

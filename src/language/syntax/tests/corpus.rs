@@ -1,4 +1,4 @@
-//! Hostile and odd files: refused with the right code or accepted, always quickly.
+//! Hostile and odd files: rejected with the right code or accepted, always quickly.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use super::{faults, outline, read, sound};
 use crate::text::diagnostic::Code;
 use crate::text::diagnostic::Code::*;
 
-/// Time of the processor that this thread has had, s: what else the machine does is not in it.
+/// Processor time of this thread \[s\], independent of the load of the machine.
 fn processor_time() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     Duration::new(
@@ -22,7 +22,7 @@ fn processor_time() -> f64 {
 fn refused(text: &str, code: Code) {
     let start = processor_time();
     let (_, found, _) = read(text);
-    // No measurement: these take well under a second, and for ever where reading is not linear.
+    // Not a measurement: these take well under a second, and would not end if parsing were not linear.
     let taken = processor_time() - start;
     assert!(taken < 60.0, "{taken} s for {} bytes", text.len());
     let codes: Vec<Code> = found.iter().map(|fault| fault.code).collect();
@@ -173,7 +173,7 @@ pub fn soup() -> impl Strategy<Value = String> {
     prop::collection::vec(pieces, 0..60).prop_map(|pieces| pieces.concat())
 }
 
-/// Each is read as a sign of one byte, with blanks behind it: what stands after the sign begins in the middle of the letter.
+/// Each is read as a sign of one byte, with spaces after it: the next token begins in the middle of the letter.
 #[test]
 fn a_letter_of_several_bytes_that_is_read_as_a_sign_ends_no_text_within_itself() {
     for letter in [

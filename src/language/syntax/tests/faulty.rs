@@ -1,4 +1,4 @@
-//! Faulty text: each fault with its code and place, the sound rest in the tree.
+//! Text with errors: each error with its code and span, the valid rest in the tree.
 
 use super::{faults, outline, read};
 use crate::text::diagnostic::Code;
@@ -121,7 +121,7 @@ fn numbers_are_decimal_with_digits_on_both_sides() {
             "{written}"
         );
     }
-    // In a list it is a comma that is missing.
+    // In a list a comma is missing.
     field("[100 200]", Syntax, "200");
     let long = "1".repeat(41);
     field(&long, BadNumber, &long);
@@ -170,7 +170,7 @@ fn characters_that_hide_are_refused_and_shown() {
     assert!(found[0].message.contains("\\u{202e}"));
 }
 
-/// Offsets stay those of the text as it is written, and what is read is what was meant.
+/// Offsets stay those of the written text, and the text that is read is the one that was meant.
 #[test]
 fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
     for (written, meant, place) in [
