@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use psd::language::check::{LoadFault, Loader, Options, ParsedPlan, check};
+use psd::language::check::{LoadError, Loader, Options, ParsedPlan, check};
 use psd::units::{Dimension, Quantity};
 
 fn main() {
@@ -13,8 +13,8 @@ fn main() {
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::NotFound)
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::NotFound)
     }
 }
 

@@ -43,7 +43,7 @@ impl Span {
 }
 
 /// A value and the span at which it was written.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spanned<T> {
     pub node: T,
     pub span: Span,

@@ -56,7 +56,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
     ("evidence/keys.rs", "cli"),
     ("evidence/rebuilt.rs", "cli"),
     ("evidence/standing.rs", "cli"),
-    ("language/check/declarations/specimen.rs", "uncertainty"),
+    ("language/check/declarations/specimen/mod.rs", "uncertainty"),
     ("language/check/declarations/striker.rs", "uncertainty"),
     ("language/check/expressions/names.rs", "procedures"),
     ("language/check/messages/values.rs", "uncertainty"),

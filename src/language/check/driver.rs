@@ -103,7 +103,7 @@ pub fn plan(
     let (title, particulars) =
         declarations::plan_block::plan_block(checker, options.date.as_deref());
     if options.unattended {
-        rig::real::attended(checker, &particulars);
+        rig::real::check_operator(checker, &particulars);
     }
     let parameters = checker.parameters();
     let of_kind = |checker: &Checker, kind| {
@@ -129,15 +129,15 @@ pub fn plan(
     let limits = checker.limits(rig.as_ref().and_then(|rig| rig.limits));
     rig::real::complete(checker, rig.as_mut(), limits.as_ref());
     let procedures = procedures::procedures(checker);
-    procedures::hold_specimen(checker, &procedures);
-    procedures::hold_axes(checker, &procedures, &specimens, rig.as_ref());
+    procedures::check_specimen(checker, &procedures);
+    procedures::check_axes(checker, &procedures, &specimens, rig.as_ref());
     // With two `limits` blocks, neither is known to apply.
     if let Some(limits) = limits
         .as_ref()
         .filter(|_| !checker.scope.twice.contains(&Kind::Limits))
     {
-        declarations::limits::hold_start(checker, limits);
-        declarations::limits::hold_targets(checker, limits);
+        declarations::limits::check_start(checker, limits);
+        declarations::limits::check_targets(checker, limits);
         slices::hold_limits(checker, &procedures, limits);
     }
     let declared = Declared {
@@ -161,7 +161,7 @@ pub fn plan(
         let warns = findings == Findings::WarningsToo;
         if warns {
             if let Some(rig) = &rig {
-                rig::real::warn(checker, rig);
+                rig::real_warnings::warn(checker, rig);
                 rig::drift::warn(checker, rig);
             }
             if let Some(limits) = &limits {
@@ -217,7 +217,7 @@ pub fn plan(
 }
 
 fn has_error(checker: &Checker) -> bool {
-    checker.faults.iter().any(Diagnostic::is_error)
+    checker.diagnostics.iter().any(Diagnostic::is_error)
 }
 
 /// The title of a plan without one: `beam` for `plans/beam.psd`.

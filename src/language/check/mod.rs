@@ -18,7 +18,7 @@ mod tests;
 pub(crate) mod warnings;
 
 pub use checker::{DEEPEST_VALUES, MOST_TERMS};
-pub use declarations::ground_record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
+pub use declarations::ground::record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
 pub use driver::check;
 pub use expressions::literal::MOST_ENTRIES;
 pub use imports::{DEEPEST, MOST_FILES};
@@ -32,12 +32,12 @@ use crate::text::source::{Sources, Span};
 pub trait Loader {
     /// # Errors
     /// Why the file cannot be used.
-    fn load(&self, path: &str) -> Result<String, LoadFault>;
+    fn load(&self, path: &str) -> Result<String, LoadError>;
 }
 
 /// Why a used file cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LoadFault {
+pub enum LoadError {
     NotFound,
     /// A folder, a device, a link out of the folder, a file that is too large or not UTF-8: the reason, for the reader.
     Refused(String),

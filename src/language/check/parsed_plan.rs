@@ -9,7 +9,7 @@ use super::expressions::data::DataFile;
 use super::expressions::parameters::{names_of_parameters, read_settings};
 use super::messages::{self, names};
 use super::scope::{Scope, Setting};
-use super::{Checked, LoadFault, Loader, Options, imports, rig};
+use super::{Checked, LoadError, Loader, Options, imports, rig};
 use crate::language::syntax::ast::Ast;
 use crate::plan::{Plan, PlanFile};
 use crate::text::diagnostic::Diagnostic;
@@ -47,8 +47,8 @@ struct Outcome {
 struct NoLoader;
 
 impl Loader for NoLoader {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::Refused(
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::Refused(
             "no file is read while parameters are bound".to_owned(),
         ))
     }
@@ -165,7 +165,7 @@ impl ParsedPlan {
         let rig_links = rig::links_of_run(&checker, self.options.rig.as_deref());
         let misspelt = self.trees.iter().flat_map(|tree| tree.misspelt.iter());
         let misspelt: Vec<Span> = misspelt.copied().collect();
-        let diagnostics = driver::reportable(checker.faults, &misspelt, checker.explained);
+        let diagnostics = driver::reportable(checker.diagnostics, &misspelt, checker.explained);
         Outcome {
             plan: plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)),
             diagnostics,

@@ -10,8 +10,9 @@ use pest::{
 
 use super::{
     ast::{Argument, BinaryOperator, Expr, ExprKind, UnitToken},
-    faults, limits,
+    limits,
     lower::{Lowering, unescape},
+    messages,
     parse::Rule,
 };
 use crate::text::source::{Span, Spanned};
@@ -79,7 +80,7 @@ impl Lowering {
     }
 
     fn too_many(&self, span: Span) -> Expr {
-        self.fault(faults::too_many_operators(span, limits::OPERATORS));
+        self.error(messages::too_many_operators(span, limits::OPERATORS));
         Self::faulty(span)
     }
 
@@ -288,7 +289,7 @@ impl Lowering {
             }
             let value = value.unwrap_or_else(|| Self::faulty(span));
             if argument_name.is_none() && arguments.iter().any(|before| before.name.is_some()) {
-                self.fault(faults::positional_after_named(value.span));
+                self.error(messages::positional_after_named(value.span));
                 continue;
             }
             arguments.push(Argument {

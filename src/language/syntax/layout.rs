@@ -2,8 +2,9 @@
 //! none includes the next. In: tokens. Out: [`Piece`]s and the errors of brackets. Knows lines, not grammar.
 
 use super::{
-    control, faults,
-    tokens::{JOINING_WORDS, Kind, Tokens},
+    control,
+    lexical::tokens::{JOINING_WORDS, Kind, Tokens},
+    messages,
 };
 use crate::text::diagnostic::Diagnostic;
 
@@ -34,7 +35,7 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
     let mut cutter = Cutter {
         tokens,
         at: 0,
-        faults: Vec::new(),
+        errors: Vec::new(),
     };
     let mut pieces = Vec::new();
     while cutter.skip_lines() {
@@ -59,7 +60,7 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
             pieces.push(Piece::Item(statement));
         }
     }
-    (pieces, cutter.faults)
+    (pieces, cutter.errors)
 }
 
 /// Words a top-level item starts with, other than a block.
@@ -76,7 +77,7 @@ const OPERATORS: [&str; 12] = [
 struct Cutter<'a> {
     tokens: &'a Tokens<'a>,
     at: usize,
-    faults: Vec<Diagnostic>,
+    errors: Vec<Diagnostic>,
 }
 
 impl Cutter<'_> {
@@ -105,7 +106,7 @@ impl Cutter<'_> {
     fn unexpected(&mut self, expected: &str) {
         let token = self.tokens.list[self.at];
         let found = format!("`{}`", self.tokens.text_of(token));
-        self.faults.push(faults::unexpected(
+        self.errors.push(messages::unexpected(
             self.tokens.span(token.start, token.end),
             &found,
             expected,
@@ -116,7 +117,7 @@ impl Cutter<'_> {
         let token = self.tokens.list[open];
         let text = self.tokens.text_of(token);
         let close = closing(text);
-        self.faults.push(faults::unclosed(
+        self.errors.push(messages::unclosed(
             self.tokens.span(token.start, token.end),
             text,
             close,
@@ -177,7 +178,7 @@ impl Cutter<'_> {
         }
         let token = self.tokens.list[next];
         let operator = self.tokens.text_of(token);
-        self.faults.push(faults::operator_begins_line(
+        self.errors.push(messages::operator_begins_line(
             self.tokens.span(token.start, token.end),
             operator,
         ));
@@ -197,7 +198,7 @@ impl Cutter<'_> {
             .any(|word| self.tokens.is(head.start, word));
         if next > self.at && head.end > head.start && words && !item && self.tokens.is(next, "{") {
             let brace = self.tokens.list[next];
-            self.faults.push(faults::brace_on_next_line(
+            self.errors.push(messages::brace_on_next_line(
                 self.tokens.span(brace.start, brace.end),
             ));
             self.at = next;
@@ -225,7 +226,7 @@ impl Cutter<'_> {
         let lacks = head.end > head.start && words && !item && field && closed();
         if lacks {
             let (first, last) = (self.tokens.list[head.start], self.tokens.list[head.end - 1]);
-            self.faults.push(faults::brace_missing(
+            self.errors.push(messages::brace_missing(
                 self.tokens.span(first.start, last.end),
             ));
         }
@@ -305,8 +306,8 @@ impl Cutter<'_> {
             self.tokens.span(first.start, first.end),
             self.tokens.span(first.start, last.end),
         );
-        self.faults
-            .push(faults::no_control(message, help, begins, whole));
+        self.errors
+            .push(messages::no_control(message, help, begins, whole));
         true
     }
 
@@ -396,7 +397,7 @@ impl Cutter<'_> {
         );
         let inside = self.tokens.text[open.end..last.start].trim();
         let call = format!("{}({inside})", self.tokens.text_of(name));
-        self.faults.push(faults::arguments_in_braces(
+        self.errors.push(messages::arguments_in_braces(
             self.tokens.span(open.start, last.end),
             &call,
         ));
@@ -406,7 +407,7 @@ impl Cutter<'_> {
 
     fn skip_misplaced(&mut self) {
         let token = self.tokens.list[self.at];
-        self.faults.push(faults::misplaced_block(
+        self.errors.push(messages::misplaced_block(
             self.tokens.span(token.start, token.end),
         ));
         self.statement();

@@ -18,4 +18,4 @@ pub const TOKENS: usize = 200_000;
 /// from memory included, so this limit keeps the stack small.
 pub const OPERATORS: usize = 1_000;
 /// Errors reported for one file; more would not help.
-pub const FAULTS: usize = 1_000;
+pub const ERRORS: usize = 1_000;

@@ -15,7 +15,7 @@ use crate::text::source::{FileId, Span, Spanned};
 pub struct Lowering {
     pub file: FileId,
     pub base: usize,
-    pub faults: RefCell<Vec<Diagnostic>>,
+    pub errors: RefCell<Vec<Diagnostic>>,
 }
 
 impl Lowering {
@@ -24,7 +24,7 @@ impl Lowering {
         Self {
             file,
             base,
-            faults: RefCell::new(Vec::new()),
+            errors: RefCell::new(Vec::new()),
         }
     }
 
@@ -152,8 +152,8 @@ impl Lowering {
         })
     }
 
-    pub fn fault(&self, fault: Diagnostic) {
-        self.faults.borrow_mut().push(fault);
+    pub fn error(&self, error: Diagnostic) {
+        self.errors.borrow_mut().push(error);
     }
 
     #[must_use]

@@ -8,16 +8,12 @@ pub mod format;
 pub mod limits;
 pub mod parse;
 
-mod characters;
 mod expr;
-mod faults;
 mod layout;
-mod letters;
+mod lexical;
 mod lower;
-mod misspelt;
-mod numbers;
+mod messages;
 mod rule_names;
-mod tokens;
 
 #[cfg(test)]
 mod tests;

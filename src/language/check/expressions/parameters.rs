@@ -1,8 +1,8 @@
-//! `let` and `param`: their values. A value given from outside the plan, by `--set` or by binding, takes the place of a parameter's own.
+//! `let` and `param`: their values. A value given from outside the plan, by `--set` or by binding, takes the context of a parameter's own.
 
 use std::collections::BTreeMap;
 
-use crate::language::check::checker::{Checker, Place, Reads, Shape, Typed};
+use crate::language::check::checker::{Checker, Context, Reads, Shape, Typed};
 use crate::language::check::messages::{names, types, values};
 use crate::language::check::scope::{DeclaredValue, Setting};
 use crate::language::syntax;
@@ -64,32 +64,32 @@ pub fn names_of_parameters(trees: &[Ast]) -> Vec<&str> {
         .collect()
 }
 
-/// A value is one line.
+/// A value must be on one line.
 fn is_one_line(text: &str) -> bool {
     !text.contains(['\n', '\r'])
 }
 
 impl<'a> Checker<'a> {
-    /// The value of a declaration; of a parameter, the one that was set.
+    /// The value of a declaration; for a parameter that is set, the value given.
     pub fn value_of_declaration(&mut self, index: usize) -> Option<Typed> {
         let declared = &self.scope.values[index];
         if declared.keyword == "let" {
-            let place = Place {
+            let context = Context {
                 entry: None,
                 reads: Reads::All,
                 critical: false,
             };
-            return self.value(declared.value, place);
+            return self.value(declared.value, context);
         }
-        let place = Place {
+        let context = Context {
             entry: None,
             reads: Reads::Nothing("a parameter"),
             critical: false,
         };
-        let own = self.single(declared.value, place);
+        let own = self.single(declared.value, context);
         let bounds = declared
             .bounds
-            .map(|bounds| self.bounds_of_parameter(bounds, place, own.as_ref()));
+            .map(|bounds| self.bounds_of_parameter(bounds, context, own.as_ref()));
         let own = own?;
         let bounds = match bounds {
             Some(bounds) => bounds?,
@@ -108,7 +108,7 @@ impl<'a> Checker<'a> {
         }
         match declared.setting {
             None => Some(own),
-            Some(setting) => self.value_of_setting(declared, setting, place, &own, bounds),
+            Some(setting) => self.value_of_setting(declared, setting, context, &own, bounds),
         }
     }
 
@@ -117,14 +117,14 @@ impl<'a> Checker<'a> {
         &mut self,
         declared: &'a DeclaredValue<'a>,
         setting: &'a Setting,
-        place: Place,
+        context: Context,
         own: &Typed,
         bounds: Interval,
     ) -> Option<Typed> {
         let name = &declared.name.node;
         let set = match setting {
             Setting::Written(written) => {
-                let set = self.single(written, place)?;
+                let set = self.single(written, context)?;
                 self.expect(set, own.dimension, name, written)?
             }
             Setting::Bound(quantity) => {
@@ -168,10 +168,10 @@ impl<'a> Checker<'a> {
     fn bounds_of_parameter(
         &mut self,
         written: &'a Expr,
-        place: Place,
+        context: Context,
         own: Option<&Typed>,
     ) -> Option<Interval> {
-        let (interval, dimension) = self.interval(written, place)?;
+        let (interval, dimension) = self.interval(written, context)?;
         if let Some(own) = own
             && own.dimension != dimension
         {
@@ -184,7 +184,7 @@ impl<'a> Checker<'a> {
         Some(interval)
     }
 
-    /// The parameters of the run, in the order declared.
+    /// The parameters of the run, in the order of declaration.
     pub fn parameters(&mut self) -> Vec<Parameter> {
         let mut parameters = Vec::new();
         for index in 0..self.scope.values.len() {

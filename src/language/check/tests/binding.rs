@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use super::{Files, checked};
-use crate::language::check::{LoadFault, Loader, Options, ParsedPlan};
+use crate::language::check::{LoadError, Loader, Options, ParsedPlan};
 use crate::plan::Plan;
 use crate::text::diagnostic::Code;
 use crate::units::{Dimension, Quantity};
@@ -124,7 +124,7 @@ fn a_value_that_does_not_fit_is_an_error() {
 struct Counting(Cell<usize>);
 
 impl Loader for Counting {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         self.0.set(self.0.get() + 1);
         FILES.load(path)
     }

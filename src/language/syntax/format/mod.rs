@@ -5,7 +5,7 @@
 mod rows;
 mod value;
 
-use super::{ast::Ast, layout, tokens::Tokens};
+use super::{ast::Ast, layout, lexical::tokens::Tokens};
 use rows::{Kind, Row};
 
 /// Spaces by which the fields of a block are indented.

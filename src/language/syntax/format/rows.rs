@@ -3,7 +3,7 @@
 
 use super::{BLOCK_WIDTH, INDENT, value};
 use crate::language::syntax::layout::{Piece, Statement};
-use crate::language::syntax::tokens::{Kind as TokenKind, Tokens};
+use crate::language::syntax::lexical::tokens::{Kind as TokenKind, Tokens};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -188,7 +188,7 @@ impl Writer<'_> {
         fields: &[Statement],
         close: usize,
     ) -> Option<String> {
-        let loose = |token: &crate::language::syntax::tokens::Token| {
+        let loose = |token: &crate::language::syntax::lexical::tokens::Token| {
             matches!(token.kind, TokenKind::Newline | TokenKind::Comment)
         };
         if self.tokens.list[open..close].iter().any(loose) {

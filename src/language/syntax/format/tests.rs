@@ -9,8 +9,8 @@ use crate::language::syntax::tests::{IMPACT, QUAKE, outline, read, sound};
 fn formatted(text: &str) -> String {
     let (ast, _) = sound(text);
     let once = format(&ast, text);
-    let (again, faults, _) = read(&once);
-    assert!(faults.is_empty(), "{once}\n{faults:#?}");
+    let (again, errors, _) = read(&once);
+    assert!(errors.is_empty(), "{once}\n{errors:#?}");
     assert_eq!(outline(&again), outline(&ast), "meaning\n{text}\n{once}");
     let comments = |ast: &crate::language::syntax::ast::Ast| -> Vec<String> {
         ast.comments

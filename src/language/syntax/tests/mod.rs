@@ -18,23 +18,23 @@ pub const QUAKE: &str = include_str!("../samples/quake.psd");
 pub fn read(text: &str) -> (Ast, Vec<Diagnostic>, Sources) {
     let mut sources = Sources::default();
     let file = sources.add("test.psd", text);
-    let (ast, faults) = parse(&sources, file);
-    (ast, faults, sources)
+    let (ast, errors) = parse(&sources, file);
+    (ast, errors, sources)
 }
 
 /// The tree of a valid text.
 pub fn sound(text: &str) -> (Ast, Sources) {
-    let (ast, faults, sources) = read(text);
-    assert!(faults.is_empty(), "{text}\n{faults:#?}");
+    let (ast, errors, sources) = read(text);
+    assert!(errors.is_empty(), "{text}\n{errors:#?}");
     (ast, sources)
 }
 
 /// Code and text under the first label of each error.
-pub fn faults(text: &str) -> Vec<(Code, String)> {
-    let (_, faults, sources) = read(text);
-    faults
+pub fn errors(text: &str) -> Vec<(Code, String)> {
+    let (_, errors, sources) = read(text);
+    errors
         .iter()
-        .map(|fault| (fault.code, sources.text(fault.span().unwrap()).to_owned()))
+        .map(|error| (error.code, sources.text(error.span().unwrap()).to_owned()))
         .collect()
 }
 

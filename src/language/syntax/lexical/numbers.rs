@@ -1,10 +1,10 @@
 //! Errors of numbers, and their corrections. In: the text of one number, valid or not.
 
-use super::limits;
+use crate::language::syntax::limits;
 
 /// Why a number is invalid, and its corrections.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct NumberError {
     pub why: &'static str,
     /// The corrections, the most probable first.
     pub write: Vec<String>,
@@ -100,7 +100,7 @@ fn grouped(text: &str, blank: bool) -> Option<usize> {
 }
 
 /// The error of a number with commas.
-fn commas(written: &str) -> Fault {
+fn commas(written: &str) -> NumberError {
     let none = written.replace(',', "");
     let point = written.replace('.', "").replace(',', ".");
     let (whole, rest) = written.split_once(',').unwrap_or((written, ""));
@@ -119,45 +119,45 @@ fn commas(written: &str) -> Fault {
         ),
         _ => ("the decimal sign is a point", vec![point]),
     };
-    Fault {
+    NumberError {
         why,
         write: write
             .into_iter()
-            .filter(|text| fault(text).is_none())
+            .filter(|text| error_of(text).is_none())
             .collect(),
     }
 }
 
 /// The error of the number `written`, if any.
 #[must_use]
-pub fn fault(written: &str) -> Option<Fault> {
-    let fault = |why, write: Option<String>| {
-        Some(Fault {
+pub fn error_of(written: &str) -> Option<NumberError> {
+    let error = |why, write: Option<String>| {
+        Some(NumberError {
             why,
             write: write
-                .filter(|text| self::fault(text).is_none())
+                .filter(|text| error_of(text).is_none())
                 .into_iter()
                 .collect(),
         })
     };
     if written.len() > limits::NUMBER_CHARS {
-        return fault("a number has at most 40 characters", None);
+        return error("a number has at most 40 characters", None);
     }
     if let Some(body) = written
         .strip_prefix("0x")
         .or_else(|| written.strip_prefix("0X"))
     {
         let value = u64::from_str_radix(&body.replace('_', ""), 16).ok();
-        return fault("numbers are decimal", value.map(|value| value.to_string()));
+        return error("numbers are decimal", value.map(|value| value.to_string()));
     }
     if let Some((mantissa, power)) = written.split_once(TIMES_TEN) {
-        return fault(
+        return error(
             "a power of ten is written with `e`",
             Some(format!("{mantissa}e{power}")),
         );
     }
     if written.contains(['_', ' ', '\'', '’']) {
-        return fault(
+        return error(
             "digits are not grouped",
             Some(written.replace(['_', ' ', '\'', '’'], "")),
         );
@@ -176,34 +176,34 @@ pub fn fault(written: &str) -> Option<Fault> {
         )
     };
     if mantissa.starts_with('.') {
-        return fault(
+        return error(
             "a digit stands before the point",
             Some(scaled(&format!("0{mantissa}"))),
         );
     }
     if mantissa.ends_with('.') {
-        return fault(
+        return error(
             "a digit stands after the point",
             Some(scaled(mantissa.trim_end_matches('.'))),
         );
     }
     if mantissa.matches('.').count() > 1 {
-        return fault("a number has one point", None);
+        return error("a number has one point", None);
     }
     if power.is_some_and(|power| digits(power.trim_start_matches(['+', '-'])) == 0) {
-        return fault("the exponent has no digits", Some(mantissa.to_owned()));
+        return error("the exponent has no digits", Some(mantissa.to_owned()));
     }
     match written.parse::<f64>() {
         Ok(value) if !value.is_finite() => {
-            fault("this is beyond the largest number, 1.8e308", None)
+            error("this is beyond the largest number, 1.8e308", None)
         }
         Ok(value) if value == 0.0 && mantissa.contains(|digit| matches!(digit, '1'..='9')) => {
-            fault(
+            error(
                 "this is too small to be told from zero",
                 Some("0".to_owned()),
             )
         }
         Ok(_) => None,
-        Err(_) => fault("this is not a number", None),
+        Err(_) => error("this is not a number", None),
     }
 }

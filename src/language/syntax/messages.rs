@@ -1,7 +1,10 @@
 //! Every syntax error as a diagnostic: the code, the message, the span and the suggestion. Other files find the errors, this one words
 //! them.
 
-use super::{letters, limits, misspelt::Slip, numbers};
+use super::{
+    lexical::{confusables::Confusable, letters, numbers},
+    limits,
+};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 
@@ -160,13 +163,13 @@ pub fn unclosed(span: Span, open: &str, close: &str) -> Diagnostic {
     .help(format!("write the `{close}` that belongs to it"))
 }
 
-pub fn bad_number(span: Span, written: &str, fault: &numbers::Fault) -> Diagnostic {
+pub fn bad_number(span: Span, written: &str, error: &numbers::NumberError) -> Diagnostic {
     let written = written.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut short: String = written.chars().take(20).collect();
     if short.len() < written.len() {
         short.push('…');
     }
-    let help = match fault.write.as_slice() {
+    let help = match error.write.as_slice() {
         [] => "write a number such as `0.5` or `1.5e6`".to_owned(),
         [one] => format!("write `{one}`"),
         [one, others @ ..] => format!("write `{one}` or `{}`", others.join("` or `")),
@@ -175,23 +178,23 @@ pub fn bad_number(span: Span, written: &str, fault: &numbers::Fault) -> Diagnost
         Code::BadNumber,
         format!("`{short}` is not a number psd reads"),
     )
-    .at(span, fault.why)
+    .at(span, error.why)
     .help(help)
 }
 
 /// `corrected`: number and unit without the parentheses.
-pub fn unit_in_parentheses(span: Span, mended: &str) -> Diagnostic {
+pub fn unit_in_parentheses(span: Span, corrected: &str) -> Diagnostic {
     Diagnostic::new(Code::UnitWithoutBlank, "a unit has no parentheses")
         .at(span, "read as one unit")
         .help(format!(
-            "write `{mended}`: a unit is read from left to right, so that `N/m*s` is (N/m)·s"
+            "write `{corrected}`: a unit is read from left to right, so that `N/m*s` is (N/m)·s"
         ))
 }
 
-pub fn unit_without_blank(span: Span, mended: &str) -> Diagnostic {
+pub fn unit_without_blank(span: Span, corrected: &str) -> Diagnostic {
     Diagnostic::new(Code::UnitWithoutBlank, "an operator is glued to a unit")
         .at(span, "read as part of the unit")
-        .help(format!("put blanks around the operator: `{mended}`"))
+        .help(format!("put blanks around the operator: `{corrected}`"))
 }
 
 pub fn nested_too_deep(span: Span) -> Diagnostic {
@@ -292,33 +295,33 @@ pub fn carriage_returns(span: Span) -> Diagnostic {
 }
 
 /// A confusable character or word, at the first of `count` positions.
-pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic {
-    let often = match places {
+pub fn confusable(found: Confusable, span: Span, count: usize, text: &str) -> Diagnostic {
+    let often = match count {
         1 => String::new(),
         2 => ", here and in one more place".to_owned(),
         more => format!(", here and in {} more places", more - 1),
     };
-    let fault = |code, message: String, label: &str, help: String| {
+    let error = |code, message: String, label: &str, help: String| {
         Diagnostic::new(code, format!("{message}{often}"))
             .at(span, label)
             .help(help)
     };
     let point = |c: char| format!("U+{:04X}", u32::from(c));
-    match slip {
-        Slip::ByteOrderMark => fault(
+    match found {
+        Confusable::ByteOrderMark => error(
             Code::BadText,
             "the file begins with a byte order mark (U+FEFF)".to_owned(),
             "before the first character",
             "save the file as UTF-8 without a byte order mark".to_owned(),
         ),
-        Slip::Blank(blank) => {
+        Confusable::Space(blank) => {
             let name = match blank {
                 '\u{a0}' | '\u{202f}' => "the no-break space ",
                 '\u{2009}' => "the thin space ",
                 '\u{3000}' => "the wide space ",
                 _ => "",
             };
-            fault(
+            error(
                 Code::BadText,
                 format!(
                     "a blank is {name}{}, not the space of the keyboard",
@@ -331,27 +334,27 @@ pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic
                 ),
             )
         }
-        Slip::Sign(written, meant) => {
+        Confusable::Sign(written, meant) => {
             let code = written.chars().next().filter(|first| !first.is_ascii());
             let which = code.map_or_else(String::new, |first| format!(" ({})", point(first)));
-            fault(
+            error(
                 Code::Syntax,
                 format!("`{written}`{which} is no sign of the language"),
                 "this sign",
                 format!("write `{meant}`"),
             )
         }
-        Slip::Superscript(written) => {
+        Confusable::Superscript(written) => {
             let meant = "as in `mm^2` or `1/s`";
             let written: String = written.chars().take(12).collect();
-            fault(
+            error(
                 Code::Syntax,
                 format!("`{written}` is no exponent of the language"),
                 "a raised digit",
                 format!("write the power with `^`, {meant}"),
             )
         }
-        Slip::Quotes(open) => {
+        Confusable::Quotes(open) => {
             let inside = |c: char| {
                 c == open
                     || matches!(
@@ -365,26 +368,26 @@ pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic
             } else {
                 format!("`{open}` ({})", point(open))
             };
-            fault(
+            error(
                 Code::Syntax,
                 format!("{which} is no quote of the language"),
                 "meant as a text",
                 format!("write \"{written}\" with the straight quote U+0022"),
             )
         }
-        Slip::Comment(opens) => fault(
+        Confusable::Comment(opens) => error(
             Code::Syntax,
             format!("`{opens}` begins no comment"),
             "meant as a comment",
             "a comment begins with `#` and ends with its line".to_owned(),
         ),
-        Slip::Semicolon => fault(
+        Confusable::Semicolon => error(
             Code::Syntax,
             "found `;`, which has no meaning in a plan".to_owned(),
             "no meaning here",
             "a field ends with its line: take the `;` away".to_owned(),
         ),
-        Slip::Word(word) => foreign_word(word, span, &often),
+        Confusable::Word(word) => foreign_word(word, span, &often),
     }
 }
 
