@@ -1,10 +1,10 @@
-//! The build's own name: a digest of everything the program is made from and what it was made with, so that a record can
-//! say which program wrote it, and a run is not gone on with by another. In: sources, grammar, manifests, the compiler. Out:
-//! `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, neither of which knows a place on this machine or a day. Anybody can do it again
-//! with the two lines of `docs/record.md`.
+//! The identifier of the build: a digest of all sources of the program and of the tools that built it. With it a log
+//! identifies the program that wrote it, and no other program resumes its run. In: sources, grammar, manifests, the compiler. Out:
+//! `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, which depend on neither a path of this machine nor a date. The two lines of
+//! `docs/record.md` reproduce it.
 //!
-//! Files that the program is made without do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and what is in a folder `tests`,
-//! `testing`, `examples` or `benches`. Who changes a test waits for the tests only.
+//! Files that are not part of the program do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and those in a folder `tests`,
+//! `testing`, `examples` or `benches`. After a change of a test only the tests are built.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -22,10 +22,10 @@ fn main() {
     files.extend(["Cargo.toml", "Cargo.lock", "build.rs"].map(str::to_owned));
     files.sort();
     let mut listed = String::new();
-    // A new source is named in one that is here: by files, not by folders, a test's file changes nothing.
+    // Cargo watches files, not folders, so that a changed test file triggers nothing. A new source is named in a watched file.
     for name in files {
         println!("cargo::rerun-if-changed={name}");
-        // A package may come without its lock file.
+        // A published package may have no lock file.
         let Ok(bytes) = fs::read(root.join(&name)) else {
             continue;
         };
@@ -44,7 +44,7 @@ fn sha256(bytes: &[u8]) -> String {
         })
 }
 
-/// What the machine code depends on beside the sources: target, profile, compiler.
+/// The other inputs of the machine code: target, profile, compiler.
 fn toolchain() -> String {
     println!("cargo::rerun-if-env-changed=RUSTC");
     let told = |name| env::var(name).unwrap_or_else(|_| "unknown".to_owned());

@@ -1,8 +1,10 @@
 //! Parse and check throughput: a small plan, and one of 2,000 lines.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, ParsedPlan, check};
+use psd::units::{Dimension, Quantity};
 
 fn main() {
     divan::main();
@@ -11,10 +13,13 @@ fn main() {
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::NotFound)
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::NotFound)
     }
 }
+
+/// A plan with parameters.
+const CANTILEVER: &str = include_str!("../plans/02_units_and_parameters.psd");
 
 const SMALL: &str = include_str!("../plans/01_first_blow.psd");
 
@@ -67,4 +72,28 @@ fn format_two_thousand_lines(bencher: divan::Bencher) {
     let file = sources.add("plan.psd", text.clone());
     let (ast, _) = psd::language::syntax::parse(&sources, file);
     bencher.bench(|| psd::language::syntax::format(divan::black_box(&ast), &text));
+}
+
+/// What a study does for each of its runs: other values of the parameters, and no text.
+#[divan::bench]
+fn bind_parameters_of_a_small_plan(bencher: divan::Bencher) {
+    let mut parsed = ParsedPlan::parse("plan.psd", CANTILEVER, &NoFiles, &Options::default());
+    assert!(parsed.check(&NoFiles).plan.is_some());
+    let drop = Quantity::new(0.08, Dimension::LENGTH);
+    let values = BTreeMap::from([("drop".to_owned(), drop)]);
+    bencher.bench(|| parsed.bind(divan::black_box(&values)).is_ok());
+}
+
+/// The same plan from its text, with the value as `--set` gives it.
+#[divan::bench]
+fn check_the_same_plan_from_its_text(bencher: divan::Bencher) {
+    let options = Options {
+        settings: vec![("drop".to_owned(), "80 mm".to_owned())],
+        ..Options::default()
+    };
+    bencher.bench(|| {
+        check("plan.psd", divan::black_box(CANTILEVER), &NoFiles, &options)
+            .plan
+            .is_some()
+    });
 }

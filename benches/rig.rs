@@ -12,7 +12,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::emulator::lines::real_time::Carrier as _;
 use psd::emulator::{Log, PseudoTerminal, Script, Stand, of_plan};
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::plan::{Plan, RealLink};
 use psd::record::journal::{Durability, EntryKind, Journal, Storage};
 use psd::record::{History, Outcome, Record};
@@ -67,7 +67,7 @@ fn main() {
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
+    fn load(&self, _: &str) -> Result<String, LoadError> {
         unreachable!("the plan uses no file")
     }
 }

@@ -279,7 +279,7 @@ mod tests {
     use super::super::InProcess;
     use super::super::firmware::sealed;
     use super::*;
-    use crate::language::check::{LoadFault, Loader, Options, check};
+    use crate::language::check::{LoadError, Loader, Options, check};
     use crate::plan::{
         Calibration, Datum, DeviceLink, Gate, Link, PortPlan, ReadingRules, SafeState,
     };
@@ -307,7 +307,7 @@ move to_half {
     struct NoFiles;
 
     impl Loader for NoFiles {
-        fn load(&self, _: &str) -> Result<String, LoadFault> {
+        fn load(&self, _: &str) -> Result<String, LoadError> {
             unreachable!("the plan uses no file")
         }
     }

@@ -1,5 +1,5 @@
 //! The language: text to syntax tree (`syntax`), syntax tree to checked plan (`check`). Its
-//! vocabulary is in `schema`. It runs nothing.
+//! keywords and fields are in `schema`. It runs nothing.
 
 pub mod check;
 pub mod syntax;

@@ -1,5 +1,5 @@
-//! Checked expressions. Names are resolved, units are gone, dimensions agree; what is left to do at run time is
-//! arithmetic on constants and on the results of procedures that have run. In: a [`Formula`] and [`Results`].
+//! Checked expressions: names are resolved, units converted, dimensions checked. At run time only arithmetic on constants and on the
+//! results of finished procedures is left. In: a [`Formula`] and [`Results`].
 //! Out: an [`Estimate`], the value with its standard uncertainty.
 
 use super::contribution::{Contribution, combined, combined_entries};
@@ -15,7 +15,7 @@ pub enum Formula {
     /// A number that the plan states with its uncertainty.
     Stated(Stated),
     Result(ResultReference),
-    /// Δt of eq. 7 for the impact at hand; stands only in `time_step`.
+    /// Δt of eq. 7 for the current impact; allowed in `time_step` alone.
     CriticalTimeStep,
     List(Vec<Formula>),
     Index(Box<Formula>, usize),
@@ -24,12 +24,12 @@ pub enum Formula {
     Call(Function, Vec<Formula>),
 }
 
-/// A number of the plan, SI, and how well it is known.
+/// A number of the plan in SI units, with its standard uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stated {
     pub source: Source,
     pub value: f64,
-    /// Standard.
+    /// Standard uncertainty.
     pub uncertainty: f64,
 }
 
@@ -68,7 +68,7 @@ pub enum Function {
     Cos,
 }
 
-/// A value and its standard uncertainty (both SI); no uncertainty where nothing measured went in.
+/// A value and its standard uncertainty, both in SI units; no uncertainty where no measured result is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     pub value: f64,
@@ -97,9 +97,9 @@ enum Value {
 }
 
 impl Formula {
-    /// The value, and its standard uncertainty propagated to first order: the root sum of squares of what each source of the
-    /// results it reads does to the value (JCGM 100:2008, 5.1.2 and, of results that share sources, 5.2.2). `critical` is Δtc
-    /// (s), for `time_step` only.
+    /// The value, and its standard uncertainty propagated to first order: the root sum of squares of the effect of each source
+    /// on the value (JCGM 100:2008, 5.1.2; for results that share sources, 5.2.2). `critical` is Δtc
+    /// \[s\], for `time_step` only.
     ///
     /// # Errors
     /// A result that does not exist in this run, or a value that is not finite.
@@ -113,7 +113,7 @@ impl Formula {
         Ok(Estimate { value, uncertainty })
     }
 
-    /// What each source of the results it reads does to the value.
+    /// The effect of each source of the results that it reads on the value.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
@@ -131,7 +131,7 @@ impl Formula {
         }
         let value = self.number(results, critical)?;
         let effect = |source| {
-            // Half the effect of moving the source by ±u: exact for a linear formula.
+            // Half the effect of a perturbation by ±u: exact for a linear formula.
             let up = self.number(
                 &Moved {
                     results,
@@ -149,7 +149,7 @@ impl Formula {
                 critical,
             )?;
             let (above, below) = (up - value, value - down);
-            // Both sides move it the same way: it folds there, as `abs` does about 0, and the halves would cancel.
+            // Both perturbations have an effect of the same sign, as for `abs` about 0, where the halves would cancel.
             let folds = above * below < 0.0;
             Ok(Contribution::new(
                 source,
@@ -163,13 +163,13 @@ impl Formula {
         sources.into_iter().map(effect).collect()
     }
 
-    /// The value where no result is needed: constants folded by `check`.
+    /// The value where no result is needed: constants, folded by `check`.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
         self.number(&NoResults, None).ok()
     }
 
-    /// The result this formula is, if it is nothing but one.
+    /// The result that this formula is, if it is only that.
     #[must_use]
     pub fn as_result(&self) -> Option<ResultReference> {
         if let Self::Result(reference) = self {
@@ -179,7 +179,7 @@ impl Formula {
         }
     }
 
-    /// Adds every result the formula reads, each once.
+    /// Adds every result that the formula reads, each once.
     pub fn collect_references(&self, into: &mut Vec<ResultReference>) {
         match self {
             Self::Constant(_) | Self::Stated(_) | Self::CriticalTimeStep => {}
@@ -201,7 +201,7 @@ impl Formula {
         }
     }
 
-    /// Adds the source of every number that it states with an uncertainty, each once.
+    /// Adds the source of every number that is stated with an uncertainty, each once.
     pub fn collect_stated(&self, into: &mut Vec<Source>) {
         match self {
             Self::Constant(_) | Self::Result(_) | Self::CriticalTimeStep => {}
@@ -231,7 +231,7 @@ impl Formula {
         !stated.is_empty()
     }
 
-    /// Everything in it that is no constant and no list.
+    /// The number of its parts that are neither constants nor lists.
     #[must_use]
     pub fn terms(&self) -> usize {
         match self {
@@ -244,7 +244,7 @@ impl Formula {
         }
     }
 
-    /// Whether `critical` stands in it.
+    /// Whether it contains `critical`.
     #[must_use]
     pub fn reads_critical_time_step(&self) -> bool {
         match self {
@@ -355,7 +355,7 @@ impl Function {
         ("cos", Self::Cos),
     ];
 
-    /// Value of the function over its arguments, lists spread out; NaN of nothing.
+    /// Value of the function over its arguments, with lists expanded; NaN without arguments.
     fn apply(self, values: &[f64]) -> f64 {
         let Some(&first) = values.first() else {
             return f64::NAN;
@@ -378,134 +378,4 @@ impl Function {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    struct One;
-    impl Results for One {
-        fn result(&self, reference: ResultReference) -> Option<ResultValue> {
-            (reference.name == "stiffness").then_some(ResultValue::Number {
-                value: Some(100.0),
-                uncertainty: Some(2.0),
-            })
-        }
-    }
-
-    fn stiffness() -> Formula {
-        Formula::Result(ResultReference {
-            procedure: ProcedureId(0),
-            name: "stiffness",
-            part: Part::Value,
-        })
-    }
-
-    #[test]
-    fn uncertainty_is_propagated_to_first_order() {
-        let half = Formula::Binary(
-            Operator::Divide,
-            Box::new(stiffness()),
-            Box::new(Formula::Constant(2.0)),
-        );
-        assert_eq!(
-            half.evaluate(&One, None),
-            Ok(Estimate {
-                value: 50.0,
-                uncertainty: Some(1.0)
-            })
-        );
-        let root = Formula::Call(Function::Sqrt, vec![stiffness()])
-            .evaluate(&One, None)
-            .unwrap();
-        assert!((root.uncertainty.unwrap() - 0.1).abs() < 1e-4);
-        let difference = Formula::Binary(
-            Operator::Subtract,
-            Box::new(stiffness()),
-            Box::new(stiffness()),
-        );
-        assert_eq!(
-            difference.evaluate(&One, None),
-            Ok(Estimate {
-                value: 0.0,
-                uncertainty: Some(0.0)
-            })
-        );
-    }
-
-    /// ½mv² of m = 20 ± 0.1 kg and v = 1 ± 0.01 m/s: u = √((½v²u_m)² + (mv·u_v)²), and nothing of what it is taken from itself.
-    #[test]
-    fn a_stated_number_carries_its_uncertainty() {
-        let of = |source, value, uncertainty| {
-            Stated {
-                source,
-                value,
-                uncertainty,
-            }
-            .formula()
-        };
-        let times =
-            |a: Formula, b: Formula| Formula::Binary(Operator::Multiply, Box::new(a), Box::new(b));
-        let (mass, velocity) = (
-            of(Source::StrikerMass(0), 20.0, 0.1),
-            of(Source::StrikerVelocity(0), 1.0, 0.01),
-        );
-        let energy = times(
-            times(Formula::Constant(0.5), mass),
-            times(velocity.clone(), velocity),
-        );
-        let found = energy.evaluate(&NoResults, None).unwrap();
-        assert_eq!((found.value, energy.constant()), (10.0, Some(10.0)));
-        assert!((found.uncertainty.unwrap() - 0.05_f64.hypot(0.2)).abs() < 1e-12);
-        let nothing = Formula::Binary(
-            Operator::Subtract,
-            Box::new(energy.clone()),
-            Box::new(energy),
-        );
-        assert_eq!(
-            nothing.evaluate(&NoResults, None),
-            Ok(Estimate {
-                value: 0.0,
-                uncertainty: Some(0.0)
-            })
-        );
-        assert_eq!(
-            of(Source::StrikerMass(0), 20.0, 0.0),
-            Formula::Constant(20.0)
-        );
-    }
-
-    /// |K − 99.9| with K = 100 ± 2: one way and the other it grows by nearly 2, and half of their difference is nearly nothing.
-    #[test]
-    fn what_folds_within_its_uncertainty_is_as_uncertain_as_what_is_folded() {
-        let off = |by: f64| {
-            let off = Formula::Binary(
-                Operator::Subtract,
-                Box::new(stiffness()),
-                Box::new(Formula::Constant(by)),
-            );
-            Formula::Call(Function::Abs, vec![off])
-                .evaluate(&One, None)
-                .unwrap()
-                .uncertainty
-                .unwrap()
-        };
-        assert!(
-            (off(99.9) - 2.0).abs() < 1e-12
-                && (off(100.0) - 2.0).abs() < 1e-12
-                && (off(90.0) - 2.0).abs() < 1e-12
-        );
-    }
-
-    #[test]
-    fn a_result_that_does_not_exist_is_an_error_and_so_is_a_division_by_zero() {
-        assert_eq!(
-            stiffness().evaluate(&NoResults, None),
-            Err(FormulaError::Missing("stiffness"))
-        );
-        let zero = Formula::Binary(
-            Operator::Divide,
-            Box::new(stiffness()),
-            Box::new(Formula::Constant(0.0)),
-        );
-        assert_eq!(zero.evaluate(&One, None), Err(FormulaError::NotFinite));
-    }
-}
+mod tests;

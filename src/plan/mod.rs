@@ -1,4 +1,4 @@
-//! The checked plan: SI only, every name resolved, every required value present. `language` makes
+//! The checked plan: in SI units, with every name resolved and every required value present. `language` makes
 //! it, `run` and `report` read it. It contains text only where a report prints it.
 
 pub mod contribution;
@@ -16,7 +16,7 @@ use crate::plan::formula::{Formula, ResultReference};
 use crate::units::Dimension;
 use source::Source;
 
-// The parameters of a model stand beside it, in `physics`.
+// The parameters of a model are declared beside it, in `physics`.
 pub use crate::physics::impact::Until;
 pub use crate::physics::integrator::Integrator;
 pub use crate::physics::specimen::{
@@ -54,11 +54,11 @@ pub use rig::{
 };
 pub use specimen::frame::{Ground, MOST_STOREYS, Shake, ShakeDamping, StoreyImpact, rayleigh};
 
-/// All that a run needs to know beforehand. Numbers are SI, names are resolved to places in its lists.
+/// Everything that a run needs to know beforehand, in SI units. Names are resolved to indices into its lists.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub title: String,
-    /// Certificate data of the `plan` block in the schema's order: (field, text). Only what was given.
+    /// Administrative data of the `plan` block in the schema's order: (field, text). Only those that are given.
     pub particulars: Vec<(&'static str, String)>,
     pub parameters: Vec<Parameter>,
     pub specimens: Vec<Specimen>,
@@ -73,18 +73,18 @@ pub struct Plan {
     pub decision_rule: DecisionRule,
     pub report: Report,
     pub golden: Golden,
-    /// Of the part that a rehearsal measures: the plan that is rehearsed.
+    /// For the part that a low-level check run measures: the plan that it belongs to.
     pub rehearses: Option<Box<Plan>>,
-    /// As records of older versions have it: an `unload` goes to where the load would be none in one move after the other.
+    /// As logs of older versions have it: an `unload` goes to the estimated position of zero load, move after move.
     pub unloads_at_once: bool,
-    /// The plan first, then every file it used, by the name it was used under.
+    /// The plan first, then every file that it uses, by the name under which it is used.
     pub files: Vec<PlanFile>,
-    /// `--set` values as given, in order of name.
+    /// `--set` values as given, in order of their names.
     pub settings: Vec<(String, String)>,
 }
 
 impl Plan {
-    /// The specimen that stands on the rig: the one that the first procedure names, else the first.
+    /// The specimen on the rig: the one that the first procedure names, else the first.
     #[must_use]
     pub fn specimen_on_the_rig(&self) -> Option<&Specimen> {
         let named = self
@@ -94,7 +94,7 @@ impl Plan {
         self.specimens.get(named.unwrap_or(0))
     }
 
-    /// Actuators that its rig needs, each with a load cell.
+    /// Number of actuators that the rig needs, each with a load cell.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> usize {
         self.specimen_on_the_rig()
@@ -109,38 +109,38 @@ pub struct PlanFile {
     pub text: String,
 }
 
-/// A `param` as it was for this run.
+/// A `param` with its value in this run.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     pub name: String,
     pub value: f64,
     pub dimension: Dimension,
-    /// Whether `--set` gave it.
+    /// Whether the value was set from outside the plan.
     pub set: bool,
 }
 
-/// What is tested: one degree of freedom, or a frame.
+/// The tested specimen: one degree of freedom, or a frame.
 #[derive(Clone, Debug)]
 pub struct Specimen {
     pub name: String,
-    /// Equivalent mass at the struck section, kg; of a frame, all its floors.
+    /// Equivalent mass at the struck section \[kg\]; for a frame the mass of all floors.
     pub mass: f64,
-    /// How the plan comes to it, in its own words; None where it states the number.
+    /// The expression in the plan that gives the mass; None where the plan states the number.
     pub mass_from: Option<String>,
-    /// Standard, kg; 0 where none is stated.
+    /// Standard uncertainty of the mass \[kg\]; 0 where none is stated.
     pub mass_uncertainty: f64,
-    /// The storeys, where it has any; each has an actuator and a load cell.
+    /// The storeys, if any; each has an actuator and a load cell.
     pub frame: Option<Frame>,
-    /// What a virtual rig bends.
+    /// The restoring-force model of a virtual rig.
     pub behaviour: Option<Behaviour>,
-    /// c of c·v on the virtual load cell while the actuator moves, N·s/m.
+    /// c of c·v on the virtual load cell while the actuator moves \[N·s/m\].
     pub damping: f64,
-    /// Friction on the virtual load cell, N.
+    /// Friction on the virtual load cell \[N\].
     pub coulomb: f64,
 }
 
 impl Specimen {
-    /// Of this mass (kg) and behaviour, and nothing else stated.
+    /// A specimen with this mass \[kg\] and restoring-force model, and with nothing else stated.
     #[must_use]
     pub fn new(name: &str, mass: f64, behaviour: Option<Behaviour>) -> Self {
         Self {
@@ -155,7 +155,7 @@ impl Specimen {
         }
     }
 
-    /// Actuators it takes, each with its load cell.
+    /// Number of actuators that it needs, each with its load cell.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> usize {
         self.frame.as_ref().map_or(1, Frame::degrees_of_freedom)
@@ -166,22 +166,22 @@ impl Specimen {
 #[derive(Clone, Debug)]
 pub struct Striker {
     pub name: String,
-    /// kg
+    /// \[kg\]
     pub mass: f64,
-    /// Standard, kg; 0 where none is stated.
+    /// Standard uncertainty of the mass \[kg\]; 0 where none is stated.
     pub mass_uncertainty: f64,
-    /// m/s, towards the structure.
+    /// Velocity towards the structure \[m/s\].
     pub velocity: f64,
-    /// Standard, m/s; 0 where none is stated.
+    /// Standard uncertainty of the velocity \[m/s\]; 0 where none is stated.
     pub velocity_uncertainty: f64,
-    /// Distance to the structure at the start, m, at least 0.
+    /// Distance to the structure at the start, at least 0 \[m\].
     pub gap: f64,
-    /// Acceleration along its way, m/s²: gn of a weight that falls.
+    /// Acceleration along its path \[m/s²\]: gn of a weight that falls.
     pub gravity: f64,
 }
 
 impl Striker {
-    /// Of this mass (kg) and velocity (m/s), both taken as exact, at the structure from the start.
+    /// A striker with this mass \[kg\] and velocity \[m/s\], both exact, at the structure from the start.
     #[must_use]
     pub fn new(name: &str, mass: f64, velocity: f64) -> Self {
         let (mass_uncertainty, velocity_uncertainty) = (0.0, 0.0);
@@ -196,21 +196,21 @@ impl Striker {
         }
     }
 
-    /// As it meets the structure, under a contact of stiffness `hertz` (N/m^1.5) where that is finite.
+    /// State of the striker at contact, with a contact of stiffness `hertz` \[N/m^1.5\] where that is finite.
     #[must_use]
     pub fn approach(&self, hertz: Option<f64>) -> Approach {
         Approach::after_gap(self.mass, self.velocity, self.gap, self.gravity, hertz)
     }
 }
 
-/// One block that acts, in the order of the plan.
+/// One block that is run, in the order of the plan.
 #[derive(Clone, Debug)]
 pub struct Procedure {
     pub name: String,
     pub kind: ProcedureKind,
 }
 
-/// What a procedure does.
+/// The parameters of a procedure.
 #[derive(Clone, Debug)]
 pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
@@ -223,7 +223,7 @@ pub enum ProcedureKind {
     FrameUnload(FrameUnload),
     Escalate(Escalate),
     Move(Move),
-    /// A person looks at the specimen.
+    /// The operator inspects the specimen.
     Inspect {
         note: String,
     },
@@ -246,7 +246,7 @@ impl ProcedureKind {
         }
     }
 
-    /// What is tested, as an index into `Plan::specimens`; None of what only moves or looks.
+    /// The tested specimen, as an index into `Plan::specimens`; None of a procedure that only moves or inspects.
     #[must_use]
     pub const fn specimen(&self) -> Option<usize> {
         match self {
@@ -264,39 +264,39 @@ impl ProcedureKind {
     }
 }
 
-/// A striker, which is computed, meets one degree of freedom, which is on the rig (Melo et al. 2006, eqs. 4 and 5).
+/// A computed striker meets one degree of freedom on the rig (Melo et al. 2006, eqs. 4 and 5).
 #[derive(Clone, Debug)]
 pub struct Impact {
     pub specimen: usize,
     /// Index into `Plan::strikers`.
     pub striker: usize,
-    /// M, kg
+    /// M \[kg\]
     pub mass: Formula,
-    /// Standard uncertainty of a mass that is the specimen's, kg; 0 where none is stated, or the mass is another.
+    /// Standard uncertainty of a mass that is the specimen's \[kg\]; 0 where none is stated, or where the mass is a different one.
     pub mass_uncertainty: f64,
-    /// K0, N/m
+    /// K0 \[N/m\]
     pub stiffness: Formula,
-    /// C of eqs. 4–5, N·s/m
+    /// C of eqs. 4–5 \[N·s/m\]
     pub damping: Formula,
     pub contact: Contact,
     pub stepping: Stepping,
-    /// Upper bound of virtual time, s.
+    /// Upper bound of simulated time \[s\].
     pub duration: Formula,
     pub until: Until,
 }
 
-/// The contact law of striker and structure.
+/// The contact law between striker and structure.
 #[derive(Clone, Debug)]
 pub enum Contact {
     Rigid,
-    /// N
+    /// \[N\]
     Limit {
         force: Formula,
     },
     Restitution {
         coefficient: Formula,
     },
-    /// k in N/m^1.5; `loss` is the Hunt–Crossley factor in s/m: F = k δ^1.5 (1 + loss·δ̇).
+    /// k \[N/m^1.5\]; `loss` is the Hunt–Crossley factor \[s/m\]: F = k δ^1.5 (1 + loss·δ̇).
     Hertz {
         stiffness: Formula,
         loss: Formula,
@@ -304,23 +304,23 @@ pub enum Contact {
     },
 }
 
-/// When a person is asked to look.
+/// When the operator is asked to inspect.
 #[derive(Clone, Debug)]
 pub enum InspectTrigger {
     /// Every n steps.
     Every(u32),
-    /// The restoring force fell by this fraction of its largest so far.
+    /// The restoring force fell by this fraction of its largest value so far.
     ForceDrop(f64),
-    /// At this virtual time, s.
+    /// At this simulated time \[s\].
     At(f64),
 }
 
-/// The actuator goes to a place.
+/// The actuator moves to a position.
 #[derive(Clone, Debug)]
 pub struct Move {
-    /// m, absolute.
+    /// Absolute position \[m\].
     pub to: Formula,
-    /// m/s
+    /// \[m/s\]
     pub speed: Option<Formula>,
 }
 
@@ -331,10 +331,10 @@ pub struct Requirement {
     pub conditions: Vec<Condition>,
 }
 
-/// A value and what it is held against.
+/// A value and its limit.
 #[derive(Clone, Debug)]
 pub struct Condition {
-    /// As the plan wrote it.
+    /// The text in the plan.
     pub text: String,
     pub value: Formula,
     pub test: Test,
@@ -342,7 +342,7 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// Adds the source of every number that it states with an uncertainty, each once.
+    /// Adds the source of every number that is stated with an uncertainty, each once.
     pub fn collect_stated(&self, into: &mut Vec<Source>) {
         self.formulas()
             .for_each(|formula| formula.collect_stated(into));
@@ -354,7 +354,7 @@ impl Condition {
             .for_each(|formula| formula.collect_references(into));
     }
 
-    /// Every formula of it: what is held, and what it is held against.
+    /// Every formula of it: the value, and its limit.
     pub fn formulas(&self) -> impl Iterator<Item = &Formula> {
         let (against, more) = match &self.test {
             Test::Compare { limit, .. } => (limit, None),
@@ -366,18 +366,18 @@ impl Condition {
     }
 }
 
-/// How a value is held against a limit (ILAC-G8:09/2019).
+/// How conformity with a limit is assessed (ILAC-G8:09/2019).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DecisionRule {
-    /// The value decides, whatever its uncertainty (simple acceptance).
+    /// The value alone is compared with the limit, whatever its uncertainty (simple acceptance).
     #[default]
     Simple,
-    /// Between the value and the limit a guard band w = U = k·u must be left: within it nothing is decided.
+    /// A guard band w = U = k·u is kept between the value and the limit: within it no statement of conformity is made.
     Guarded,
 }
 
 impl DecisionRule {
-    /// The word of the language.
+    /// The keyword of the language.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -387,7 +387,7 @@ impl DecisionRule {
     }
 }
 
-/// What a value must be; limits, targets and tolerances in the SI unit of its dimension.
+/// The condition on a value; limits, targets and tolerances are in the SI unit of its dimension.
 #[derive(Clone, Debug)]
 pub enum Test {
     Compare {
@@ -402,7 +402,7 @@ pub enum Test {
     },
 }
 
-/// Of a value, on the left, with a limit.
+/// Comparison of a value, on the left, with a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Comparison {
     Less,
@@ -413,7 +413,7 @@ pub enum Comparison {
     NotEqual,
 }
 
-/// What a run leaves beside its record and its summary.
+/// The files that a run writes beside its log and its summary.
 #[derive(Clone, Debug)]
 pub struct Report {
     pub title: Option<String>,

@@ -1,30 +1,30 @@
-//! How long the record of a run is: what its lines take, by type. In: how many of each, the rig they are of. Out: bytes, more than
-//! they will take. Whoever counts the lines of a procedure is elsewhere.
+//! How long the log of a run becomes: the length of its lines, by type. In: how many lines of each type, and the rig. Out: an upper bound in
+//! bytes. The lines of a procedure are counted elsewhere.
 
 use super::{Dialect, Mode, Plan, RealLink};
 
-/// A float as the record writes it, with what stands between it and the next: sign, 17 digits, point, exponent, comma.
+/// A float as the log writes it, with the separator before the next: sign, 17 digits, point, exponent, comma.
 const NUMBER: f64 = 25.0;
-/// Number, type, chain and checksum of a line, its blanks and its end.
+/// Number, type, chain and checksum of a line, its spaces and its end.
 const LINE: f64 = 96.0;
-/// The wall clock of a record.
+/// The wall-clock time of a log line.
 pub const WALL: f64 = 34.0;
 /// The bytes of a target: frames are no longer than 96 bytes.
 const WIRE: f64 = 200.0;
-/// What another axis adds to a frame or to a reply: its target; its place and its force.
+/// Bytes that another axis adds to a request or a reply: its target, its position and its force.
 const AXIS: f64 = 60.0;
-/// A reading that was not usable and taken again, a TALLY: one in ten readings.
+/// A reading that was unusable and was read again, and its TALLY line: one in ten readings.
 const MENDED: f64 = 1.1;
 
-/// Header, plan texts apart; the gate, events, notes, faults.
+/// The header without the plan texts, the pre-test check, events, notes and rig faults.
 pub const FRAME: f64 = 131_072.0;
-/// The longest record that is read back, bytes: one that nobody reads back proves nothing.
+/// The longest log that is read back, in bytes: a log that is never read back verifies nothing.
 pub const MOST_RECORD_BYTES: u64 = 4 << 30;
 
-/// Records of each type.
+/// Lines of each type.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
-    /// INTENT, those of ways that are read on the way included.
+    /// INTENT, with those of strokes that are read during the motion.
     pub targets: f64,
     /// INTENT with a path, and STROKE.
     pub ways: f64,
@@ -55,7 +55,7 @@ impl Counts {
         }
     }
 
-    /// Steps of a procedure that integrates, the reading before the first and the braking after the last.
+    /// Steps of a procedure that integrates, the reading before the first step and the braking after the last.
     #[must_use]
     pub fn stepped(mode: Mode, steps: f64) -> Self {
         let each = match mode {
@@ -80,7 +80,7 @@ impl Counts {
         })
     }
 
-    /// Bytes of the record that they take, as long as their longest numbers make them.
+    /// Upper bound of the bytes that the lines take.
     #[must_use]
     pub fn bytes(self, plan: &Plan) -> f64 {
         let axes = f64::from(u32::try_from(plan.degrees_of_freedom()).unwrap_or(u32::MAX));
@@ -99,7 +99,7 @@ impl Counts {
     }
 }
 
-/// The replies of one reading, escaped twice as the record writes them: a byte that is no letter takes five.
+/// Bytes of the replies of one reading. The log escapes them twice: a byte that is not a letter takes five.
 fn raw(link: &RealLink, axes: f64) -> f64 {
     let reply = |dialect: &Dialect| match dialect {
         Dialect::Modbus(_) => 4.0 * 5.0 * 20.0,

@@ -4,7 +4,7 @@
 use super::contribution::Contribution;
 use super::source::{ProcedureId, Source};
 
-/// Which number of a result is meant.
+/// Which number of a result is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     Value,
@@ -12,7 +12,7 @@ pub enum Part {
     Uncertainty,
 }
 
-/// A result of a procedure: `k0.stiffness`, `k0.stiffness.u`. `name` is the schema's own word.
+/// A result of a procedure: `k0.stiffness`, `k0.stiffness.u`. `name` is the schema's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ResultReference {
     pub procedure: ProcedureId,
@@ -20,7 +20,7 @@ pub struct ResultReference {
     pub part: Part,
 }
 
-/// What a result may be: one number or a list, with the standard uncertainty of a number where it was measured.
+/// The value of a result: one number or a list, with the standard uncertainty of a number that was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResultValue {
     /// `value` is None where the result does not exist in this run (no stop time: the striker did not stop).
@@ -31,12 +31,12 @@ pub enum ResultValue {
     List(Vec<f64>),
 }
 
-/// Where formulas find results.
+/// The results that formulas read.
 pub trait Results: Sync {
     /// The result, or None if its procedure has not run to it.
     fn result(&self, reference: ResultReference) -> Option<ResultValue>;
 
-    /// What its uncertainty is made of; of a result that says no more, all of it is its own.
+    /// The uncertainty contributions of the result; by default all of its uncertainty is one contribution of its own.
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         let ResultReference {
             procedure, name, ..
@@ -58,12 +58,12 @@ pub trait Results: Sync {
         }
     }
 
-    /// Degrees of freedom by which the size of a source is known; infinite of what was not estimated from readings.
+    /// Degrees of freedom of the uncertainty of a source; infinite where it was not estimated from readings.
     fn degrees(&self, _: Source) -> f64 {
         f64::INFINITY
     }
 
-    /// By how many of its standard uncertainties a source is moved here.
+    /// The perturbation of a source, in its standard uncertainties.
     fn moved(&self, _: Source) -> f64 {
         0.0
     }

@@ -4,6 +4,7 @@
 
 pub mod blocks;
 pub(crate) mod columns;
+mod constructors;
 mod functions;
 mod later;
 mod reference;

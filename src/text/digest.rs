@@ -1,4 +1,4 @@
-//! SHA-256 as text. In: bytes. Out: 64 hex digits. Knows no file.
+//! SHA-256 as text. In: bytes. Out: 64 hexadecimal digits. Opens no file.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,7 @@ pub fn sha256(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
 }
 
-/// Two digits a byte.
+/// Two digits for each byte.
 #[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     bytes
@@ -21,7 +21,7 @@ pub fn hex(bytes: &[u8]) -> String {
         })
 }
 
-/// The bytes of two digits each; None where it is no such text.
+/// The bytes of a text of hexadecimal digits, two for each byte; None for any other text.
 #[must_use]
 pub fn unhex(text: &str) -> Option<Vec<u8>> {
     let digit = |byte: &u8| {

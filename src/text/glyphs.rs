@@ -1,10 +1,10 @@
-//! Which characters a report on paper and its figures can show: those of the fonts that are part of the program, which are all of Latin,
-//! Greek and Cyrillic that is in use. In: a text. Out: whether it can be shown, and how it is where it cannot. It opens no font.
+//! The characters that a printed report and its figures can show: those of the fonts in the program, which cover Latin,
+//! Greek and Cyrillic as they are in use. In: a text. Out: whether it can be shown, and its replacement where it cannot. Opens no font.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// First and last of each range, from U+0080 on. A test holds them against the fonts.
+/// First and last character of each range, from U+0080 on. A test compares them with the fonts.
 #[rustfmt::skip]
 const RANGES: &[u32] = &[
     0xa0, 0x377, 0x37a, 0x37f, 0x384, 0x38a, 0x38c, 0x38c, 0x38e, 0x3a1, 0x3a3, 0x525, 0x531, 0x556, 0x559, 0x55f, 0x561, 0x587,
@@ -53,11 +53,11 @@ const RANGES: &[u32] = &[
 pub fn has(c: char) -> bool {
     let code = u32::from(c);
     let at = RANGES.partition_point(|bound| *bound < code);
-    // Behind an odd number of bounds a range is open; at an even one it begins.
+    // After an odd number of bounds a range is open; at an even number one begins.
     c.is_ascii() || at % 2 == 1 || RANGES.get(at) == Some(&code)
 }
 
-/// A character that no font has stands as its code point: an empty box would say nothing.
+/// A character that no font has is shown as its code point: an empty box would carry no information.
 #[must_use]
 pub fn shown(text: &str) -> Cow<'_, str> {
     if text.chars().all(has) {

@@ -1,5 +1,5 @@
 //! Text in and out: source files and spans, diagnostics, suggestions, sanitising of foreign text,
-//! digests. In: text. Out: text and data about it. It knows no language and no plan.
+//! digests. In: text. Out: text and data about it. Knows neither language nor plan.
 
 pub mod diagnostic;
 pub mod digest;

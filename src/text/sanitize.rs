@@ -1,11 +1,11 @@
-//! Texts from outside (labels, notes, what a rig replies) made harmless, one function a sink. In: any text. Out: one that
-//! the sink shows and never obeys: no control of a terminal, no turned reading direction, nothing invisible, no formula, no
-//! name that a file system takes for a device.
+//! Makes texts from outside (labels, notes, replies of a rig) harmless, with one function for each sink. In: any text. Out: a text that
+//! the sink shows and never interprets: no terminal control, no change of reading direction, nothing invisible, no formula, no
+//! file name that a file system takes for a device.
 
 use std::fmt::Write as _;
 
-/// Whether a character does something else than stand there: control characters, marks of direction, what cannot be seen,
-/// tags, and code points that are no characters.
+/// Whether a character has an effect beyond its glyph: control characters, direction marks, invisible characters,
+/// tags, and code points that are not characters.
 #[must_use]
 pub fn steers(c: char) -> bool {
     c.is_control()
@@ -18,19 +18,19 @@ pub fn steers(c: char) -> bool {
         || u32::from(c) & 0xfffe == 0xfffe
 }
 
-/// What steers stands there as its escape, `\u{1b}`. Newlines stay.
+/// Control-like characters become their escapes, `\u{1b}`. Newlines stay.
 #[must_use]
 pub fn escape(text: &str) -> String {
     escaped(text, |c| c == '\n')
 }
 
-/// [`escape`] for what must stay on its line: newlines become `\u{a}`.
+/// [`escape`] for a text that must stay on its line: newlines become `\u{a}`.
 #[must_use]
 pub fn one_line(text: &str) -> String {
     escaped(text, |_| false)
 }
 
-/// A text that may hold colours of ours: only `ESC [ digits m`, newlines and tabs pass. The last gate before a terminal.
+/// A text that may contain the program's own colours: only `ESC [ digits m`, newlines and tabs pass. The last filter before a terminal.
 #[must_use]
 pub fn terminal(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
@@ -48,14 +48,14 @@ pub fn terminal(text: &str) -> String {
     shown
 }
 
-/// The length of the colour that a text begins with.
+/// The length of the colour sequence at the start of a text.
 fn colour(text: &str) -> Option<usize> {
     let digits = text.strip_prefix("\u{1b}[")?;
     let end = digits.find(|c: char| !c.is_ascii_digit() && c != ';')?;
     digits[end..].starts_with('m').then_some(2 + end + 1)
 }
 
-/// What steers becomes the sign for a character that cannot be shown: for pages, where an escape would be read as text.
+/// Control-like characters become the replacement character: for pages, where an escape would be read as text.
 #[must_use]
 pub fn printed(text: &str) -> String {
     text.chars()
@@ -69,7 +69,7 @@ pub fn printed(text: &str) -> String {
         .collect()
 }
 
-/// A page of markup whose texts are escaped already: nothing in it steers, whoever wrote it.
+/// A page of markup whose texts are escaped already: control-like characters are replaced, whatever their origin.
 #[must_use]
 pub fn page(markup: &str) -> String {
     markup
@@ -84,7 +84,7 @@ pub fn page(markup: &str) -> String {
         .collect()
 }
 
-/// A cell of text that no spreadsheet takes for a formula: one that begins like a formula gets a leading `'`.
+/// A cell of text that no spreadsheet takes for a formula: a leading `'` is put before one that begins like a formula.
 #[must_use]
 pub fn cell(text: &str) -> String {
     let shown = one_line(text);
@@ -99,7 +99,7 @@ pub fn cell(text: &str) -> String {
     }
 }
 
-/// A JSON document whose texts hold nothing that steers but as `\u` escapes: the same values, and safe to print.
+/// A JSON document whose texts contain control-like characters only as `\u` escapes: the same values, and safe to print.
 #[must_use]
 pub fn json(document: &str) -> String {
     let mut safe = String::with_capacity(document.len());
@@ -115,13 +115,13 @@ pub fn json(document: &str) -> String {
     safe
 }
 
-/// Most characters of a part of a path: with an ending and a number every file system takes it.
+/// Most characters of a part of a path: with an extension and a number every file system accepts it.
 const PART_CHARS: usize = 120;
-/// And bytes.
+/// Most bytes of a part of a path.
 const PART_BYTES: usize = 200;
 
-/// One part of a path that is a plain name on every system: no separator, no `..`, no device of Windows, no blank or dot at
-/// its end. A name that is plain already stays as it is.
+/// One part of a path that is a plain name on every system: no separator, no `..`, no device name of Windows, no space or dot at
+/// its end. A name that is plain already is unchanged.
 #[must_use]
 pub fn file_part(name: &str) -> String {
     let is_plain =
@@ -151,7 +151,7 @@ pub fn file_part(name: &str) -> String {
     }
 }
 
-/// Names that Windows takes for devices, whatever stands after the first dot.
+/// Names that Windows takes for devices, whatever follows the first dot.
 fn is_device(stem: &str) -> bool {
     let stem = stem.to_ascii_uppercase();
     let port = stem

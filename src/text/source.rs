@@ -1,7 +1,7 @@
-//! Source text and places in it. In: the text of plan files. Out: [`Sources`], [`Span`] and [`Spanned`].
-//! Knows nothing of the language and opens no file: whoever loads a file adds its text here.
+//! Source text and spans in it. In: the text of plan files. Out: [`Sources`], [`Span`] and [`Spanned`].
+//! Knows nothing of the language and opens no file: the code that loads a file adds its text here.
 
-/// Which file of [`Sources`] a span lies in.
+/// The file of [`Sources`] in which a span lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FileId(pub u32);
 
@@ -25,7 +25,7 @@ impl Span {
         }
     }
 
-    /// The smallest span that covers both. They must lie in one file.
+    /// The smallest span that covers both. They must be in one file.
     #[must_use]
     pub fn to(self, other: Span) -> Span {
         debug_assert_eq!(self.file, other.file);
@@ -42,8 +42,8 @@ impl Span {
     }
 }
 
-/// A value and the place it was written at.
-#[derive(Clone, Debug, PartialEq)]
+/// A value and the span at which it was written.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spanned<T> {
     pub node: T,
     pub span: Span,
@@ -73,7 +73,7 @@ pub struct Position {
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<SourceFile>,
-    /// Of each file, where its lines end.
+    /// The ends of the lines of each file, as byte offsets.
     ends: Vec<Vec<usize>>,
 }
 
@@ -107,7 +107,7 @@ impl Sources {
             .map(|(index, file)| (FileId(u32::try_from(index).unwrap_or(u32::MAX)), file))
     }
 
-    /// The text under a span, in whole characters: a letter of several bytes that is read as a sign of one may hold an end of it.
+    /// The text under a span, in whole characters: a span may end within a letter of several bytes, where it is read as a punctuation mark.
     #[must_use]
     pub fn text(&self, span: Span) -> &str {
         let text = &self.file(span.file).text;
@@ -115,7 +115,7 @@ impl Sources {
         &text[start..text.ceil_char_boundary((span.end as usize).max(start))]
     }
 
-    /// The bytes of some lines, counted from 0; lines that the file does not have are left out.
+    /// The byte range of some lines, counted from 0; lines that the file does not have are omitted.
     #[must_use]
     pub fn lines(&self, id: FileId, lines: std::ops::Range<usize>) -> std::ops::Range<usize> {
         let (ends, length) = (&self.ends[id.0 as usize], self.file(id).text.len());
@@ -126,7 +126,7 @@ impl Sources {
         start(lines.start)..start(lines.end)
     }
 
-    /// Where a span starts.
+    /// The position of the start of a span.
     #[must_use]
     pub fn position(&self, span: Span) -> Position {
         let text = &self.file(span.file).text;
@@ -157,7 +157,7 @@ mod tests {
             sources.position(Span::new(file, 5, 6)),
             Position { line: 2, column: 2 }
         );
-        // In the middle of the ä, and behind the end.
+        // In the middle of the ä, and after the end.
         let inside = Span::new(file, 4, 4);
         assert_eq!(
             (sources.position(inside), sources.text(inside)),

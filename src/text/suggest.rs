@@ -1,6 +1,6 @@
-//! Did you mean: the nearest of a closed set of names.
+//! The suggestion "did you mean": the nearest of a closed set of names.
 
-/// The candidate nearest to `written`, if it is near enough to be a slip of the finger.
+/// The candidate nearest to `written`, if it is near enough to be a typing error.
 #[must_use]
 pub fn nearest<'a>(
     written: &str,
@@ -11,7 +11,7 @@ pub fn nearest<'a>(
     let allowed = (length / 3).max(1);
     candidates
         .into_iter()
-        // As many letters as they differ by in length are wrong at least: nothing longer is measured. A letter may become
+        // The distance is at least the difference in length, so longer candidates are skipped. A letter may become
         // three in lower case.
         .filter(|candidate| {
             let letters = if candidate.is_ascii() {

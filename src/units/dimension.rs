@@ -1,4 +1,4 @@
-//! Dimensions with rational exponents, and the names the field gives them.
+//! Dimensions with rational exponents, and their names in the field.
 
 use std::fmt;
 
@@ -24,7 +24,7 @@ impl Exponent {
         }
     }
 
-    /// `numerator / denominator`, reduced. None if the denominator is zero or the parts leave 16 bits.
+    /// `numerator / denominator`, reduced. None if the denominator is zero or a part exceeds 16 bits.
     #[must_use]
     pub fn ratio(numerator: i64, denominator: i64) -> Option<Self> {
         if denominator == 0 {
@@ -94,7 +94,7 @@ impl fmt::Display for Exponent {
     }
 }
 
-/// What a quantity measures: exponents of length, mass and time.
+/// The dimension of a quantity: exponents of length, mass and time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dimension {
     pub length: Exponent,
@@ -148,7 +148,7 @@ impl Dimension {
             .map(|(_, name, _)| *name)
     }
 
-    /// A unit to suggest for this dimension, such as `N/m` for a stiffness; from the base units where none is usual.
+    /// A unit to suggest for this dimension, such as `N/m` for a stiffness; made of base units where none is usual.
     #[must_use]
     pub fn usual_unit(self) -> String {
         NAMES
@@ -157,26 +157,26 @@ impl Dimension {
             .map_or_else(|| self.in_base_units(), |(_, _, unit)| (*unit).to_owned())
     }
 
-    /// The dimension for a person: its name, else its base units: "force", "kg·m/s^3".
+    /// The dimension for the reader: its name, else its base units: "force", "kg·m/s^3".
     #[must_use]
     pub fn describe(self) -> String {
         self.name()
             .map_or_else(|| self.in_base_units(), str::to_owned)
     }
 
-    /// Product of two dimensions. None if an exponent leaves its range.
+    /// Product of two dimensions. None if an exponent is out of range.
     #[must_use]
     pub fn times(self, other: Self) -> Option<Self> {
         self.combine(other, Exponent::plus)
     }
 
-    /// Quotient of two dimensions. None if an exponent leaves its range.
+    /// Quotient of two dimensions. None if an exponent is out of range.
     #[must_use]
     pub fn over(self, other: Self) -> Option<Self> {
         self.times(other.to_power(Exponent::whole(-1))?)
     }
 
-    /// The dimension raised to a rational power. None if an exponent leaves its range.
+    /// The dimension raised to a rational power. None if an exponent is out of range.
     #[must_use]
     pub fn to_power(self, power: Exponent) -> Option<Self> {
         self.combine(self, |exponent, _| exponent.times(power))

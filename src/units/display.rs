@@ -1,8 +1,8 @@
-//! Numbers for people: a value in SI with its dimension becomes a value in the unit a lab would write.
+//! Numbers for the reader: a value in SI units with its dimension is converted to the unit that a laboratory would use.
 
 use super::dimension::Dimension;
 
-/// The unit a person would use for a value of this size, and how many SI units it is: 0.0079 m → (`mm`, 1e-3).
+/// The usual unit for a value of this size, and its factor to SI units: 0.0079 m → (`mm`, 1e-3).
 #[must_use]
 pub fn readable_unit(value: f64, dimension: Dimension) -> (String, f64) {
     let size = value.abs();
@@ -25,7 +25,7 @@ pub fn readable_unit(value: f64, dimension: Dimension) -> (String, f64) {
         _ => return (dimension.usual_unit(), usual_factor(dimension)),
     };
     // The unit must leave the number at 0.1 or more where it can: 0.5 mm, not 500 um; 0.29 s, not 290 ms.
-    // Minutes and hours are no multiples of ten: 11 s are not 0.18 min.
+    // Minutes and hours are not multiples of ten: 11 s is not 0.18 min.
     let least = |factor: f64| {
         if dimension == Dimension::TIME && factor > 1.0 {
             factor
@@ -49,7 +49,7 @@ fn usual_factor(dimension: Dimension) -> f64 {
     super::unit::parse(&dimension.usual_unit()).map_or(1.0, |unit| unit.factor)
 }
 
-/// Up to `digits` significant digits, no trailing zeros lost from what was asked, plain decimals between 1e-4 and 1e7.
+/// `digits` significant digits, with trailing zeros, as plain decimals between 1e-4 and 1e7.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
@@ -71,7 +71,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
-/// The unit to print a value in, and how many SI units it is. Forces, stiffnesses and energies keep three digits before
+/// The unit to print a value in, and its factor to SI units. Forces, stiffnesses and energies keep three digits before
 /// the decimal (`327.7 N/m`); the others go by [`readable_unit`] (`0.1579 m`).
 #[must_use]
 pub fn unit(value: f64, dimension: Dimension) -> (String, f64) {
@@ -87,20 +87,20 @@ pub fn unit(value: f64, dimension: Dimension) -> (String, f64) {
     }
 }
 
-/// A measured or computed value with four significant digits in a unit as print sets it: `7.922 mm`, `355.1 kN/m`, `20.41 µm`.
+/// A measured or computed value with four significant digits in a typeset unit: `7.922 mm`, `355.1 kN/m`, `20.41 µm`.
 #[must_use]
 pub fn readable(value: f64, dimension: Dimension) -> String {
     readable_beside(value, value, dimension)
 }
 
-/// The same in the unit of `beside`, so that the two can be compared at sight.
+/// The same in the unit of `beside`, so that the two can be compared directly.
 #[must_use]
 pub fn readable_beside(value: f64, beside: f64, dimension: Dimension) -> String {
     let (unit, factor) = unit(beside, dimension);
     join(&digits(value, factor, dimension), &unit)
 }
 
-/// A value as somebody stated it, without digits that nobody stated: `20 µm`, `8.5 mm`, `10 s`.
+/// A value as it was stated, without additional digits: `20 µm`, `8.5 mm`, `10 s`.
 #[must_use]
 pub fn stated(value: f64, dimension: Dimension) -> String {
     stated_beside(value, value, dimension)
@@ -113,7 +113,7 @@ pub fn stated_beside(value: f64, beside: f64, dimension: Dimension) -> String {
     join(&minus(&trimmed(&significant(value / factor, 6))), &unit)
 }
 
-/// A number without zeros that say nothing: `8.50000` → `8.5`, `1.000e-6` → `1e-6`.
+/// A number without trailing zeros: `8.50000` → `8.5`, `1.000e-6` → `1e-6`.
 #[must_use]
 pub fn trimmed(digits: &str) -> String {
     let (lead, power) = digits
@@ -127,7 +127,7 @@ pub fn trimmed(digits: &str) -> String {
     format!("{lead}{power}")
 }
 
-/// Four significant digits of a value in a unit; a count has none behind the point.
+/// Four significant digits of a value in a unit; a count has no decimals.
 #[must_use]
 pub fn digits(value: f64, factor: f64, dimension: Dimension) -> String {
     let is_count = dimension == Dimension::NUMBER && value.fract() == 0.0 && value.abs() < 1e9;
@@ -140,7 +140,7 @@ pub fn digits(value: f64, factor: f64, dimension: Dimension) -> String {
     minus(&significant(rounded, 4))
 }
 
-/// A number and its unit as print sets it.
+/// A number and its typeset unit.
 #[must_use]
 pub fn join(number: &str, unit: &str) -> String {
     if unit.is_empty() {
@@ -150,7 +150,7 @@ pub fn join(number: &str, unit: &str) -> String {
     }
 }
 
-/// A number with a true minus sign and its power of ten raised: `-1.6e-15` → `−1.6 × 10⁻¹⁵`.
+/// A number with a true minus sign and its power of ten as a superscript: `-1.6e-15` → `−1.6 × 10⁻¹⁵`.
 #[must_use]
 pub fn minus(number: &str) -> String {
     match number.split_once('e') {
@@ -162,7 +162,7 @@ pub fn minus(number: &str) -> String {
     }
 }
 
-/// A unit of the language as print sets it: `N*s/m` → `N·s/m`, `mm^2` → `mm²`, `um` → `µm`.
+/// A unit of the language, typeset: `N*s/m` → `N·s/m`, `mm^2` → `mm²`, `um` → `µm`.
 #[must_use]
 pub fn typeset(unit: &str) -> String {
     let mut set = String::with_capacity(unit.len());
@@ -204,7 +204,7 @@ fn superscript(c: char) -> Option<char> {
     })
 }
 
-/// A value as a plan writes it, in the language's own units and signs, without the zeros at its end: `16 mm`, `-20 um`.
+/// A value as a plan writes it, in the language's own units and characters, without trailing zeros: `16 mm`, `-20 um`.
 #[must_use]
 pub fn plain(value: f64, dimension: Dimension, digits: usize) -> String {
     let (unit, factor) = readable_unit(value, dimension);

@@ -4,7 +4,9 @@
 
 pub mod dimension;
 pub mod display;
+mod quantity;
 pub mod unit;
 
 pub use dimension::{Dimension, Exponent};
+pub use quantity::Quantity;
 pub use unit::Unit;

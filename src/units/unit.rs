@@ -1,8 +1,8 @@
-//! The unit table, and reading a unit token such as `kN/m`, `mm^2` or `N/m^1.5`.
+//! The unit table, and the parser of a unit token such as `kN/m`, `mm^2` or `N/m^1.5`.
 
 use super::dimension::{Dimension, Exponent};
 
-/// A unit: how many SI base units one of it is, and its dimension.
+/// A unit: its factor to SI base units, and its dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     pub factor: f64,
@@ -113,7 +113,7 @@ pub const PREFIXES: &[(&str, f64)] = &[
     ("G", 1e9),
 ];
 
-/// Why a unit token could not be read. Offsets are bytes in the token.
+/// Why a unit token could not be parsed. Offsets are bytes in the token.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum UnitError {
     #[error("no unit is called `{name}`")]
@@ -124,7 +124,7 @@ pub enum UnitError {
     TooLarge,
 }
 
-/// Looks one name up, a prefix included: `kN`, `mm`, `%`.
+/// Looks up one name, with or without a prefix: `kN`, `mm`, `%`.
 #[must_use]
 pub fn lookup(name: &str) -> Option<Unit> {
     let exact = UNITS
@@ -146,10 +146,10 @@ pub fn lookup(name: &str) -> Option<Unit> {
     })
 }
 
-/// Reads a whole unit token, left to right: `N/m*s` is (N/m)·s.
+/// Parses a whole unit token, left to right: `N/m*s` is (N/m)·s.
 ///
 /// # Errors
-/// An unknown name, an exponent that is no number, or exponents out of range, with the place in the token.
+/// An unknown name, an exponent that is not a number, or an exponent out of range, with its position in the token.
 pub fn parse(token: &str) -> Result<Unit, UnitError> {
     let mut result = Unit {
         factor: 1.0,
@@ -205,7 +205,7 @@ pub fn parse(token: &str) -> Result<Unit, UnitError> {
     Ok(result)
 }
 
-/// `factor^exponent`, by multiplication where the exponent is whole, so that `mm^2` is 1e-6 and not a neighbour of it.
+/// `factor^exponent`, by multiplication where the exponent is whole, so that `mm^2` is exactly 1e-6.
 fn power(factor: f64, exponent: Exponent) -> f64 {
     let value = exponent.as_f64();
     #[expect(clippy::cast_possible_truncation, reason = "whole and within 16 bits")]

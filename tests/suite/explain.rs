@@ -4,7 +4,7 @@
 //! file that both plans may use (`*` stands for any digits). `set="speed=2 m/s"` and `rig="name"` are options of the command line; with `unattended="yes"` a run is to begin
 //! and nobody is there to ask.
 
-use psd::language::check::{Checked, LoadFault, Loader, Options, check};
+use psd::language::check::{Checked, LoadError, Loader, Options, check};
 use psd::language::syntax::{format, parse};
 use psd::text::diagnostic::{Code, OF_THE_MACHINE, Severity};
 use psd::text::source::Sources;
@@ -47,7 +47,7 @@ fn fences(page: &str) -> Vec<Fence> {
 struct PageFiles<'a>(&'a [Fence]);
 
 impl Loader for PageFiles<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         let holds = |pattern: &str| match pattern.split_once('*') {
             Some((head, tail)) => path
                 .strip_prefix(head)
@@ -63,7 +63,7 @@ impl Loader for PageFiles<'_> {
             .find(|fence| fence.option("file").is_some_and(holds));
         found
             .map(|fence| fence.text.clone())
-            .ok_or(LoadFault::NotFound)
+            .ok_or(LoadError::NotFound)
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::{Checked, LoadFault, Loader, Options, check};
+use psd::language::check::{Checked, LoadError, Loader, Options, check};
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
@@ -48,8 +48,8 @@ struct Case {
 struct Folder<'a>(&'a Path);
 
 impl Loader for Folder<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
-        fs::read_to_string(self.0.join(path)).map_err(|_| LoadFault::NotFound)
+    fn load(&self, path: &str) -> Result<String, LoadError> {
+        fs::read_to_string(self.0.join(path)).map_err(|_| LoadError::NotFound)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::language::syntax::{format, parse};
 use psd::plan::Interval;
 use psd::record::journal::EntryKind;
@@ -17,12 +17,12 @@ use psd::text::source::Sources;
 struct Ground;
 
 impl Loader for Ground {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
         if path == "ground.csv" {
             Ok(ground.to_owned())
         } else {
-            Err(LoadFault::NotFound)
+            Err(LoadError::NotFound)
         }
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::{LazyLock, OnceLock};
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::run::storage_bound;
 use serde_json::Value;
 
@@ -130,8 +130,8 @@ fn every_plan_runs_to_a_pass() {
 struct Beside;
 
 impl Loader for Beside {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
-        fs::read_to_string(root().join("plans").join(path)).map_err(|_| LoadFault::NotFound)
+    fn load(&self, path: &str) -> Result<String, LoadError> {
+        fs::read_to_string(root().join("plans").join(path)).map_err(|_| LoadError::NotFound)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::language::syntax::{format, parse};
 use psd::schema::reference;
 use psd::text::diagnostic::render::{Appearance, render_all};
@@ -25,8 +25,8 @@ fn page() -> String {
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::NotFound)
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::NotFound)
     }
 }
 

@@ -2,7 +2,7 @@
 //! in its band after every move; the places that it was polled for on the way say when it moved.
 
 use psd::emulator::{InProcess, Log, Script, of_plan};
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{History, Outcome};
@@ -44,8 +44,8 @@ stiffness ramp k {
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::NotFound)
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::NotFound)
     }
 }
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::plan::formula::ResultValue;
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
@@ -20,7 +20,7 @@ const RATIO: f64 = 0.1;
 struct Files;
 
 impl Loader for Files {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         // Two floors of 1 t on storeys of k: ω² = (3 − √5)/2 · k/m is the ground's.
         let k = 1000.0 * FREQUENCY * FREQUENCY * (3.0 + 5.0_f64.sqrt()) / 2.0;
         match path {
@@ -36,7 +36,7 @@ impl Loader for Files {
             }
             "m.csv" => Ok("1000, 0\n0, 1000\n".to_owned()),
             "k.csv" => Ok(format!("{}, {}\n{}, {k}\n", 2.0 * k, -k, -k)),
-            _ => Err(LoadFault::NotFound),
+            _ => Err(LoadError::NotFound),
         }
     }
 }

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};
@@ -24,7 +24,7 @@ const SCALE: f64 = 50.0;
 struct Files;
 
 impl Loader for Files {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         let rows = |acceleration: &dyn Fn(f64) -> f64| -> String {
             let row = |step: u32| {
                 format!(
@@ -38,7 +38,7 @@ impl Loader for Files {
         let rows = match path {
             "sine.csv" => rows(&|time| GROUND * (FREQUENCY * time).sin()),
             "push.csv" => rows(&|time| if time <= 0.25 { GROUND } else { 0.0 }),
-            _ => return Err(LoadFault::NotFound),
+            _ => return Err(LoadError::NotFound),
         };
         Ok(format!("time_s,acceleration_m_per_s2\n{rows}"))
     }

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::language::syntax::{format, parse};
 use psd::plan::FigureKind;
 use psd::report::{Provenance, Run, vectors};
@@ -23,8 +23,8 @@ fn docs() -> PathBuf {
 struct Docs;
 
 impl Loader for Docs {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
-        fs::read_to_string(docs().join(path)).map_err(|_| LoadFault::NotFound)
+    fn load(&self, path: &str) -> Result<String, LoadError> {
+        fs::read_to_string(docs().join(path)).map_err(|_| LoadError::NotFound)
     }
 }
 

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::plan::formula::ResultValue;
 use psd::record::{History, ImpactStep, Outcome, Record, StruckFrame};
 use psd::rig::virtual_rig;
@@ -15,8 +15,8 @@ use psd::run::{Unwatched, run};
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::NotFound)
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::NotFound)
     }
 }
 

@@ -2,7 +2,7 @@
 //! plan, no real time. c comes out within its uncertainty although far fewer readings come than were asked for.
 
 use psd::emulator::{InProcess, Log, Script, of_plan};
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{EventKind, History, Outcome, Record};
@@ -53,8 +53,8 @@ damping sweep c {
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::NotFound)
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::NotFound)
     }
 }
 

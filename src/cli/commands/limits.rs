@@ -28,7 +28,7 @@ pub fn limits() -> Result<Exit, Failure> {
             syntax::TOKENS,
             "words, numbers, texts and signs of one file",
         ),
-        (syntax::FAULTS, "faults reported for one file"),
+        (syntax::ERRORS, "faults reported for one file"),
         (
             render::DRAWN,
             "faults drawn on a terminal, all with `--format json`",

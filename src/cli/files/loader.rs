@@ -6,7 +6,7 @@ use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 
 use crate::cli::exit::Failure;
-use crate::language::check::{LoadFault, Loader};
+use crate::language::check::{LoadError, Loader};
 use crate::language::syntax::limits::FILE_BYTES;
 use crate::text::source::Position;
 
@@ -30,13 +30,13 @@ impl FolderLoader {
 }
 
 impl Loader for FolderLoader {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         let relative = Path::new(path);
         let inside = relative
             .components()
             .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
         if !inside || path.is_empty() || path.contains(['\\', '\0']) {
-            return Err(LoadFault::Refused(
+            return Err(LoadError::Refused(
                 "the path must lead down from the plan's folder".to_owned(),
             ));
         }
@@ -45,15 +45,15 @@ impl Loader for FolderLoader {
                 .join(relative)
                 .canonicalize()
                 .map_err(|error| match error.kind() {
-                    std::io::ErrorKind::NotFound => LoadFault::NotFound,
-                    _ => LoadFault::Refused(plain(&error)),
+                    std::io::ErrorKind::NotFound => LoadError::NotFound,
+                    _ => LoadError::Refused(plain(&error)),
                 })?;
         if !file.starts_with(&self.folder) {
-            return Err(LoadFault::Refused(
+            return Err(LoadError::Refused(
                 "it is a link that leads out of the plan's folder".to_owned(),
             ));
         }
-        read(&file).map_err(|fault| LoadFault::Refused(fault.reason))
+        read(&file).map_err(|fault| LoadError::Refused(fault.reason))
     }
 }
 
@@ -140,7 +140,7 @@ mod tests {
 
     fn refused(loader: &FolderLoader, path: &str) -> String {
         match loader.load(path) {
-            Err(LoadFault::Refused(reason)) => reason,
+            Err(LoadError::Refused(reason)) => reason,
             other => panic!("{path}: {other:?}"),
         }
     }
@@ -165,7 +165,7 @@ mod tests {
 
         assert_eq!(loader.load("lib/b.psd").as_deref(), Ok("let b = 2"));
         assert_eq!(loader.load("./in.psd").as_deref(), Ok("let b = 2"));
-        assert_eq!(loader.load("lib/none.psd"), Err(LoadFault::NotFound));
+        assert_eq!(loader.load("lib/none.psd"), Err(LoadError::NotFound));
         assert!(refused(&loader, "../secret.psd").contains("plan's folder"));
         assert!(refused(&loader, folder.join("a.psd").to_str().unwrap()).contains("plan's folder"));
         assert!(refused(&loader, "out.psd").contains("leads out"));

@@ -7,7 +7,7 @@ use super::disk_space;
 use super::loader::plain;
 use crate::cli::args::PlanSettings;
 use crate::cli::exit::Failure;
-use crate::language::check::{LoadFault, Loader, Options, check};
+use crate::language::check::{LoadError, Loader, Options, check};
 use crate::plan::Plan;
 use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{
@@ -296,11 +296,11 @@ struct Files<'a> {
 }
 
 impl Loader for Files<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         let found = self.header.files.iter().position(|file| file.name == path);
         found
             .and_then(|index| self.texts.get(index))
             .cloned()
-            .ok_or(LoadFault::NotFound)
+            .ok_or(LoadError::NotFound)
     }
 }

@@ -1,11 +1,11 @@
-//! What every part of the check shares: the files, the scope, the faults so far, and values already worked out.
+//! The state that every part of the check shares: the files, the scope, the diagnostics so far, and values that are already evaluated.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use super::Loader;
 use super::expressions::data::DataFile;
-use super::messages::{names as fault, values};
+use super::messages::{names as message, values};
 use super::scope::Scope;
 use crate::language::syntax::ast::Expr;
 use crate::plan::Frame;
@@ -14,14 +14,14 @@ use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{Sources, Span};
 use crate::units::Dimension;
 
-/// A place that has a value: a `let` or `param`, or an entry of a block.
+/// A value that is evaluated once: a `let` or `param`, or an entry of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Node {
     Value(usize),
     Entry { block: usize, entry: usize },
 }
 
-/// One number or several.
+/// One number or a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     Number,
@@ -35,7 +35,7 @@ pub struct Typed {
     pub shape: Shape,
     pub dimension: Dimension,
     pub span: Span,
-    /// A number written without a unit (or a list of such), which may be a forgotten one.
+    /// A number written without a unit (or a list of such), whose unit may have been forgotten.
     pub bare: bool,
     /// Written with `%`.
     pub percent: bool,
@@ -44,18 +44,18 @@ pub struct Typed {
 /// Which results an expression may read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reads {
-    /// None: it is fixed before the run. The text says what it is: "a specimen".
+    /// None: it is fixed before the run. The string names its owner: "a specimen".
     Nothing(&'static str),
-    /// Those of procedures that ran before this one.
+    /// Those of procedures that run before this one.
     Before(ProcedureId),
-    /// Those of the blow that is just over, by their own names, and those of procedures that ran before this one.
-    Blow(ProcedureId),
+    /// Those of the impact that has just ended, by their own names, and those of procedures that run before this one.
+    Impact(ProcedureId),
     All,
 }
 
-/// Where an expression stands.
+/// The context of an expression.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct Context {
     /// The block and its entry.
     pub entry: Option<(usize, usize)>,
     pub reads: Reads,
@@ -69,41 +69,41 @@ pub struct Checker<'a> {
     pub loader: &'a dyn Loader,
     /// Data files that the plan names, each once.
     pub data: Vec<DataFile>,
-    /// Frames of the specimens that have storeys, by their blocks; None of one with a fault.
+    /// Frames of the specimens that have storeys, by their blocks; None of one with an error.
     pub frames: BTreeMap<usize, Option<Rc<Frame>>>,
-    pub faults: Vec<Diagnostic>,
+    pub diagnostics: Vec<Diagnostic>,
     /// Whether names may be missing because a used file could not be read.
     pub names_lost: bool,
-    /// Lines that could not be read: names on them may be declared there.
+    /// Lines that could not be parsed: unknown names may be declared there.
     pub unread: Vec<Span>,
     /// Every word of those lines.
-    lost: BTreeSet<&'a str>,
-    /// What was reported of the behaviour of each block.
+    unread_words: BTreeSet<&'a str>,
+    /// Diagnostics of the restoring-force model of each block.
     reported: BTreeMap<usize, Vec<Diagnostic>>,
-    /// Places of which all is said.
+    /// Spans that one diagnostic explains in full.
     pub explained: Vec<Span>,
     pub known: BTreeMap<Node, Option<Typed>>,
     pub used: BTreeSet<usize>,
-    /// Results of procedures that something reads, and where.
+    /// Results of procedures that an expression reads, with their spans.
     pub read: Vec<(ResultReference, Span)>,
-    /// Entries taken of lists that the run gives, as they are counted from 0, and where.
+    /// Entries that are read from lists of results, by their index from 0, with their spans.
     pub taken: Vec<(ResultReference, usize, Span)>,
-    /// Whether the plan is of a record, and may call things as older versions did.
+    /// Whether the plan comes from a run log, so that names of older versions are valid.
     pub recorded: bool,
-    /// The rig of the run, where it is one that moves a specimen.
+    /// The rig of the run, where it moves a real specimen.
     pub real_rig: Option<usize>,
     stack: Vec<Node>,
-    /// Whether it was said that values need one another too deep.
+    /// Whether it was reported that values depend on one another too deeply.
     too_deep: bool,
 }
 
-/// Values that need one another, one inside another, before they are worked out: each takes of the stack.
+/// Longest chain of values that depend on one another before they are evaluated: each takes part of the stack.
 pub const DEEPEST_VALUES: usize = 100;
-/// Results and operators of one value that is known after the run only, those of the values it names counted in: such a value
-/// is copied wherever it is named, and `let b = a + a` doubles it.
+/// Most results and operators of one value that is known only after the run, with those of the values that it names: such a value
+/// is copied wherever it is named, so that `let b = a + a` doubles it.
 pub const MOST_TERMS: usize = 1_000;
 
-/// Faults after which no other name is suggested for an unknown one.
+/// Number of diagnostics after which no similar name is suggested for an unknown one.
 const SUGGESTED: usize = 50;
 
 impl<'a> Checker<'a> {
@@ -111,7 +111,7 @@ impl<'a> Checker<'a> {
         sources: &'a Sources,
         scope: &'a Scope<'a>,
         loader: &'a dyn Loader,
-        faults: Vec<Diagnostic>,
+        diagnostics: Vec<Diagnostic>,
         unread: Vec<Span>,
         names_lost: bool,
     ) -> Self {
@@ -122,17 +122,17 @@ impl<'a> Checker<'a> {
                 .text(*span)
                 .split(|c: char| !c.is_alphanumeric() && c != '_')
         };
-        let lost = unread.iter().flat_map(words).collect();
+        let unread_words = unread.iter().flat_map(words).collect();
         Self {
             sources,
             scope,
             loader,
             data,
             frames,
-            faults,
+            diagnostics,
             names_lost,
             unread,
-            lost,
+            unread_words,
             reported: BTreeMap::new(),
             explained: Vec::new(),
             known,
@@ -146,9 +146,9 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Notes a fault; returns None, so that a caller can leave with it.
-    pub fn fail<T>(&mut self, fault: Diagnostic) -> Option<T> {
-        self.faults.push(fault);
+    /// Adds a diagnostic; returns None, so that the caller can return it.
+    pub fn fail<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
+        self.diagnostics.push(diagnostic);
         None
     }
 
@@ -156,17 +156,17 @@ impl<'a> Checker<'a> {
         self.sources.text(span)
     }
 
-    /// Works a node out once. A node that needs itself is a fault that names the ring.
+    /// Evaluates a node once. A node that depends on itself is an error that names the dependency cycle.
     pub fn once(
         &mut self,
         node: Node,
-        asked_at: Span,
+        requested_at: Span,
         work: impl FnOnce(&mut Self) -> Option<Typed>,
     ) -> Option<Typed> {
         if let Some(known) = self.known.get(&node) {
             return known.clone();
         }
-        self.guarded(node, asked_at, |checker| {
+        self.guarded(node, requested_at, |checker| {
             let value = work(checker).and_then(|typed| checker.of_bounded_size(typed));
             checker.known.insert(node, value.clone());
             value
@@ -180,27 +180,28 @@ impl<'a> Checker<'a> {
         self.fail(values::too_many_terms(typed.span, MOST_TERMS))
     }
 
-    /// Does `work` for a node, unless it is being done already further up.
+    /// Does `work` for a node, unless it is already in progress further up.
     pub fn guarded<T>(
         &mut self,
         node: Node,
-        asked_at: Span,
+        requested_at: Span,
         work: impl FnOnce(&mut Self) -> Option<T>,
     ) -> Option<T> {
         if let Some(start) = self.stack.iter().position(|open| *open == node) {
-            let ring: Vec<(String, Span)> = self.stack[start..]
+            let cycle: Vec<(String, Span)> = self.stack[start..]
                 .iter()
                 .map(|node| self.describe(*node))
                 .collect();
             for node in self.stack[start..].iter().copied() {
                 self.known.insert(node, None);
             }
-            return self.fail(fault::cycle(&ring, asked_at));
+            return self.fail(message::cycle(&cycle, requested_at));
         }
         if self.stack.len() >= DEEPEST_VALUES {
-            // Once: where one chain is too deep, each of its pieces is.
+            // Only once: where a chain is too deep, each of its parts is too.
             if !std::mem::replace(&mut self.too_deep, true) {
-                self.faults.push(values::too_deep(asked_at, DEEPEST_VALUES));
+                self.diagnostics
+                    .push(values::too_deep(requested_at, DEEPEST_VALUES));
             }
             self.known.insert(node, None);
             return None;
@@ -211,32 +212,32 @@ impl<'a> Checker<'a> {
         value
     }
 
-    /// Whether a name may have been declared where the text could not be read.
+    /// Whether a name may have been declared where the text could not be parsed.
     pub fn may_be_lost(&self, name: &str) -> bool {
-        self.names_lost || self.lost.contains(name)
+        self.names_lost || self.unread_words.contains(name)
     }
 
-    /// Names of which one that is unknown may be a slip; none where many faults were found, for each name is looked at each time.
+    /// Candidates for the suggestion of a similar name; none after many diagnostics, because each candidate is compared every time.
     pub fn names_to_suggest(&self) -> impl Iterator<Item = &'a str> {
         self.scope.names().take(self.most_to_suggest())
     }
 
-    /// Of how many names one is suggested for one that is unknown.
+    /// Number of candidates for the suggestion of a similar name.
     pub const fn most_to_suggest(&self) -> usize {
-        if self.faults.len() <= SUGGESTED {
+        if self.diagnostics.len() <= SUGGESTED {
             usize::MAX
         } else {
             0
         }
     }
 
-    /// Drops faults from `start` on that were reported of this block before.
+    /// Drops diagnostics from `start` on that were reported of this block before.
     pub fn drop_repeated(&mut self, start: usize, block: usize) {
         let before = self.reported.entry(block).or_default();
-        for fault in self.faults.split_off(start) {
-            if !before.contains(&fault) {
-                before.push(fault.clone());
-                self.faults.push(fault);
+        for diagnostic in self.diagnostics.split_off(start) {
+            if !before.contains(&diagnostic) {
+                before.push(diagnostic.clone());
+                self.diagnostics.push(diagnostic);
             }
         }
     }
@@ -292,7 +293,7 @@ impl Typed {
     }
 }
 
-/// The number as it was written, without sign, and where: `3 mm`, `-3 mm` and `(3 mm)` are literals.
+/// The literal without its sign and parentheses: `3 mm`, `-3 mm` and `(3 mm)` are literals.
 pub fn literal(expr: &Expr) -> Option<&Expr> {
     use crate::language::syntax::ast::ExprKind;
     match &expr.kind {

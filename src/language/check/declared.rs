@@ -1,8 +1,8 @@
-//! What a plan declares beside its procedures, by place. In: checked blocks, None for each with a fault. Out: one of them.
+//! The declarations of a plan beside its procedures, by index. In: checked blocks, None for each with an error. Out: one of them.
 
 use crate::plan::{Frame, Ground, Specimen, Striker};
 
-/// The declarations that procedures are judged by.
+/// The declarations that the check of a procedure needs.
 pub struct Declared<'a> {
     pub specimens: &'a [Option<Specimen>],
     pub strikers: &'a [Option<Striker>],
@@ -10,23 +10,23 @@ pub struct Declared<'a> {
 }
 
 impl Declared<'_> {
-    /// The specimen at this place.
-    pub fn specimen(&self, place: usize) -> Option<&Specimen> {
-        self.specimens.get(place)?.as_ref()
+    /// The specimen with this index.
+    pub fn specimen(&self, index: usize) -> Option<&Specimen> {
+        self.specimens.get(index)?.as_ref()
     }
 
-    /// The frame that the specimen at this place is.
-    pub fn frame(&self, place: usize) -> Option<&Frame> {
-        self.specimen(place)?.frame.as_ref()
+    /// The frame of the specimen with this index.
+    pub fn frame(&self, index: usize) -> Option<&Frame> {
+        self.specimen(index)?.frame.as_ref()
     }
 
-    /// The striker at this place.
-    pub fn striker(&self, place: usize) -> Option<&Striker> {
-        self.strikers.get(place)?.as_ref()
+    /// The striker with this index.
+    pub fn striker(&self, index: usize) -> Option<&Striker> {
+        self.strikers.get(index)?.as_ref()
     }
 
-    /// The ground motion at this place.
-    pub fn ground(&self, place: usize) -> Option<&Ground> {
-        self.grounds.get(place)?.as_ref()
+    /// The ground motion with this index.
+    pub fn ground(&self, index: usize) -> Option<&Ground> {
+        self.grounds.get(index)?.as_ref()
     }
 }

@@ -1,13 +1,10 @@
-//! The check of a plan from its text to what it asks for: every block in turn, what they say together, the warnings last. In: the text
-//! and a loader of used files. Out: the plan, or why there is none. It knows no particular procedure.
+//! The order of a check: every block in turn, then conditions on several of them, then the warnings. In: the syntax trees and a loader of
+//! data files. Out: the plan, or diagnostics that say why there is none. It knows no particular procedure.
 
 use super::checker::Checker;
 use super::declared::Declared;
-use super::scope::Scope;
-use super::{
-    Checked, Loader, Options, declarations, expressions, imports, messages, procedures, rig,
-    warnings,
-};
+use super::parsed_plan::ParsedPlan;
+use super::{Checked, Loader, Options, declarations, procedures, rig, warnings};
 use crate::plan::{Plan, PlanFile, Procedure};
 use crate::procedures as slices;
 use crate::schema::Kind;
@@ -17,67 +14,61 @@ use crate::text::source::{FileId, Sources, Span};
 /// Checks a plan and all it uses.
 #[must_use]
 pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> Checked {
-    let mut sources = Sources::default();
-    let mut faults = Vec::new();
-    let imports = imports::load(name, text, loader, &mut sources, &mut faults);
-    let unread = unread_lines(&sources, &faults);
-    let files: Vec<PlanFile> = sources
-        .iter()
-        .map(|(_, file)| PlanFile {
-            name: file.name.clone(),
-            text: file.text.clone(),
-        })
-        .collect();
-    let settings = expressions::parameters::read_settings(
-        &mut sources,
-        &imports.asts,
-        &options.settings,
-        &mut faults,
-    );
-    let scope = Scope::collect(&imports.asts, &settings, &mut faults);
-    let mut checker = Checker::new(&sources, &scope, loader, faults, unread, imports.incomplete);
-    let plan = plan(&mut checker, name, files, options);
-    let rig_links = rig::links_of_run(&checker, options.rig.as_deref());
-    let mut diagnostics = checker.faults;
-    let misspelt: Vec<Span> = imports
-        .asts
-        .iter()
-        .flat_map(|ast| ast.misspelt.iter().copied())
-        .collect();
-    // What follows from a fault that was told at the same place is not told again.
-    let at =
-        |fault: &Diagnostic, places: &[Span]| fault.span().is_some_and(|at| touches(at, places));
-    diagnostics.retain(|fault| is_of_the_text(fault) || !at(fault, &misspelt));
-    let mut explained = checker.explained;
+    ParsedPlan::parse(name, text, loader, options).check(loader)
+}
+
+/// Whether a check looks for warnings too.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Findings {
+    ErrorsAlone,
+    WarningsToo,
+}
+
+/// The parts of a plan that are kept as text.
+pub struct PlanText<'a> {
+    /// The name of the plan's file.
+    pub name: &'a str,
+    /// The plan, then every file that it uses.
+    pub files: Vec<PlanFile>,
+    /// The parameters that are set from outside, in order of their names.
+    pub settings: Vec<(String, String)>,
+}
+
+/// The diagnostics in the order of the text, without those that only follow from another at the same position. `misspelt` are the
+/// positions that were read otherwise than they are written, `explained` those that one diagnostic explains in full.
+pub fn reportable(
+    mut diagnostics: Vec<Diagnostic>,
+    misspelt: &[Span],
+    mut explained: Vec<Span>,
+) -> Vec<Diagnostic> {
+    let is_within = |diagnostic: &Diagnostic, positions: &[Span]| {
+        diagnostic
+            .span()
+            .is_some_and(|span| touches(span, positions))
+    };
+    diagnostics.retain(|found| is_of_the_text(found) || !is_within(found, misspelt));
     explained.sort_unstable();
-    diagnostics.retain(|fault| fault.code != Code::UnknownName || !at(fault, &explained));
-    diagnostics.sort_by_key(|fault| fault.span().map(|span| (span.file, span.start, span.end)));
-    let plan = plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error));
-    messages::cap(&mut diagnostics);
-    Checked {
-        plan,
-        diagnostics,
-        sources,
-        rig_links,
-    }
+    diagnostics.retain(|found| found.code != Code::UnknownName || !is_within(found, &explained));
+    diagnostics.sort_by_key(|found| found.span().map(|span| (span.file, span.start, span.end)));
+    diagnostics
 }
 
-fn is_of_the_text(fault: &Diagnostic) -> bool {
-    fault.code.id().starts_with("E1")
+/// Whether it is about the syntax.
+fn is_of_the_text(diagnostic: &Diagnostic) -> bool {
+    diagnostic.code.id().starts_with("E1")
 }
 
-/// Whether a place has a character in common with one of those, which are in order.
-fn touches(place: Span, places: &[Span]) -> bool {
-    let before =
-        places.partition_point(|other| (other.file, other.start) < (place.file, place.end));
+/// Whether a span has a character in common with one of the others, which are in order.
+fn touches(span: Span, others: &[Span]) -> bool {
+    let before = others.partition_point(|other| (other.file, other.start) < (span.file, span.end));
     before
         .checked_sub(1)
-        .and_then(|last| places.get(last))
-        .is_some_and(|last| last.file == place.file && place.start < last.end)
+        .and_then(|last| others.get(last))
+        .is_some_and(|last| last.file == span.file && span.start < last.end)
 }
 
-/// The lines at which the text could not be read.
-fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
+/// The lines at which the text could not be parsed.
+pub fn unread_lines(sources: &Sources, errors: &[Diagnostic]) -> Vec<Span> {
     let line = |span: Span| {
         let text = &sources.file(span.file).text;
         let (start, end) = (
@@ -90,18 +81,19 @@ fn unread_lines(sources: &Sources, faults: &[Diagnostic]) -> Vec<Span> {
             .map_or(text.len(), |newline| end + newline);
         Span::new(span.file, first, last)
     };
-    let labels = faults
+    let labels = errors
         .iter()
-        .filter(|fault| is_of_the_text(fault))
-        .flat_map(|fault| &fault.labels);
+        .filter(|error| is_of_the_text(error))
+        .flat_map(|error| &error.labels);
     labels.map(|label| line(label.span)).collect()
 }
 
-fn plan(
+/// Checks every block, then all of them together. None where some part of the plan has an error.
+pub fn plan(
     checker: &mut Checker,
-    name: &str,
-    files: Vec<PlanFile>,
+    text: PlanText,
     options: &Options,
+    findings: Findings,
 ) -> Option<Plan> {
     checker.recorded = options.recorded;
     checker.real_rig = rig::real_rig_of_run(checker, options.rig.as_deref());
@@ -111,7 +103,7 @@ fn plan(
     let (title, particulars) =
         declarations::plan_block::plan_block(checker, options.date.as_deref());
     if options.unattended {
-        rig::real::attended(checker, &particulars);
+        rig::real::check_operator(checker, &particulars);
     }
     let parameters = checker.parameters();
     let of_kind = |checker: &Checker, kind| {
@@ -137,15 +129,15 @@ fn plan(
     let limits = checker.limits(rig.as_ref().and_then(|rig| rig.limits));
     rig::real::complete(checker, rig.as_mut(), limits.as_ref());
     let procedures = procedures::procedures(checker);
-    procedures::hold_specimen(checker, &procedures);
-    procedures::hold_axes(checker, &procedures, &specimens, rig.as_ref());
-    // Of two `limits` nobody knows which holds.
+    procedures::check_specimen(checker, &procedures);
+    procedures::check_axes(checker, &procedures, &specimens, rig.as_ref());
+    // With two `limits` blocks, neither is known to apply.
     if let Some(limits) = limits
         .as_ref()
         .filter(|_| !checker.scope.twice.contains(&Kind::Limits))
     {
-        declarations::limits::hold_start(checker, limits);
-        declarations::limits::hold_targets(checker, limits);
+        declarations::limits::check_start(checker, limits);
+        declarations::limits::check_targets(checker, limits);
         slices::hold_limits(checker, &procedures, limits);
     }
     let declared = Declared {
@@ -165,46 +157,38 @@ fn plan(
         .collect();
     let report = declarations::report::report(checker, &by_place);
     let golden = declarations::golden::golden(checker);
-    if !checker.faults.iter().any(Diagnostic::is_error) {
-        let head = checker
-            .scope
-            .of_kind(Kind::Plan)
-            .map(|(_, block)| block.block.head)
-            .next();
-        let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
-        if let Some(rig) = &rig {
-            rig::real::warn(checker, rig);
-            rig::drift::warn(checker, rig);
-        }
-        if let Some(limits) = &limits {
-            declarations::specimen::warn_of_short_tables(checker, &specimens, limits);
-        }
-        if let Some(report) = &report {
-            declarations::print::warn(checker, report);
+    if !has_error(checker) {
+        let warns = findings == Findings::WarningsToo;
+        if warns {
+            if let Some(rig) = &rig {
+                rig::real_warnings::warn(checker, rig);
+                rig::drift::warn(checker, rig);
+            }
+            if let Some(limits) = &limits {
+                declarations::specimen::warn_of_short_tables(checker, &specimens, limits);
+            }
+            if let Some(report) = &report {
+                declarations::print::warn(checker, report);
+            }
         }
         slices::hold_reads(checker, &procedures);
-        let rule = declarations::plan_block::decision_rule(&particulars);
-        warnings::left::warn(checker, &procedures, requirements.as_deref().unwrap_or(&[]));
-        warnings::guarded::warn(
-            checker,
-            &procedures,
-            requirements.as_deref().unwrap_or(&[]),
-            rule,
-        );
-        warnings::whole_plan(
-            checker,
-            &procedures,
-            requirements.as_deref().unwrap_or(&[]),
-            &grounds,
-            head,
-        );
+        if warns {
+            let head = checker
+                .scope
+                .of_kind(Kind::Plan)
+                .map(|(_, block)| block.block.head)
+                .next();
+            let head = head.unwrap_or_else(|| Span::new(FileId(0), 0, 0));
+            let rule = declarations::plan_block::decision_rule(&particulars);
+            let requirements = requirements.as_deref().unwrap_or(&[]);
+            warnings::left::warn(checker, &procedures, requirements);
+            warnings::guarded::warn(checker, &procedures, requirements, rule);
+            warnings::whole_plan(checker, &procedures, requirements, &grounds, head);
+        }
     }
-    let mut settings: std::collections::BTreeMap<String, String> =
-        std::collections::BTreeMap::new();
-    settings.extend(options.settings.iter().cloned());
     let rig_block = rig.as_ref().and_then(|rig| rig.block);
     let plan = Plan {
-        title: title.unwrap_or_else(|| stem(name).to_owned()),
+        title: title.unwrap_or_else(|| stem(text.name).to_owned()),
         parameters,
         specimens: specimens.into_iter().collect::<Option<_>>()?,
         strikers: strikers.into_iter().collect::<Option<_>>()?,
@@ -219,18 +203,24 @@ fn plan(
         golden: golden?,
         rehearses: None,
         unloads_at_once: false,
-        files: [files, checker.data_files()].concat(),
-        settings: settings.into_iter().collect(),
+        files: [text.files, checker.data_files()].concat(),
+        settings: text.settings,
     };
-    if !checker.faults.iter().any(Diagnostic::is_error) {
+    if !has_error(checker) {
         let blocks: Vec<usize> = procedures.iter().map(|(block, _)| *block).collect();
-        warnings::tracking::warn(checker, &plan, &blocks, rig_block);
+        if findings == Findings::WarningsToo {
+            warnings::tracking::warn(checker, &plan, &blocks, rig_block);
+        }
         warnings::record_size::fits(checker, &plan, &blocks);
     }
     Some(plan)
 }
 
-/// `plans/beam.psd` is `beam`.
+fn has_error(checker: &Checker) -> bool {
+    checker.diagnostics.iter().any(Diagnostic::is_error)
+}
+
+/// The title of a plan without one: `beam` for `plans/beam.psd`.
 fn stem(name: &str) -> &str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
     file.strip_suffix(".psd").unwrap_or(file)

@@ -1,22 +1,22 @@
 //! `use "lib/frame.psd"`: every file of a plan, each loaded once. In: the plan's text and a [`Loader`]. Out: the syntax
 //! trees, the plan's first.
 
-use super::messages::files as fault;
-use super::{LoadFault, Loader};
+use super::messages::files as message;
+use super::{LoadError, Loader};
 use crate::language::syntax;
 use crate::language::syntax::ast::{Ast, ItemKind};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{FileId, Sources, Spanned};
 
-/// How deep files may use files.
+/// Deepest chain of files that use files.
 pub const DEEPEST: usize = 8;
-/// Files of one plan, the plan included.
+/// Most files of one plan, the plan included.
 pub const MOST_FILES: usize = 64;
 
 /// All files of a plan.
 pub struct Imports {
     pub asts: Vec<Ast>,
-    /// Whether some file could not be read, so that names may be missing through no fault of the plan's.
+    /// Whether some file could not be read, so that names may be missing without an error in the plan.
     pub incomplete: bool,
 }
 
@@ -24,7 +24,7 @@ struct Loading<'l> {
     loader: &'l dyn Loader,
     /// Path of each file loaded, with its tree.
     loaded: Vec<(String, Ast)>,
-    /// The files that use each other down to the one being read.
+    /// The files that use one another, down to the one being read.
     chain: Vec<String>,
     incomplete: bool,
 }
@@ -34,7 +34,7 @@ pub fn load(
     text: &str,
     loader: &dyn Loader,
     sources: &mut Sources,
-    faults: &mut Vec<Diagnostic>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Imports {
     let mut loading = Loading {
         loader,
@@ -42,9 +42,9 @@ pub fn load(
         chain: Vec::new(),
         incomplete: false,
     };
-    // Paths of used files are relative to the plan's folder, and so is the plan's own.
+    // Paths of used files are relative to the plan's folder, and so is the plan's own path.
     let own = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    loading.read(own, name, text, sources, faults);
+    loading.read(own, name, text, sources, diagnostics);
     Imports {
         asts: loading.loaded.into_iter().map(|(_, ast)| ast).collect(),
         incomplete: loading.incomplete,
@@ -58,12 +58,12 @@ impl Loading<'_> {
         name: &str,
         text: &str,
         sources: &mut Sources,
-        faults: &mut Vec<Diagnostic>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) {
         let file = sources.add(name, text);
         let (ast, found) = syntax::parse(sources, file);
-        let known = faults.len();
-        faults.extend(found);
+        let known = diagnostics.len();
+        diagnostics.extend(found);
         let used: Vec<Spanned<String>> = ast
             .items
             .iter()
@@ -75,8 +75,9 @@ impl Loading<'_> {
                 }
             })
             .collect();
-        // Of a file that could not be read at all, nobody knows what it declares.
-        self.incomplete |= ast.items.is_empty() && faults[known..].iter().any(Diagnostic::is_error);
+        // The declarations of a file that could not be parsed at all are unknown.
+        self.incomplete |=
+            ast.items.is_empty() && diagnostics[known..].iter().any(Diagnostic::is_error);
         self.loaded.push((path.to_owned(), ast));
         debug_assert_eq!(
             FileId(u32::try_from(self.loaded.len()).unwrap_or(0)),
@@ -84,51 +85,51 @@ impl Loading<'_> {
         );
         self.chain.push(path.to_owned());
         for used in used {
-            if let Err(found) = self.follow(path, &used, sources, faults) {
+            if let Err(found) = self.follow(path, &used, sources, diagnostics) {
                 self.incomplete = true;
-                faults.push(found);
+                diagnostics.push(found);
             }
         }
         self.chain.pop();
     }
 
-    /// Loads what one `use` names, unless it is loaded already.
+    /// Loads the file of one `use`, unless it is loaded already.
     fn follow(
         &mut self,
         from: &str,
         used: &Spanned<String>,
         sources: &mut Sources,
-        faults: &mut Vec<Diagnostic>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) -> Result<(), Diagnostic> {
         let written = used.node.as_str();
         if let Some(reason) = refused(written) {
-            return Err(fault::bad_path(written, used.span, reason));
+            return Err(message::bad_path(written, used.span, reason));
         }
         let path = resolved(from, written);
         if let Some(start) = self.chain.iter().position(|open| *open == path) {
-            return Err(fault::use_cycle(&self.chain[start..], &path, used.span));
+            return Err(message::use_cycle(&self.chain[start..], &path, used.span));
         }
         if self.loaded.iter().any(|(known, _)| *known == path) {
             return Ok(());
         }
         if self.chain.len() > DEEPEST {
-            return Err(fault::too_deep(DEEPEST, used.span));
+            return Err(message::too_deep(DEEPEST, used.span));
         }
         if self.loaded.len() >= MOST_FILES {
-            return Err(fault::too_many_files(MOST_FILES, used.span));
+            return Err(message::too_many_files(MOST_FILES, used.span));
         }
         match self.loader.load(&path) {
             Ok(text) => {
-                self.read(&path, &path, &text, sources, faults);
+                self.read(&path, &path, &text, sources, diagnostics);
                 Ok(())
             }
-            Err(LoadFault::NotFound) => Err(fault::not_found(&path, used.span)),
-            Err(LoadFault::Refused(reason)) => Err(fault::refused(&path, &reason, used.span)),
+            Err(LoadError::NotFound) => Err(message::not_found(&path, used.span)),
+            Err(LoadError::Refused(reason)) => Err(message::refused(&path, &reason, used.span)),
         }
     }
 }
 
-/// The path, relative to the plan's folder, of what the file `from` calls `written`.
+/// The path, relative to the plan's folder, of the file that `from` names as `written`.
 pub fn resolved(from: &str, written: &str) -> String {
     let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
     let steps = written.split('/').filter(|step| *step != ".");
@@ -150,7 +151,7 @@ pub fn own_path(sources: &Sources, file: FileId) -> String {
     }
 }
 
-/// Why a path may not be used, if so.
+/// Why a path is not allowed, if so.
 pub fn refused(path: &str) -> Option<&'static str> {
     let drive = path.as_bytes().get(1) == Some(&b':');
     if path.is_empty() {

@@ -1,4 +1,4 @@
-//! The check: syntax tree to plan, all errors at once. In: the text of the plan and a [`Loader`]
+//! The check: from syntax tree to plan, with all errors in one pass. In: the text of the plan and a [`Loader`]
 //! for the files it uses. Out: a [`Checked`]. It runs nothing.
 
 pub(crate) mod checker;
@@ -8,6 +8,7 @@ mod driver;
 pub mod expressions;
 mod imports;
 pub(crate) mod messages;
+mod parsed_plan;
 pub(crate) mod procedures;
 mod rig;
 mod scope;
@@ -17,31 +18,32 @@ mod tests;
 pub(crate) mod warnings;
 
 pub use checker::{DEEPEST_VALUES, MOST_TERMS};
-pub use declarations::ground_record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
+pub use declarations::ground::record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
 pub use driver::check;
 pub use expressions::literal::MOST_ENTRIES;
 pub use imports::{DEEPEST, MOST_FILES};
+pub use parsed_plan::ParsedPlan;
 
 use crate::plan::Plan;
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{Sources, Span};
 
-/// Gives the text of used files. Paths are relative to the plan's folder, with `/`, already free of `..`.
+/// Loads the text of used files. Paths are relative to the plan's folder, with `/`, already free of `..`.
 pub trait Loader {
     /// # Errors
     /// Why the file cannot be used.
-    fn load(&self, path: &str) -> Result<String, LoadFault>;
+    fn load(&self, path: &str) -> Result<String, LoadError>;
 }
 
 /// Why a used file cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LoadFault {
+pub enum LoadError {
     NotFound,
-    /// A folder, device, link out of the folder, too large, no UTF-8: the reason for a person.
+    /// A folder, a device, a link out of the folder, a file that is too large or not UTF-8: the reason, for the reader.
     Refused(String),
 }
 
-/// What the command line says of the plan.
+/// The options of the command line that bear on the plan.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// `--rig NAME`
@@ -50,18 +52,18 @@ pub struct Options {
     pub settings: Vec<(String, String)>,
     /// `--date`, ISO 8601.
     pub date: Option<String>,
-    /// A run is to begin, the command line names nobody, and nobody can be asked.
+    /// A run is about to begin, the command line names no operator, and no operator can be asked.
     pub unattended: bool,
-    /// The plan is of a record: names of older versions are read.
+    /// The plan comes from a run log: names of older versions are read too.
     pub recorded: bool,
 }
 
-/// The outcome of a check. `plan` is there if no error stands.
+/// The outcome of a check. There is a `plan` if there is no error.
 #[derive(Debug)]
 pub struct Checked {
     pub plan: Option<Plan>,
     pub diagnostics: Vec<Diagnostic>,
     pub sources: Sources,
-    /// Where the rig of the run says how it is reached; empty for the ideal one.
+    /// The entries that state how the rig of the run is connected; empty for the ideal one.
     pub rig_links: Vec<Span>,
 }

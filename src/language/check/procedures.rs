@@ -1,7 +1,7 @@
-//! What is run, in the order written, and on which specimen.
+//! The procedures in the order of the plan, and the specimen that they test.
 
 use super::checker::Checker;
-use super::messages::{axes as axis_faults, frames, whole as fault};
+use super::messages::{axes as axis_faults, frames, whole as message};
 use super::rig::CheckedRig;
 use super::rig::axes;
 use crate::plan::{Procedure, Specimen};
@@ -10,7 +10,7 @@ use crate::procedures::facts::Tests;
 use crate::schema::Kind;
 use crate::text::source::Span;
 
-/// Every procedure; None for those with a fault.
+/// Every procedure; None for those with an error.
 pub fn procedures(checker: &mut Checker) -> Vec<(usize, Option<Procedure>)> {
     let blocks: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
     blocks
@@ -28,37 +28,38 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
     })
 }
 
-/// One rig holds one specimen: every procedure must test the one that the first of them tests.
-pub fn hold_specimen(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+/// One rig holds one specimen: every procedure must test the same one as the first.
+pub fn check_specimen(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     let mut on_rig: Option<(usize, Span)> = None;
     for (block, procedure) in procedures {
-        // Without the first one's specimen nothing can be said of those after it.
+        // Without the specimen of the first, nothing is known about the others.
         let Some(procedure) = procedure else { return };
         let Some(specimen) = procedure.kind.specimen() else {
             continue;
         };
         let head = checker.scope.blocks[*block].block.head;
         let span = checker
-            .given(*block, "specimen")
+            .field(*block, "specimen")
             .map_or(head, |(_, entry)| entry.value.span);
         let (first, first_span) = *on_rig.get_or_insert((specimen, span));
         if specimen != first {
-            let name = |place| {
+            let name = |index| {
                 let named = checker
                     .scope
                     .of_kind(Kind::Specimen)
-                    .nth(place)
+                    .nth(index)
                     .and_then(|(_, block)| block.name);
                 named.map_or("", |name| name.node.as_str())
             };
-            let fault = fault::another_specimen(name(specimen), span, name(first), first_span);
-            checker.faults.push(fault);
+            let diagnostic =
+                message::another_specimen(name(specimen), span, name(first), first_span);
+            checker.diagnostics.push(diagnostic);
         }
     }
 }
 
-/// What drives one actuator cannot drive the several of a frame, and a real rig has as many as it says.
-pub fn hold_axes(
+/// A procedure for one actuator cannot drive the several of a frame, and a real rig has as many as it declares.
+pub fn check_axes(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
     specimens: &[Option<Specimen>],
@@ -71,15 +72,15 @@ pub fn hold_axes(
     let Some(Some(specimen)) = specimens.get(on_rig) else {
         return;
     };
-    axes::hold_specimen(checker, rig, specimen);
+    axes::check_specimen(checker, rig, specimen);
     let storeys = specimen.degrees_of_freedom();
     if storeys == 1 {
         return;
     }
-    // A rig that lists its axes is held to them as a whole.
+    // A rig that lists its axes is checked as a whole.
     let one_axis = rig.filter(|rig| {
         rig.block
-            .is_some_and(|block| checker.given(block, "axes").is_none())
+            .is_some_and(|block| checker.field(block, "axes").is_none())
     });
     let one_axis = one_axis
         .filter(|rig| rig.plan.link.as_real().is_some())
@@ -93,7 +94,7 @@ pub fn hold_axes(
         let Some(procedure) = procedure else { continue };
         let head = checker.scope.blocks[*block].block.head;
         match procedures::facts_of(&procedure.kind).tests {
-            Tests::Frame => checker.faults.extend(
+            Tests::Frame => checker.diagnostics.extend(
                 one_axis
                     .iter()
                     .map(|rig| axis_faults::frame_on_one_axis(&specimen.name, storeys, rig, head)),
@@ -101,7 +102,7 @@ pub fn hold_axes(
             Tests::Nothing => {}
             Tests::OneDegreeOfFreedom => {
                 let keyword = procedure.kind.keyword();
-                checker.faults.push(frames::one_degree_of_freedom(
+                checker.diagnostics.push(frames::one_degree_of_freedom(
                     keyword,
                     &specimen.name,
                     storeys,

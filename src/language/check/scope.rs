@@ -1,15 +1,16 @@
-//! What the files declare: blocks, values and requirements, by name, each name once. In: the syntax trees. Out: a
+//! The declarations of the files: blocks, values and requirements, by name, each name once. In: the syntax trees. Out: a
 //! [`Scope`]. It evaluates nothing.
 
 use std::collections::BTreeMap;
 
-use super::messages::names as fault;
+use super::messages::names as message;
 use crate::language::syntax::ast::{Ast, Block, Expr, Ident, ItemKind};
 use crate::language::syntax::control;
 use crate::plan::formula::ProcedureId;
 use crate::schema::{self, BlockKind, Kind, Naming};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{FileId, Span, Spanned};
+use crate::units::Quantity;
 
 /// A block of a kind that this version knows.
 pub struct DeclaredBlock<'a> {
@@ -18,12 +19,12 @@ pub struct DeclaredBlock<'a> {
     pub block: &'a Block,
     /// The whole item.
     pub span: Span,
-    /// Its place among the procedures.
+    /// Its index among the procedures.
     pub procedure: Option<ProcedureId>,
 }
 
 impl DeclaredBlock<'_> {
-    /// Whether it should have a name and has none, which is told: what is called by a name may be this one.
+    /// Whether its required name is missing, which is reported: an unknown name may be the name of this block.
     pub fn lacks_its_name(&self) -> bool {
         self.name.is_none() && self.kind.naming == Naming::Named
     }
@@ -35,16 +36,25 @@ pub struct DeclaredValue<'a> {
     pub name: &'a Ident,
     pub value: &'a Expr,
     pub bounds: Option<&'a Expr>,
-    /// The value `--set` gives in its place.
-    pub setting: Option<&'a Expr>,
+    /// The value given in its place from outside the plan.
+    pub setting: Option<&'a Setting>,
 }
 
-/// What a name stands for.
+/// A value of a parameter that is given from outside the plan.
+#[derive(Clone, Debug)]
+pub enum Setting {
+    /// An expression, as `--set` has it.
+    Written(Expr),
+    /// A number in SI units, bound without any text.
+    Bound(Quantity),
+}
+
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
     Value(usize),
     Block(usize),
-    /// Declared by something that is faulty in itself: say no more of it.
+    /// Its declaration has an error: no other is to follow.
     Poisoned,
 }
 
@@ -58,31 +68,31 @@ pub struct Scope<'a> {
     pub blocks: Vec<DeclaredBlock<'a>>,
     pub values: Vec<DeclaredValue<'a>>,
     pub requirements: Vec<DeclaredRequirement<'a>>,
-    /// Kinds of which there are more blocks than there may be, which is told.
+    /// Kinds with more blocks than are allowed, which is reported.
     pub twice: Vec<Kind>,
     names: BTreeMap<&'a str, (Meaning, Span)>,
     /// The blocks of each kind, in order.
     kinds: Vec<(Kind, Vec<usize>)>,
-    /// The place of each block among those of its kind.
-    places: Vec<usize>,
+    /// The index of each block among those of its kind.
+    indices: Vec<usize>,
     /// The blocks of the procedures, in order.
     procedures: Vec<usize>,
     nameless: Vec<&'static BlockKind>,
-    /// Faults of the text.
+    /// Spans of syntax errors.
     unread: Vec<Span>,
-    /// Where the first requirement of each name is.
+    /// The span of the first requirement of each name.
     labels: BTreeMap<&'a str, Span>,
 }
 
 impl<'a> Scope<'a> {
-    /// Declares all that the files say; `settings` are the values given by `--set`, by name.
+    /// Collects all declarations of the files; `settings` are the values given from outside, by name.
     pub fn collect(
         asts: &'a [Ast],
-        settings: &'a BTreeMap<String, Expr>,
-        faults: &mut Vec<Diagnostic>,
+        settings: &'a BTreeMap<String, Setting>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) -> Self {
         let mut scope = Self {
-            unread: faults.iter().filter_map(Diagnostic::span).collect(),
+            unread: diagnostics.iter().filter_map(Diagnostic::span).collect(),
             ..Self::default()
         };
         for ast in asts {
@@ -91,7 +101,7 @@ impl<'a> Scope<'a> {
                 match &item.kind {
                     ItemKind::Use { .. } => {}
                     ItemKind::Let { name, value } => {
-                        scope.declare_value("let", name, value, None, None, faults);
+                        scope.declare_value("let", name, value, None, None, diagnostics);
                     }
                     ItemKind::Param {
                         name,
@@ -104,17 +114,17 @@ impl<'a> Scope<'a> {
                             value,
                             bounds.as_ref(),
                             settings.get(&name.node),
-                            faults,
+                            diagnostics,
                         );
                     }
                     ItemKind::Require { label, .. } if library => {
-                        faults.push(fault::not_in_library("require", label.span));
+                        diagnostics.push(message::not_in_library("require", label.span));
                     }
                     ItemKind::Require { label, condition } => {
-                        scope.require(label, condition, faults);
+                        scope.require(label, condition, diagnostics);
                     }
                     ItemKind::Block(block) => {
-                        scope.declare_block(block, item.span, library, faults);
+                        scope.declare_block(block, item.span, library, diagnostics);
                     }
                 }
             }
@@ -143,12 +153,12 @@ impl<'a> Scope<'a> {
         found.iter().map(|index| (*index, &self.blocks[*index]))
     }
 
-    /// Place of a block among those of its own kind.
-    pub fn place_in_kind(&self, block: usize) -> usize {
-        self.places[block]
+    /// Index of a block among those of its own kind.
+    pub fn index_in_kind(&self, block: usize) -> usize {
+        self.indices[block]
     }
 
-    /// Kinds of blocks that should have a name and have none, which is told: what is called by an unknown name may be one of them.
+    /// Kinds of blocks whose required name is missing, which is reported: an unknown name may be one of theirs.
     pub fn nameless(&self) -> impl Iterator<Item = &'static BlockKind> {
         self.nameless.iter().copied()
     }
@@ -168,21 +178,21 @@ impl<'a> Scope<'a> {
         &mut self,
         label: &'a Spanned<String>,
         condition: &'a Expr,
-        faults: &mut Vec<Diagnostic>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) {
         let first = *self.labels.entry(&label.node).or_insert(label.span);
         if first != label.span {
-            faults.push(fault::requirement_twice(&label.node, label.span, first));
+            diagnostics.push(message::requirement_twice(&label.node, label.span, first));
         }
         self.requirements
             .push(DeclaredRequirement { label, condition });
     }
 
-    fn declare(&mut self, name: &'a Ident, meaning: Meaning, faults: &mut Vec<Diagnostic>) {
+    fn declare(&mut self, name: &'a Ident, meaning: Meaning, diagnostics: &mut Vec<Diagnostic>) {
         match self.names.get(name.node.as_str()) {
             Some((before, first)) => {
-                faults.push(fault::declared_twice(&name.node, name.span, *first));
-                // Which of two things of different sorts is meant, nobody knows.
+                diagnostics.push(message::declared_twice(&name.node, name.span, *first));
+                // Of two declarations of different sorts, neither is known to be meant.
                 if std::mem::discriminant(before) != std::mem::discriminant(&meaning) {
                     self.names.insert(&name.node, (Meaning::Poisoned, *first));
                 }
@@ -199,10 +209,10 @@ impl<'a> Scope<'a> {
         name: &'a Ident,
         value: &'a Expr,
         bounds: Option<&'a Expr>,
-        setting: Option<&'a Expr>,
-        faults: &mut Vec<Diagnostic>,
+        setting: Option<&'a Setting>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) {
-        self.declare(name, Meaning::Value(self.values.len()), faults);
+        self.declare(name, Meaning::Value(self.values.len()), diagnostics);
         self.values.push(DeclaredValue {
             keyword,
             name,
@@ -217,11 +227,11 @@ impl<'a> Scope<'a> {
         block: &'a Block,
         span: Span,
         library: bool,
-        faults: &mut Vec<Diagnostic>,
+        diagnostics: &mut Vec<Diagnostic>,
     ) {
         let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
         let Some(kind) = schema::block_of_words(&words) else {
-            faults.push(fault::unknown_block(block));
+            diagnostics.push(message::unknown_block(block));
             // `if heavy {` declares nothing.
             if words
                 .first()
@@ -229,7 +239,7 @@ impl<'a> Scope<'a> {
             {
                 return;
             }
-            // Kind and name may stand in each other's place.
+            // Kind and name may be in the wrong order.
             let turned = block.words.len() == 2
                 && schema::block_of_words(&[block.words[1].node.as_str(), "_"]).is_some();
             self.poison(
@@ -238,14 +248,14 @@ impl<'a> Scope<'a> {
                 } else {
                     &block.words[1..]
                 },
-                faults,
+                diagnostics,
             );
             return;
         };
         let rest = &block.words[kind.keyword.len()..];
         if kind.kind == Kind::Later {
-            faults.push(fault::block_of_later_version(kind, block));
-            self.poison(rest, faults);
+            diagnostics.push(message::block_of_later_version(kind, block));
+            self.poison(rest, diagnostics);
             return;
         }
         if library
@@ -254,29 +264,29 @@ impl<'a> Scope<'a> {
                 Kind::Specimen | Kind::Striker | Kind::Ground | Kind::Rig | Kind::Limits
             )
         {
-            faults.push(fault::not_in_library(&kind.words(), block.head));
-            self.poison(rest, faults);
+            diagnostics.push(message::not_in_library(&kind.words(), block.head));
+            self.poison(rest, diagnostics);
             return;
         }
-        // A head that could not be read to its end has more words than are known.
+        // A head that could not be parsed to its end has more words than are known.
         let cut_short = self.unread.iter().any(|at| {
             at.file == block.head.file
                 && (block.head.start..=block.head.end + 1).contains(&at.start)
         });
-        if let Some(wrong) = fault::block_name(kind, block, rest).filter(|_| !cut_short) {
-            faults.push(wrong);
+        if let Some(wrong) = message::block_name(kind, block, rest).filter(|_| !cut_short) {
+            diagnostics.push(wrong);
         } else if let (Naming::Unnamed | Naming::Titled | Naming::MaybeNamed, []) =
             (kind.naming, rest)
             && let Some(first) = self.unnamed(kind, span)
         {
-            faults.push(fault::block_twice(kind, block.head, first));
+            diagnostics.push(message::block_twice(kind, block.head, first));
             if !self.twice.contains(&kind.kind) {
                 self.twice.push(kind.kind);
             }
             return;
         }
         if let Some(name) = rest.first() {
-            self.declare(name, Meaning::Block(self.blocks.len()), faults);
+            self.declare(name, Meaning::Block(self.blocks.len()), diagnostics);
         }
         if rest.is_empty()
             && kind.naming == Naming::Named
@@ -286,7 +296,7 @@ impl<'a> Scope<'a> {
         }
         let procedure = kind.procedure.then_some(ProcedureId(self.procedures.len()));
         self.procedures.extend(procedure.map(|_| self.blocks.len()));
-        self.place(kind.kind);
+        self.count_kind(kind.kind);
         self.blocks.push(DeclaredBlock {
             kind,
             name: rest.first(),
@@ -296,19 +306,19 @@ impl<'a> Scope<'a> {
         });
     }
 
-    /// Counts the block that comes next among those of its kind.
-    fn place(&mut self, kind: Kind) {
+    /// Counts the next block among those of its kind.
+    fn count_kind(&mut self, kind: Kind) {
         let block = self.blocks.len();
         if let Some((_, blocks)) = self.kinds.iter_mut().find(|(of, _)| *of == kind) {
-            self.places.push(blocks.len());
+            self.indices.push(blocks.len());
             blocks.push(block);
         } else {
-            self.places.push(0);
+            self.indices.push(0);
             self.kinds.push((kind, vec![block]));
         }
     }
 
-    /// The block without a name of this kind that stands in the same file already.
+    /// The earlier block without a name of this kind in the same file.
     fn unnamed(&self, kind: &BlockKind, span: Span) -> Option<Span> {
         let same = |(_, other): &(usize, &DeclaredBlock)| {
             other.name.is_none() && other.span.file == span.file
@@ -318,9 +328,9 @@ impl<'a> Scope<'a> {
             .map(|(_, other)| other.block.head)
     }
 
-    fn poison(&mut self, words: &'a [Ident], faults: &mut Vec<Diagnostic>) {
+    fn poison(&mut self, words: &'a [Ident], diagnostics: &mut Vec<Diagnostic>) {
         if let Some(name) = words.last() {
-            self.declare(name, Meaning::Poisoned, faults);
+            self.declare(name, Meaning::Poisoned, diagnostics);
         }
     }
 }

@@ -1,22 +1,22 @@
-//! Which specimen a procedure tests: the one it names, else the only one declared. In: a block. Out: its specimen, or a fault.
+//! The specimen that a procedure tests: the one that it names, else the only one declared. In: a block. Out: its specimen, or an error.
 
 use super::checker::Checker;
-use super::messages::{names, whole as fault};
+use super::messages::{names, whole as message};
 use super::scope::{DeclaredBlock, Meaning};
 use crate::language::syntax::ast::ExprKind;
 use crate::schema::{self, Kind};
 use crate::text::diagnostic::Code;
 
 impl Checker<'_> {
-    /// The specimen of a procedure as its place in the plan.
+    /// The specimen of a procedure, as its index in the plan.
     pub fn specimen_of(&mut self, block: usize) -> Option<usize> {
         self.specimen_block(block)
-            .map(|specimen| self.scope.place_in_kind(specimen))
+            .map(|specimen| self.scope.index_in_kind(specimen))
     }
 
     /// The specimen a procedure names, else the only one declared.
     pub fn specimen_block(&mut self, block: usize) -> Option<usize> {
-        if self.given(block, "specimen").is_some() {
+        if self.field(block, "specimen").is_some() {
             return self.reference(block, "specimen", Kind::Specimen);
         }
         let mut declared = self.scope.of_kind(Kind::Specimen);
@@ -39,16 +39,16 @@ impl Checker<'_> {
                     .of_kind(Kind::Specimen)
                     .map(named)
                     .filter_map(|(name, head)| Some((name?, head)));
-                let shown: Vec<_> = declared.take(fault::SHOWN).collect();
-                self.fail(fault::several_specimens(head, &shown, several))
+                let shown: Vec<_> = declared.take(message::SHOWN).collect();
+                self.fail(message::several_specimens(head, &shown, several))
             }
         }
     }
 
-    /// The same, where what is wrong with it is said by whoever reads the block.
+    /// The same without diagnostics, which the check of the block itself makes.
     pub fn tested(&self, block: usize) -> Option<usize> {
         let mut declared = self.scope.of_kind(Kind::Specimen);
-        let Some((_, written)) = self.given(block, "specimen") else {
+        let Some((_, written)) = self.field(block, "specimen") else {
             return declared
                 .next()
                 .filter(|_| declared.len() == 0)
@@ -65,17 +65,17 @@ impl Checker<'_> {
         }
     }
 
-    /// Says once that nothing is there to be tested.
+    /// Reports once that there is no specimen.
     pub fn specimen_needed(&mut self, block: usize) {
         let none = self.scope.of_kind(Kind::Specimen).next().is_none();
-        // A block whose keyword is no word of the language may be the one that is missing.
-        let said = self
-            .faults
+        // A block with an unknown keyword may be the missing one.
+        let is_reported = self
+            .diagnostics
             .iter()
-            .any(|fault| matches!(fault.code, Code::MissingBlock | Code::UnknownBlock));
-        if none && !said && !self.names_lost && self.unread.is_empty() {
+            .any(|diagnostic| matches!(diagnostic.code, Code::MissingBlock | Code::UnknownBlock));
+        if none && !is_reported && !self.names_lost && self.unread.is_empty() {
             let head = self.scope.blocks[block].block.head;
-            self.faults
+            self.diagnostics
                 .push(names::missing_block(schema::block(Kind::Specimen), head));
         }
     }

@@ -1,5 +1,5 @@
-//! The syntax tree: what a plan file says, each piece with its place. No meaning yet: block kinds, fields, units and
-//! names are words here, looked up by `check`. Comments are kept beside the items, for the formatter.
+//! The syntax tree: the content of a plan file, each piece with its span. It has no meaning yet: block kinds, fields, units and
+//! names are strings here, looked up by `check`. Comments are kept beside the items, for the formatter.
 
 use crate::text::source::{FileId, Span, Spanned};
 
@@ -8,9 +8,9 @@ use crate::text::source::{FileId, Span, Spanned};
 pub struct Ast {
     pub file: FileId,
     pub items: Vec<Item>,
-    /// Every comment of the file in order of position, wherever it stands; text from `#` to the end of the line.
+    /// Every comment of the file in order of position; text from `#` to the end of the line.
     pub comments: Vec<Spanned<String>>,
-    /// Places that were read otherwise than they are written, which is a fault that was told: what else is said of them follows
+    /// Spans that are read otherwise than they are written. Each has an error already; other errors there only follow
     /// from it.
     pub misspelt: Vec<Span>,
 }
@@ -49,10 +49,10 @@ pub enum ItemKind {
     Block(Block),
 }
 
-/// `stiffness ramp k0 { … }`: the words before the brace, a title where one was written (`plan "…"`), and the fields.
+/// `stiffness ramp k0 { … }`: the words before the brace, the title if there is one (`plan "…"`), and the fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// At least one: `["stiffness", "ramp", "k0"]`. Which are the kind and which the name is for `check` to say.
+    /// At least one: `["stiffness", "ramp", "k0"]`. `check` decides which are the kind and which is the name.
     pub words: Vec<Ident>,
     pub title: Option<Spanned<String>>,
     pub fields: Vec<Entry>,
@@ -93,7 +93,7 @@ pub enum ExprKind {
         items: Vec<Expr>,
         unit: Option<UnitToken>,
     },
-    /// `0.1 mm .. 1 mm step 0.1 mm`; bare numbers take the unit that stands last.
+    /// `0.1 mm .. 1 mm step 0.1 mm`; bare numbers take the last unit.
     Range {
         start: Box<Expr>,
         end: Box<Expr>,
@@ -126,9 +126,9 @@ pub enum ExprKind {
         tolerance: Box<Expr>,
         target: Box<Expr>,
     },
-    /// `( … )`, kept so that the formatter gives back what was written.
+    /// `( … )`, kept so that the formatter writes it as it was.
     Parenthesised(Box<Expr>),
-    /// Stands where an expression could not be read; the fault has been reported, so say no more of it.
+    /// An expression that could not be parsed; its error has been reported, and no other is to follow.
     Faulty,
 }
 

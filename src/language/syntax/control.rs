@@ -1,14 +1,14 @@
-//! Words by which other languages begin a block that is read on a condition, or again and again. In: a word. Out: what is said of it.
+//! Keywords with which other languages begin a condition or a loop. In: a word. Out: the message for it.
 
 const CONDITIONS: [&str; 5] = ["if", "elif", "else", "unless", "when"];
 const LOOPS: [&str; 5] = ["for", "foreach", "while", "loop", "repeat"];
 
-/// Whether it may go on with another branch.
+/// Whether another branch may follow it.
 pub fn is_condition(word: &str) -> bool {
     CONDITIONS.contains(&word)
 }
 
-/// The sentence and the way out; None of any other word.
+/// The message and the suggestion; None for any other word.
 #[must_use]
 pub fn of_another_language(word: &str) -> Option<(&'static str, &'static str)> {
     if is_condition(word) {

@@ -1,4 +1,4 @@
-//! The grammar's pairs → expressions. Precedence below ranges is a Pratt parser's work: `+ -`, `* /`, unary `-`, `^`
+//! Pairs of the grammar → expressions. A Pratt parser handles the precedence below ranges: `+ -`, `* /`, unary `-`, `^`
 //! (to the right), then `.` and `[0]`.
 
 use std::sync::LazyLock;
@@ -10,8 +10,9 @@ use pest::{
 
 use super::{
     ast::{Argument, BinaryOperator, Expr, ExprKind, UnitToken},
-    faults, limits,
+    limits,
     lower::{Lowering, unescape},
+    messages,
     parse::Rule,
 };
 use crate::text::source::{Span, Spanned};
@@ -79,7 +80,7 @@ impl Lowering {
     }
 
     fn too_many(&self, span: Span) -> Expr {
-        self.fault(faults::too_many_operators(span, limits::OPERATORS));
+        self.error(messages::too_many_operators(span, limits::OPERATORS));
         Self::faulty(span)
     }
 
@@ -225,7 +226,7 @@ impl Lowering {
         };
         let unit: Option<UnitToken> = parts.next().map(|unit| self.ident(&unit));
         let span = unit.as_ref().map_or(start, |unit| start.to(unit.span));
-        // `tokens` has refused what is not finite before the grammar is asked.
+        // `tokens` has rejected a number that is not finite before the grammar is applied.
         let value = text.parse().unwrap_or(f64::NAN);
         Expr {
             span,
@@ -288,7 +289,7 @@ impl Lowering {
             }
             let value = value.unwrap_or_else(|| Self::faulty(span));
             if argument_name.is_none() && arguments.iter().any(|before| before.name.is_some()) {
-                self.fault(faults::positional_after_named(value.span));
+                self.error(messages::positional_after_named(value.span));
                 continue;
             }
             arguments.push(Argument {

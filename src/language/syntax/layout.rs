@@ -1,24 +1,25 @@
-//! Recovery: cuts a faulty file into items and fields by its lines and brackets, so that each can be read alone and
-//! none swallows the next. In: tokens. Out: [`Piece`]s and the faults of brackets. Knows lines, not grammar.
+//! Error recovery: cuts a file with errors into items and fields by its lines and brackets, so that each can be parsed separately and
+//! none includes the next. In: tokens. Out: [`Piece`]s and the errors of brackets. Knows lines, not grammar.
 
 use super::{
-    control, faults,
-    tokens::{JOINING_WORDS, Kind, Tokens},
+    control,
+    lexical::tokens::{JOINING_WORDS, Kind, Tokens},
+    messages,
 };
 use crate::text::diagnostic::Diagnostic;
 
-/// One statement: tokens `start..end`, the last of which is no line end.
+/// One statement: tokens `start..end`, the last of which is not a line end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Statement {
     pub start: usize,
     pub end: usize,
-    /// Its brackets are at fault, and that has been said.
+    /// Its brackets do not match, and that has been reported.
     pub broken: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Piece {
-    /// `let`, `param`, `use`, `require`, or something that is no item at all.
+    /// `let`, `param`, `use`, `require`, or a statement that is not an item.
     Item(Statement),
     /// `open` is the token of `{`, `close` that of `}`.
     Block {
@@ -34,7 +35,7 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
     let mut cutter = Cutter {
         tokens,
         at: 0,
-        faults: Vec::new(),
+        errors: Vec::new(),
     };
     let mut pieces = Vec::new();
     while cutter.skip_lines() {
@@ -59,13 +60,13 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
             pieces.push(Piece::Item(statement));
         }
     }
-    (pieces, cutter.faults)
+    (pieces, cutter.errors)
 }
 
 /// Words a top-level item starts with, other than a block.
 pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
 
-/// Words and signs of the fields of a block that lacks its `{`, at most.
+/// Most words and signs of the fields of a block that lacks its `{`.
 const FIELDS_WITHOUT_BRACE: usize = 500;
 
 /// Signs between two values.
@@ -76,7 +77,7 @@ const OPERATORS: [&str; 12] = [
 struct Cutter<'a> {
     tokens: &'a Tokens<'a>,
     at: usize,
-    faults: Vec<Diagnostic>,
+    errors: Vec<Diagnostic>,
 }
 
 impl Cutter<'_> {
@@ -91,7 +92,7 @@ impl Cutter<'_> {
         )
     }
 
-    /// Past line ends and comments; whether anything is left.
+    /// Skips line ends and comments; returns whether anything is left.
     fn skip_lines(&mut self) -> bool {
         while matches!(
             self.tokens.kind(self.at),
@@ -105,7 +106,7 @@ impl Cutter<'_> {
     fn unexpected(&mut self, expected: &str) {
         let token = self.tokens.list[self.at];
         let found = format!("`{}`", self.tokens.text_of(token));
-        self.faults.push(faults::unexpected(
+        self.errors.push(messages::unexpected(
             self.tokens.span(token.start, token.end),
             &found,
             expected,
@@ -116,15 +117,15 @@ impl Cutter<'_> {
         let token = self.tokens.list[open];
         let text = self.tokens.text_of(token);
         let close = closing(text);
-        self.faults.push(faults::unclosed(
+        self.errors.push(messages::unclosed(
             self.tokens.span(token.start, token.end),
             text,
             close,
         ));
     }
 
-    /// One statement from here: to the end of its line, further where a bracket is open or an operator stands last,
-    /// but never past a line that starts something new, nor past a brace.
+    /// One statement from here: to the end of its line, further where a bracket is open or an operator is last,
+    /// but never beyond a line that starts a new statement, nor beyond a brace.
     fn statement(&mut self) -> Statement {
         let start = self.at;
         let mut end = start;
@@ -168,7 +169,7 @@ impl Cutter<'_> {
         Statement { start, end, broken }
     }
 
-    /// Whether the next line begins with an operator, which is told: it goes on with the expression of this one.
+    /// Whether the next line begins with an operator, which is reported: it continues the expression of this line.
     fn goes_on_below(&mut self) -> bool {
         let next = self.at + 1;
         let joins = |word: &&str| self.tokens.is(next, word) && !self.tokens.is(next + 1, "=");
@@ -177,14 +178,14 @@ impl Cutter<'_> {
         }
         let token = self.tokens.list[next];
         let operator = self.tokens.text_of(token);
-        self.faults.push(faults::operator_begins_line(
+        self.errors.push(messages::operator_begins_line(
             self.tokens.span(token.start, token.end),
             operator,
         ));
         true
     }
 
-    /// A brace that stands on a line of its own below the head that it belongs to: told, and read as that block's.
+    /// A brace on a separate line below the head of its block: it is reported, and read as that block's.
     fn brace_below(&mut self, head: Statement) {
         let mut next = self.at;
         while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
@@ -197,14 +198,14 @@ impl Cutter<'_> {
             .any(|word| self.tokens.is(head.start, word));
         if next > self.at && head.end > head.start && words && !item && self.tokens.is(next, "{") {
             let brace = self.tokens.list[next];
-            self.faults.push(faults::brace_on_next_line(
+            self.errors.push(messages::brace_on_next_line(
                 self.tokens.span(brace.start, brace.end),
             ));
             self.at = next;
         }
     }
 
-    /// Whether these are the words of a block that is closed and never opened, which is told: fields follow, and a `}`.
+    /// Whether these are the words of a block that is closed and never opened, which is reported: fields follow, and a `}`.
     fn lacks_its_brace(&mut self, head: Statement) -> bool {
         let words = (head.start..head.end)
             .all(|at| matches!(self.tokens.kind(at), Some(Kind::Word | Kind::Text)));
@@ -216,7 +217,7 @@ impl Cutter<'_> {
             next += 1;
         }
         let field = self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "=");
-        // Looked for so far only: reading a file takes as long as the file is.
+        // The search is bounded, so that the time for a file is proportional to its length.
         let closed = || {
             let brace = (next..next + FIELDS_WITHOUT_BRACE)
                 .find(|at| self.tokens.is(*at, "{") || self.tokens.is(*at, "}"));
@@ -225,14 +226,14 @@ impl Cutter<'_> {
         let lacks = head.end > head.start && words && !item && field && closed();
         if lacks {
             let (first, last) = (self.tokens.list[head.start], self.tokens.list[head.end - 1]);
-            self.faults.push(faults::brace_missing(
+            self.errors.push(messages::brace_missing(
                 self.tokens.span(first.start, last.end),
             ));
         }
         lacks
     }
 
-    /// Whether the token before `end` wants a value after it.
+    /// Whether the token before `end` must be followed by a value.
     fn continues(&self, end: usize) -> bool {
         let Some(last) = end.checked_sub(1) else {
             return false;
@@ -271,7 +272,7 @@ impl Cutter<'_> {
         (keyword && named) || self.tokens.is(after, "{")
     }
 
-    /// Past a condition or a loop of another language, with all that is in its braces: told once.
+    /// Skips a condition or a loop of another language, with everything in its braces; it is reported once.
     fn skips_control(&mut self) -> bool {
         let first = self.tokens.list[self.at];
         let Some((message, help)) = control::of_another_language(self.tokens.text_of(first)) else {
@@ -305,8 +306,8 @@ impl Cutter<'_> {
             self.tokens.span(first.start, first.end),
             self.tokens.span(first.start, last.end),
         );
-        self.faults
-            .push(faults::no_control(message, help, begins, whole));
+        self.errors
+            .push(messages::no_control(message, help, begins, whole));
         true
     }
 
@@ -320,7 +321,7 @@ impl Cutter<'_> {
 
     /// The block whose `{` is here.
     fn block(&mut self, head: Statement) -> Piece {
-        // One that lacks its brace opens behind its last word.
+        // A block that lacks its brace opens after its last word.
         let open = if self.is("{") { self.at } else { head.end - 1 };
         let mut fields = Vec::new();
         self.at += usize::from(self.is("{"));
@@ -347,7 +348,7 @@ impl Cutter<'_> {
                 continue;
             }
             if self.starts_item(self.at) {
-                // A line no further in than the block's own head is the next item: this block was never closed.
+                // A line that is indented no further than the block's own head is the next item: this block was never closed.
                 if self.column(self.at) <= self.column(head.start.min(open)) {
                     self.unclosed(open);
                     return Piece::Block {
@@ -378,7 +379,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// Past `{0.5}` of `contact = restitution{0.5}`, on one line: told.
+    /// Skips `{0.5}` of `contact = restitution{0.5}`, on one line, and reports it.
     fn arguments_in_braces(&mut self, field: Statement) -> bool {
         let close = (self.at..)
             .take_while(|at| !matches!(self.tokens.kind(*at), None | Some(Kind::Newline)));
@@ -396,7 +397,7 @@ impl Cutter<'_> {
         );
         let inside = self.tokens.text[open.end..last.start].trim();
         let call = format!("{}({inside})", self.tokens.text_of(name));
-        self.faults.push(faults::arguments_in_braces(
+        self.errors.push(messages::arguments_in_braces(
             self.tokens.span(open.start, last.end),
             &call,
         ));
@@ -406,7 +407,7 @@ impl Cutter<'_> {
 
     fn skip_misplaced(&mut self) {
         let token = self.tokens.list[self.at];
-        self.faults.push(faults::misplaced_block(
+        self.errors.push(messages::misplaced_block(
             self.tokens.span(token.start, token.end),
         ));
         self.statement();
@@ -415,7 +416,7 @@ impl Cutter<'_> {
         }
     }
 
-    /// Past the `{` here and the `}` that belongs to it, whatever is between, or past this one token.
+    /// Skips the `{` here with everything up to its `}`, or this one token.
     fn skip_braces(&mut self) {
         let mut depth = 0_usize;
         while self.at < self.tokens.list.len() {

@@ -1,4 +1,4 @@
-//! The grammar's pairs → items, blocks and fields of the tree. Expressions are lowered in `expr`.
+//! Pairs of the grammar → items, blocks and fields of the tree. Expressions are lowered in `expr`.
 
 use std::cell::RefCell;
 
@@ -15,7 +15,7 @@ use crate::text::source::{FileId, Span, Spanned};
 pub struct Lowering {
     pub file: FileId,
     pub base: usize,
-    pub faults: RefCell<Vec<Diagnostic>>,
+    pub errors: RefCell<Vec<Diagnostic>>,
 }
 
 impl Lowering {
@@ -24,12 +24,12 @@ impl Lowering {
         Self {
             file,
             base,
-            faults: RefCell::new(Vec::new()),
+            errors: RefCell::new(Vec::new()),
         }
     }
 
-    /// The span of a pair. Right for tokens and for what ends with one; a rule that ends with something optional may
-    /// have taken in blanks after it, so those are built from their parts.
+    /// The span of a pair. It is exact for tokens and for rules that end with one; a rule that ends with an optional part may
+    /// include spaces after it, so those spans are built from their parts.
     #[must_use]
     pub fn span(&self, pair: &Pair<'_, Rule>) -> Span {
         let span = pair.as_span();
@@ -115,7 +115,7 @@ impl Lowering {
         block
     }
 
-    /// A block's words and title; its fields are still to come.
+    /// The words and title of a block; its fields follow.
     #[must_use]
     pub fn head(&self, pair: Pair<'_, Rule>) -> Option<Block> {
         let mut words = Vec::new();
@@ -152,8 +152,8 @@ impl Lowering {
         })
     }
 
-    pub fn fault(&self, fault: Diagnostic) {
-        self.faults.borrow_mut().push(fault);
+    pub fn error(&self, error: Diagnostic) {
+        self.errors.borrow_mut().push(error);
     }
 
     #[must_use]
@@ -165,7 +165,7 @@ impl Lowering {
     }
 }
 
-/// The text between the quotes, escapes resolved.
+/// The string between the quotes, escapes resolved.
 #[must_use]
 pub fn unescape(quoted: &str) -> String {
     let body = quoted.strip_prefix('"').unwrap_or(quoted);

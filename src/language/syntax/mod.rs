@@ -1,4 +1,4 @@
-//! Text to syntax tree. [`parse()`] reads a whole file and reports all syntax errors; [`format()`]
+//! Text to syntax tree. [`parse()`] parses a whole file and reports all syntax errors; [`format()`]
 //! writes the canonical layout. This is the only folder that knows the parser library. It knows no
 //! block and no unit.
 
@@ -8,16 +8,12 @@ pub mod format;
 pub mod limits;
 pub mod parse;
 
-mod characters;
 mod expr;
-mod faults;
 mod layout;
-mod letters;
+mod lexical;
 mod lower;
-mod misspelt;
-mod numbers;
+mod messages;
 mod rule_names;
-mod tokens;
 
 #[cfg(test)]
 mod tests;

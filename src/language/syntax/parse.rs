@@ -1,5 +1,5 @@
-//! One file, read whole: [`parse`] gives the tree of all that could be read and every fault of the text. A sound file
-//! goes through the grammar at once; a faulty one is cut into pieces (`layout`) and each piece is read alone.
+//! Parses one file: [`parse`] returns the tree of everything that could be parsed, and every syntax error. A valid file
+//! is parsed as a whole; one with errors is cut into pieces (`layout`), which are parsed separately.
 
 use std::collections::BTreeSet;
 
@@ -12,12 +12,12 @@ use pest_derive::Parser;
 
 use super::{
     ast::{Ast, Block, Entry, Ident, Item, ItemKind},
-    faults,
     layout::{self, Piece, Statement},
+    lexical::confusables,
+    lexical::tokens::{Kind, Tokens},
     limits,
     lower::{Lowering, unescape},
-    misspelt, rule_names,
-    tokens::{Kind, Tokens},
+    messages, rule_names,
 };
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::{FileId, Sources, Span, Spanned};
@@ -26,8 +26,8 @@ use crate::text::source::{FileId, Sources, Span, Spanned};
 #[grammar = "../grammar/psd.pest"]
 pub struct Grammar;
 
-/// Reads one file. Never panics; what could be read of a faulty file is in the tree, with
-/// [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) where a value could not.
+/// Parses one file. Never panics; the valid parts of a file with errors are in the tree, with
+/// [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) in place of an invalid value.
 #[must_use]
 pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let text = sources.file(file).text.as_str();
@@ -41,7 +41,7 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
         let start = Span::new(file, 0, 0);
         return (
             ast,
-            vec![faults::too_large(
+            vec![messages::too_large(
                 start,
                 "this file",
                 limits::FILE_BYTES,
@@ -52,24 +52,24 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     if let Some(at) = text.find('\r').filter(|_| !text.contains('\n')) {
         return (
             ast,
-            vec![faults::carriage_returns(Span::new(file, at, at + 1))],
+            vec![messages::carriage_returns(Span::new(file, at, at + 1))],
         );
     }
-    let mended = misspelt::mend(text, file);
-    let text = mended.text.as_ref();
+    let normalized = confusables::normalize(text, file);
+    let text = normalized.text.as_ref();
     let mut tokens = Tokens::read(text, file);
     ast.comments = tokens.comments();
-    if tokens.faults.is_empty()
+    if tokens.errors.is_empty()
         && let Some(items) = whole(text, file)
     {
         ast.items = items;
-        ast.misspelt = mended.places;
-        return (ast, mended.faults);
+        ast.misspelt = normalized.spans;
+        return (ast, normalized.errors);
     }
     if tokens.cut_short {
-        return (ast, [mended.faults, tokens.faults].concat());
+        return (ast, [normalized.errors, tokens.errors].concat());
     }
-    let (items, mut faults) = piecewise(&mut tokens);
+    let (items, mut errors) = piecewise(&mut tokens);
     ast.items = items;
     let ends: Vec<usize> = text
         .bytes()
@@ -78,55 +78,55 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
         .map(|(at, _)| at)
         .collect();
     let line = |at: Span| ends.partition_point(|end| *end < at.start as usize);
-    let lines: BTreeSet<usize> = mended.places.iter().copied().map(line).collect();
-    faults.retain(|fault| {
-        !follows(fault) || fault.span().is_none_or(|at| !lines.contains(&line(at)))
+    let lines: BTreeSet<usize> = normalized.spans.iter().copied().map(line).collect();
+    errors.retain(|error| {
+        !follows(error) || error.span().is_none_or(|at| !lines.contains(&line(at)))
     });
-    faults.extend(mended.faults);
-    ast.misspelt = mended.places;
-    if faults.is_empty() {
-        // The grammar refused what its pieces allow: say where it stopped.
-        faults.extend(
+    errors.extend(normalized.errors);
+    ast.misspelt = normalized.spans;
+    if errors.is_empty() {
+        // The grammar rejected the whole but accepts the pieces: report where it stopped.
+        errors.extend(
             Grammar::parse(Rule::file, text)
                 .err()
                 .map(|error| refused(&tokens, text, 0, Rule::file, &error)),
         );
     }
-    faults.sort_by_key(|fault| fault.span().map(|span| (span.start, span.end)));
-    (ast, faults)
+    errors.sort_by_key(|error| error.span().map(|span| (span.start, span.end)));
+    (ast, errors)
 }
 
-/// Whether a fault says no more than that a line cannot be read, which a slip on the same line may be the reason of.
-fn follows(fault: &Diagnostic) -> bool {
+/// Whether an error says only that a line cannot be parsed, which may follow from a confusable on the same line.
+fn follows(error: &Diagnostic) -> bool {
     matches!(
-        fault.code,
+        error.code,
         Code::Syntax | Code::BadNumber | Code::UnitWithoutBlank
     )
 }
 
-/// A sound file; `None` where there is any fault.
+/// A valid file; `None` where there is any error.
 fn whole(text: &str, file: FileId) -> Option<Vec<Item>> {
     let lowering = Lowering::new(file, 0);
     let pairs = Grammar::parse(Rule::file, text).ok()?.next()?.into_inner();
     let items = pairs.filter(|pair| !matches!(pair.as_rule(), Rule::end_of_line | Rule::EOI));
     let items: Option<Vec<Item>> = items.map(|pair| lowering.item(pair)).collect();
-    lowering.faults.into_inner().is_empty().then_some(items)?
+    lowering.errors.into_inner().is_empty().then_some(items)?
 }
 
-/// Every piece of a file read alone. A sound file gives the same items as [`whole`].
+/// Every piece of a file, parsed separately. A valid file has the same items as from [`whole`].
 fn piecewise(tokens: &mut Tokens) -> (Vec<Item>, Vec<Diagnostic>) {
-    let found = std::mem::take(&mut tokens.faults);
+    let found = std::mem::take(&mut tokens.errors);
     let mut reader = Pieces {
         tokens,
         lexical: found.len(),
-        faults: found,
+        errors: found,
     };
     let mut items = Vec::new();
     reader.read(&mut items);
-    (items, reader.faults)
+    (items, reader.errors)
 }
 
-/// Why the grammar's `rule` refuses `text`, which starts at byte `base`.
+/// The error of `text`, which starts at byte `base` and does not match `rule`.
 fn refused(
     tokens: &Tokens,
     text: &str,
@@ -157,7 +157,7 @@ fn refused(
         if found.len() < token.end - token.start {
             found.push('…');
         }
-        return faults::unexpected(
+        return messages::unexpected(
             tokens.span(token.start, token.end),
             &format!("`{found}`"),
             &expected,
@@ -170,23 +170,23 @@ fn refused(
     } else {
         "the end of the file"
     };
-    faults::unexpected(tokens.span(end, end), place, &expected)
+    messages::unexpected(tokens.span(end, end), place, &expected)
 }
 
-/// Reads the pieces of a faulty file.
+/// Parses the pieces of a file with errors.
 struct Pieces<'a> {
     tokens: &'a Tokens<'a>,
-    /// How many of `faults` were found by `tokens`.
+    /// How many of the errors were found by `tokens`.
     lexical: usize,
-    faults: Vec<Diagnostic>,
+    errors: Vec<Diagnostic>,
 }
 
 impl Pieces<'_> {
     fn read(&mut self, items: &mut Vec<Item>) {
         let (pieces, brackets) = layout::cut(self.tokens);
-        self.faults.extend(brackets);
+        self.errors.extend(brackets);
         for piece in pieces {
-            if self.faults.len() > limits::FAULTS + self.lexical {
+            if self.errors.len() > limits::ERRORS + self.lexical {
                 break;
             }
             match piece {
@@ -212,7 +212,7 @@ impl Pieces<'_> {
         )
     }
 
-    /// Reads one statement by `rule`. `None`: it is at fault, and that has been said.
+    /// Parses one statement by `rule`. `None`: it has an error, which has been reported.
     fn alone<T>(
         &mut self,
         statement: Statement,
@@ -220,19 +220,19 @@ impl Pieces<'_> {
         lower: impl Fn(&Lowering, Pair<'_, Rule>) -> Option<T>,
     ) -> Option<T> {
         let (start, end) = self.bounds(statement);
-        let within = |fault: &Diagnostic| {
-            fault
+        let within = |error: &Diagnostic| {
+            error
                 .span()
                 .is_some_and(|at| at.start as usize <= end && at.end as usize > start)
         };
-        if statement.broken || self.faults[..self.lexical].iter().any(within) {
+        if statement.broken || self.errors[..self.lexical].iter().any(within) {
             return None;
         }
         let text = &self.tokens.text[start..end];
         let mut pairs = match Grammar::parse(rule, text) {
             Ok(pairs) => pairs,
             Err(error) => {
-                self.faults
+                self.errors
                     .push(refused(self.tokens, text, start, rule, &error));
                 return None;
             }
@@ -240,9 +240,9 @@ impl Pieces<'_> {
         let lowering = Lowering::new(self.tokens.file, start);
         let pair = pairs.next()?.into_inner().next()?;
         let lowered = lower(&lowering, pair);
-        let faults = lowering.faults.into_inner();
-        let sound = faults.is_empty();
-        self.faults.extend(faults);
+        let errors = lowering.errors.into_inner();
+        let sound = errors.is_empty();
+        self.errors.extend(errors);
         lowered.filter(|_| sound)
     }
 
@@ -258,7 +258,7 @@ impl Pieces<'_> {
         ))
     }
 
-    /// An item that is no block; of a faulty one, its name with a faulty value.
+    /// An item other than a block; with an error, its name and a faulty value.
     fn item(&mut self, statement: Statement) -> Option<Item> {
         if !layout::ITEM_WORDS
             .iter()
@@ -274,7 +274,7 @@ impl Pieces<'_> {
         if nameless {
             let second = self.tokens.list[statement.start + 1];
             let span = self.tokens.span(second.start, second.end);
-            self.faults.push(faults::requirement_without_name(
+            self.errors.push(messages::requirement_without_name(
                 span,
                 &self.tokens.text[second.start..end],
             ));
@@ -317,15 +317,16 @@ impl Pieces<'_> {
         Some(Item { span, kind })
     }
 
-    /// What stands among the items and is none: a field, or a block without its `{`.
+    /// A statement among the items that is not an item: a field, or a block without its `{`.
     fn no_item(&mut self, statement: Statement) {
         let key = self
             .word(statement.start)
             .filter(|_| self.tokens.is(statement.start + 1, "="));
         if let Some(key) = key {
-            self.faults.push(faults::field_outside(key.span, &key.node));
+            self.errors
+                .push(messages::field_outside(key.span, &key.node));
         } else if let Some((word, help)) = self.other_language(statement) {
-            self.faults.push(faults::word_of_another_language(
+            self.errors.push(messages::word_of_another_language(
                 word.span, &word.node, &help,
             ));
         } else if self
@@ -333,14 +334,14 @@ impl Pieces<'_> {
             .is_some()
         {
             let (start, end) = self.bounds(statement);
-            self.faults.push(faults::stray_words(
+            self.errors.push(messages::stray_words(
                 self.tokens.span(start, end),
                 &self.tokens.text[start..end],
             ));
         }
     }
 
-    /// A line that begins as it would in another language, and how it is said in this one.
+    /// A line that begins as in another language, and its form in this one.
     fn other_language(&self, statement: Statement) -> Option<(Ident, String)> {
         let word = self.word(statement.start)?;
         let help = match word.node.as_str() {
@@ -373,8 +374,8 @@ impl Pieces<'_> {
         if sound.is_none() {
             let brace = self.tokens.list[open];
             let span = self.tokens.span(brace.start, brace.end);
-            self.faults
-                .push(faults::unexpected(span, "`{`", "the name of a block"));
+            self.errors
+                .push(messages::unexpected(span, "`{`", "the name of a block"));
         }
         let block = sound.flatten().or_else(|| self.faulty_head(head));
         let entries: Vec<Entry> = fields
@@ -395,7 +396,7 @@ impl Pieces<'_> {
         })
     }
 
-    /// The words of a head that could not be read.
+    /// The words of a head that could not be parsed.
     fn faulty_head(&self, head: Statement) -> Option<Block> {
         let words: Vec<Ident> = (head.start..head.end)
             .map_while(|index| self.word(index))
@@ -409,12 +410,12 @@ impl Pieces<'_> {
         })
     }
 
-    /// A field; of a faulty one, its key with a faulty value, so that it is not missed as well.
+    /// A field; with an error, its key and a faulty value, so that it does not count as missing.
     fn entry(&mut self, statement: Statement) -> Option<Entry> {
         if let Some(entry) = self.alone(statement, Rule::entry_alone, Lowering::entry) {
             return Some(entry);
         }
-        // A word alone is no field.
+        // A single word is not a field.
         let key = self
             .word(statement.start)
             .filter(|_| statement.end > statement.start + 1)?;
@@ -443,8 +444,8 @@ mod tests {
         ] {
             let file = FileId(0);
             let mut tokens = Tokens::read(text, file);
-            let (items, faults) = piecewise(&mut tokens);
-            assert_eq!(faults, []);
+            let (items, errors) = piecewise(&mut tokens);
+            assert_eq!(errors, []);
             assert_eq!(Some(items), whole(text, file));
         }
     }

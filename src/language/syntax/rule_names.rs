@@ -1,8 +1,8 @@
-//! What each rule of the grammar is called in a message. Exhaustive, so that a new rule cannot go without a name.
+//! The name of each rule of the grammar in a message. The match is exhaustive, so that a new rule needs a name.
 
 use super::parse::Rule;
 
-/// The name of `rule` in a message, or `None` where it would say nothing (helpers of other rules).
+/// The name of `rule` in a message, or `None` where it carries no information (helpers of other rules).
 #[must_use]
 pub const fn human(rule: Rule) -> Option<&'static str> {
     Some(match rule {
@@ -69,7 +69,7 @@ pub const fn human(rule: Rule) -> Option<&'static str> {
     })
 }
 
-/// What was expected, in words, from the rules that were tried: `a value`, "`,` or `)`".
+/// The expected tokens as a phrase, from the rules that were tried: `a value`, "`,` or `)`".
 #[must_use]
 pub fn expected(rules: &[Rule]) -> String {
     let mut names: Vec<&str> = Vec::new();
@@ -78,15 +78,15 @@ pub fn expected(rules: &[Rule]) -> String {
             names.push(name);
         }
     }
-    // Where a value may start, what else may stand there (a text, an argument's name) is only noise.
+    // Where a value may start, the other possibilities (a string, an argument's name) are only noise.
     if names.contains(&"a value") {
         names.retain(|name| !matches!(*name, "a text in quotes" | "an argument"));
     }
-    // An operator may be `(` or `[` too, where a call or index could go on: that is no new value.
+    // An operator may be `(` or `[` too, where a call or index could follow: that is not a new value.
     if names.contains(&"an operator") {
         names.retain(|name| *name != "a value");
     }
-    // What may follow on comes before what ends the line.
+    // Tokens that continue a line come before those that end it.
     names.sort_by_key(|name| *name == "the end of the line");
     match names.split_last() {
         None => "something else".to_owned(),

@@ -1,8 +1,8 @@
-//! Figures of a report: which there are, and which a report asks for.
+//! Figures of a report: their kinds, and those that one report requests.
 
 use crate::plan::formula::ProcedureId;
 
-/// Procedures on one chart, at most: more curves cannot be told apart.
+/// Most procedures on one chart: more curves cannot be distinguished.
 pub const MOST_TOGETHER: usize = 6;
 
 /// One chart of a report.
@@ -10,7 +10,7 @@ pub const MOST_TOGETHER: usize = 6;
 pub struct Figure {
     pub kind: FigureKind,
     pub procedure: ProcedureId,
-    /// Others of the same kind on the same axes.
+    /// Other procedures of the same kind, on the same axes.
     pub beside: Vec<ProcedureId>,
 }
 
@@ -21,7 +21,7 @@ impl Figure {
     }
 }
 
-/// What a chart shows.
+/// The content of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FigureKind {
     /// Displacement of structure and striker against virtual time (paper Fig. 9–11, 16).
@@ -45,20 +45,20 @@ pub enum FigureKind {
     Modes,
     /// Acceleration of the ground as it was applied.
     Ground,
-    /// Largest forces against the displacements of them, amplitude by amplitude.
+    /// Largest forces against their displacements, one point for each amplitude.
     Backbone,
     /// Energy of each cycle.
     CycleEnergy,
     /// Secant stiffness of each cycle.
     StiffnessDegradation,
-    /// Force still to relax against the time held.
+    /// Force that has still to relax against the dwell time.
     Relaxation,
-    /// What each blow of a rising row came to, against its energy.
+    /// Results of each impact of a series, against its energy.
     Blows,
 }
 
 impl FigureKind {
-    /// Every figure there is, in the order of the reference.
+    /// Every figure, in the order of the reference.
     pub const ALL: [Self; 18] = [
         Self::Displacement,
         Self::StrikerVelocity,

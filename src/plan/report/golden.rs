@@ -1,4 +1,4 @@
-//! How near a rerun must come to the blessed results, as the plan says it.
+//! How near a rerun must come to the accepted results, as the plan specifies it.
 
 use crate::plan::formula::ProcedureId;
 use crate::units::Dimension;
@@ -6,7 +6,7 @@ use crate::units::Dimension;
 /// The `golden` block; without one its defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Golden {
-    /// Of every number, relative to its size.
+    /// For every number, relative to its absolute value.
     pub tolerance: f64,
     pub results: Vec<NearResult>,
     pub columns: Vec<NearColumn>,
@@ -27,16 +27,16 @@ impl Default for Golden {
     }
 }
 
-/// How far a number may be off.
+/// The largest difference of a number from the accepted one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// SI.
+    /// Absolute, in SI units.
     Absolute(f64),
-    /// Of the number's size.
+    /// Relative to the accepted number.
     Relative(f64),
 }
 
-/// A result with a tolerance of its own.
+/// A result with a separate tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearResult {
     pub procedure: ProcedureId,
@@ -45,10 +45,10 @@ pub struct NearResult {
     pub tolerance: Tolerance,
 }
 
-/// A column with a tolerance of its own.
+/// A column with a separate tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearColumn {
-    /// None: of every table that has it.
+    /// The procedure whose table has the column. None: every table that has it.
     pub procedure: Option<ProcedureId>,
     pub name: &'static str,
     pub dimension: Dimension,

@@ -1,4 +1,4 @@
-//! What a checked plan asks of its report and of accepted results. It is data: nothing is drawn or
+//! The report and the accepted results that a checked plan requests. It is data: nothing is drawn or
 //! compared here.
 
 pub(crate) mod figure;

@@ -1,5 +1,5 @@
-//! What a plan does not say of striker, specimen and rig, and no uncertainty knows therefore. In: a plan. Out: words. It judges nothing: a
-//! plan may well leave out what is small.
+//! The uncertainties of striker, specimen and rig that a plan does not declare, and that no budget therefore includes. In: a plan. Out:
+//! phrases for the report. It makes no statement of conformity: a plan may leave out contributions that are small.
 
 use crate::plan::{Calibration, Plan, RigPlan};
 
@@ -8,7 +8,7 @@ use crate::plan::{Calibration, Plan, RigPlan};
 pub struct Dependence {
     /// Index into `Plan::strikers`.
     pub striker: Option<usize>,
-    /// Standard uncertainty of the mass of one degree of freedom, kg; 0 where none is stated.
+    /// Standard uncertainty of the mass of one degree of freedom \[kg\]; 0 where none is stated.
     pub mass_uncertainty: Option<f64>,
     /// Index into `Plan::specimens` of a frame, whose masses it depends on.
     pub frame: Option<usize>,
@@ -58,7 +58,7 @@ impl Plan {
 }
 
 impl RigPlan {
-    /// Uncertainties of the rig that the plan does not declare of one of so many axes at least.
+    /// Uncertainties of the rig that the plan does not declare for at least one of its axes.
     #[must_use]
     pub fn undeclared(&self, axes: usize) -> Vec<&'static str> {
         let lacks = |read| self.lacks(axes, read);
@@ -80,7 +80,7 @@ impl RigPlan {
             .collect()
     }
 
-    /// The calibrations without which a budget of so many axes is partial, and no expanded uncertainty follows from it.
+    /// The calibrations without which a budget is partial, so that no expanded uncertainty follows from it.
     #[must_use]
     pub fn undeclared_calibrations(&self, axes: usize) -> Vec<&'static str> {
         self.undeclared(axes)
@@ -102,7 +102,7 @@ mod tests {
     use crate::plan::{Calibration, DriftCheck, Plan, ProcedureKind, ZeroAfter};
     use crate::tests::testing::empty_plan;
 
-    /// Of a blow striker and specimen too, and of nothing that was declared.
+    /// An impact also names striker and specimen, and a plan that declares everything names nothing.
     #[test]
     fn what_is_not_declared_of_striker_and_specimen_is_named() {
         use crate::plan::formula::Formula;

@@ -1,61 +1,61 @@
-//! The axes of a checked rig: what each actuator with its load cell says of itself, and what holds for it where it says
-//! nothing. In: the rig of a plan, the place of an axis. Out: its sign, its limits, its gate, its readings, its calibration.
+//! The axes of a checked rig: the entries of each actuator with its load cell, and the rig's own where an axis has no entry. In: the rig of a
+//! plan, the index of an axis. Out: its polarity, its limits, its pre-test check, its reading rules, its calibration.
 
 use crate::plan::{
     Calibration, DeviceLink, Gate, Interval, Limits, ReadingRules, RealLink, RigPlan,
 };
 
-/// What one axis of a real rig says of itself. None: as the rig says of all.
+/// The entries of one axis of a real rig. None: the rig's entry applies.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AxisPlan {
-    /// +1 or −1
+    /// Polarity: +1 or −1.
     pub sign: Option<f64>,
-    /// m
+    /// \[m\]
     pub resolution: Option<f64>,
-    /// N
+    /// \[N\]
     pub noise: Option<f64>,
-    /// N
+    /// \[N\]
     pub force_range: Option<Interval>,
-    /// Beside the limits of the run, m and N.
+    /// Beside the limits of the run \[m, N\].
     pub displacement: Option<Interval>,
     pub force: Option<Interval>,
     pub gate: Option<Gate>,
     pub calibration: AxisCalibration,
-    /// Of its own, in place of the rig's.
+    /// The axis' own pre-test check, in place of the rig's.
     pub actuator: Option<DeviceLink>,
     pub load_cell: Option<DeviceLink>,
 }
 
-/// Where the numbers of one axis are traced to. None: as the rig says of all.
+/// The calibrations of one axis. None: the rig's entry applies.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AxisCalibration {
     pub reference: Option<String>,
     /// `YYYY-MM-DD`
     pub due: Option<String>,
     pub force_class: Option<String>,
-    /// N, by size.
+    /// Absolute value \[N\].
     pub force_calibrated: Option<Interval>,
-    /// Reference of the displacement alone.
+    /// Calibration reference of the displacement, where it has a separate one.
     pub displacement: Option<String>,
     /// `YYYY-MM-DD`
     pub displacement_due: Option<String>,
     pub displacement_class: Option<String>,
-    /// m, by size.
+    /// Absolute value \[m\].
     pub displacement_calibrated: Option<Interval>,
-    /// Of a cell that gives raw counts: N per count.
+    /// For a load cell that returns raw counts: the scale factor \[N per count\].
     pub newtons_per_count: Option<f64>,
-    /// Count at no force.
+    /// Zero offset: the count at zero force.
     pub zero_count: Option<f64>,
-    /// Standard, a share of the force.
+    /// Standard uncertainty, as a fraction of the force.
     pub force_uncertainty: Option<f64>,
-    /// Standard, a share of the displacement.
+    /// Standard uncertainty, as a fraction of the displacement.
     pub displacement_uncertainty: Option<f64>,
-    /// Standard, N.
+    /// Standard uncertainty \[N\].
     pub zero_uncertainty: Option<f64>,
 }
 
 impl AxisCalibration {
-    /// What the rig says of all, with what this axis says in its place.
+    /// The rig's calibration, with the entries of this axis in their place.
     fn over(&self, all: &Calibration) -> Calibration {
         let or = |own: &Option<String>, all: &Option<String>| own.clone().or_else(|| all.clone());
         let of_all = all.displacement.clone();
@@ -85,13 +85,13 @@ impl AxisCalibration {
 }
 
 impl RigPlan {
-    /// Factor on displacement and force signs of the axis at this place: +1 or −1.
+    /// Polarity of the axis with this index, the factor on displacement and force: +1 or −1.
     #[must_use]
     pub fn sign_of(&self, axis: usize) -> f64 {
         self.own(axis).and_then(|own| own.sign).unwrap_or(self.sign)
     }
 
-    /// Where the numbers of the axis at this place are traced to, and how well they are known.
+    /// Calibration of the axis with this index, with its uncertainties.
     #[must_use]
     pub fn calibration_of(&self, axis: usize) -> Calibration {
         self.own(axis).map_or_else(
@@ -100,7 +100,7 @@ impl RigPlan {
         )
     }
 
-    /// The limits of the run for the axis at this place: its own narrow them.
+    /// The limits of the run for the axis with this index: its own limits narrow them.
     #[must_use]
     pub fn limits_of(&self, axis: usize, run: &Limits) -> Limits {
         let narrowed =
@@ -112,7 +112,7 @@ impl RigPlan {
         })
     }
 
-    /// The limits of the run for every axis; empty where no axis has any of its own.
+    /// The limits of the run for every axis; empty where no axis has limits of its own.
     #[must_use]
     pub fn limits_of_axes(&self, run: &Limits) -> Vec<Limits> {
         let axes = self.link.as_real().map_or(0, |link| link.axes.len());
@@ -125,7 +125,7 @@ impl RigPlan {
 }
 
 impl RealLink {
-    /// The gate of the axis at this place.
+    /// The pre-test check of the axis with this index.
     #[must_use]
     pub fn gate_of(&self, axis: usize) -> Gate {
         self.axes
@@ -134,7 +134,7 @@ impl RealLink {
             .unwrap_or(self.gate)
     }
 
-    /// What the axis at this place declares of its readings.
+    /// The reading rules of the axis with this index.
     #[must_use]
     pub fn readings_of(&self, axis: usize) -> ReadingRules {
         let all = self.readings;
@@ -181,7 +181,7 @@ mod tests {
             ..all.clone()
         };
         assert_eq!(own.over(&all), wanted);
-        // Without one of the rig's, its own certificate stands alone.
+        // Without a certificate of the rig, the certificate of the axis alone applies.
         let alone = AxisCalibration {
             displacement: text("scale 2"),
             ..AxisCalibration::default()

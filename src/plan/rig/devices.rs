@@ -1,20 +1,20 @@
-//! Which device moves which axis of a real rig, and which one weighs it. In: the links of a rig and of its axes. Out: every
-//! device once, with the axes behind it. It knows no dialect.
+//! The device that moves each axis of a real rig, and the device that measures its force. In: the links of a rig and of its axes. Out: every
+//! device once, with its axes. It knows no protocol.
 
 use crate::plan::{AxisPlan, DeviceLink, RealLink};
 
-/// A device with the axes behind it.
+/// A device with its axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Behind<'a> {
     pub link: &'a DeviceLink,
-    /// By their places; its channels are theirs in this order.
+    /// Indices of the axes; the channels of the device are in this order.
     pub axes: Vec<usize>,
-    /// It is one axis's own: the axis says it, not the rig.
+    /// Whether it belongs to one axis: the axis declares it, not the rig.
     pub own: bool,
 }
 
 impl Behind<'_> {
-    /// As it is called among those of its role: `load cell`, or `load cell of axis 2`.
+    /// The name of the device among those of its role: `load cell`, or `load cell of axis 2`.
     #[must_use]
     pub fn name(&self, role: &str) -> String {
         match self.axes.first() {
@@ -25,19 +25,19 @@ impl Behind<'_> {
 }
 
 impl RealLink {
-    /// What moves: the rig's own first, with every axis that has none of its own.
+    /// The actuators: the rig's own first, with every axis that declares none.
     #[must_use]
     pub fn actuators(&self) -> Vec<Behind<'_>> {
         self.behind(Some(&self.actuator), |axis| axis.actuator.as_ref())
     }
 
-    /// What weighs, where that is not the device that moves.
+    /// The load cells that are devices apart from the actuator.
     #[must_use]
     pub fn load_cells(&self) -> Vec<Behind<'_>> {
         self.behind(self.load_cell.as_ref(), |axis| axis.load_cell.as_ref())
     }
 
-    /// Every device with what it is called, those that move first.
+    /// Every device with its name, the actuators first.
     #[must_use]
     pub fn devices(&self) -> Vec<(String, &DeviceLink)> {
         let actuators = self
@@ -53,7 +53,7 @@ impl RealLink {
             .collect()
     }
 
-    /// The device that moves the axis at this place.
+    /// The device that moves the axis with this index.
     #[must_use]
     pub fn moved_by(&self, axis: usize) -> &DeviceLink {
         self.axes
@@ -62,7 +62,7 @@ impl RealLink {
             .unwrap_or(&self.actuator)
     }
 
-    /// The device that weighs the axis at this place, and which of its channels that is.
+    /// The device that measures the force of the axis with this index, and the index of its channel.
     #[must_use]
     pub fn weighed_by(&self, axis: usize) -> (&DeviceLink, usize) {
         let among = |behind: Vec<Behind<'_>>| {

@@ -1,10 +1,10 @@
-//! What nothing may drive the rig past, and the intervals it is said in. In: SI. It knows neither who is held to it nor how: that is the
-//! guard's.
+//! The limits of a rig, and the intervals that express them. In: SI numbers. It enforces nothing: that is done by the
+//! guard.
 
 use crate::physics::tracking::monitor;
 use crate::units::Dimension;
 
-/// Closed intervals (SI); an absent bound is infinite, so that `lo <= x && x <= hi` is the whole test.
+/// A closed interval in SI units. An absent bound is infinite, so that `low <= x && x <= high` is the whole test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     pub low: f64,
@@ -17,13 +17,13 @@ impl Interval {
         high: f64::INFINITY,
     };
 
-    /// Whether `x` lies inside; NaN never does.
+    /// Whether `x` is inside; NaN never is.
     #[must_use]
     pub fn contains(self, x: f64) -> bool {
         self.low <= x && x <= self.high
     }
 
-    /// What lies in both; empty (`low` above `high`) where nothing does.
+    /// The common part of both; empty (`low` above `high`) where they have none.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self {
@@ -32,29 +32,29 @@ impl Interval {
         }
     }
 
-    /// Whether it ends on either side.
+    /// Whether it has a finite bound on either side.
     #[must_use]
     pub fn is_bounded(self) -> bool {
         self.low > f64::NEG_INFINITY || self.high < f64::INFINITY
     }
 }
 
-/// What nothing may drive the rig past.
+/// The limits that no command may exceed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// m, of every target and every reading.
+    /// Every target and every displacement reading \[m\].
     pub displacement: Interval,
-    /// N, of every reading.
+    /// Every force reading \[N\].
     pub force: Interval,
-    /// m/s, of the actuator; 0 ≤ speed ≤ high.
+    /// Speed of the actuator \[m/s\]; 0 ≤ speed ≤ high.
     pub speed: Interval,
-    /// m, largest change of target in one step, by size.
+    /// Largest change of target in one step, absolute value \[m\].
     pub increment: Interval,
-    /// m, |measured − target| after settling.
+    /// abs(measured − target) after settling \[m\].
     pub tracking_error: Interval,
-    /// |energy error| over the input energy.
+    /// abs(energy error) over the input energy.
     pub energy_error: Interval,
-    /// |energy error of tracking| over the input energy; where it bounds nothing, the default holds.
+    /// abs(tracking-error energy) over the input energy; without a bound the default applies.
     pub tracking_energy_error: Interval,
     /// Root mean square of the tracking error over that of the command.
     pub nrms_error: Interval,
@@ -72,7 +72,7 @@ impl Limits {
         nrms_error: Interval::ALL,
     };
 
-    /// As the guard holds them: what tracking does to the energy has a limit always.
+    /// The limits that the guard enforces: the tracking-error energy always has one.
     #[must_use]
     pub fn held(&self) -> Self {
         if self.tracking_energy_error.is_bounded() {
@@ -87,7 +87,7 @@ impl Limits {
         }
     }
 
-    /// Every limit by the name of its field.
+    /// Every limit, by the name of its field.
     #[must_use]
     pub const fn named(&self) -> [(&'static str, Interval, Dimension); 8] {
         [

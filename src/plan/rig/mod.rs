@@ -10,17 +10,17 @@ pub(crate) mod limits;
 use super::{AxisPlan, Interval};
 pub use crate::physics::perturbation::ReadingErrors;
 
-/// The rig of a run, and what the plan says of it.
+/// The rig of a run, as the plan specifies it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigPlan {
     /// `ideal` where the plan declares none.
     pub name: String,
     pub link: Link,
     pub settle: Settle,
-    /// Factor on displacement and force signs: +1 or −1.
+    /// Polarity, the factor on displacement and force: +1 or −1.
     pub sign: f64,
     pub calibration: Calibration,
-    /// How far its zeros may drift in a run; None: nobody asks.
+    /// Allowed zero drift in a run; None: it is not checked.
     pub drift: Option<DriftCheck>,
 }
 
@@ -33,7 +33,7 @@ impl RigPlan {
 }
 
 impl RigPlan {
-    /// The same rig with the plan's zero where an earlier opening of it has put it on record, m, one an axis; None: as the plan says.
+    /// The same rig with the zero of the plan's displacements that an earlier opening of it logged \[m\], one for each axis; None: as the plan has it.
     #[must_use]
     pub fn with_recorded_datum(&self, places: Option<&[f64]>) -> Self {
         let mut rig = self.clone();
@@ -44,7 +44,7 @@ impl RigPlan {
     }
 }
 
-/// What stands behind the rig.
+/// How the program is connected to the rig.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a plan has one")]
 pub enum Link {
@@ -53,7 +53,7 @@ pub enum Link {
 }
 
 impl Link {
-    /// The virtual link, where nothing real moves.
+    /// The virtual link, where no real actuator moves.
     #[must_use]
     pub const fn as_virtual(&self) -> Option<&VirtualLink> {
         match self {
@@ -72,29 +72,29 @@ impl Link {
     }
 }
 
-/// What a virtual rig adds to its specimen. All zero: an ideal rig.
+/// Errors that a virtual rig adds to its specimen. All zero: an ideal rig.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct VirtualLink {
-    /// Standard deviation of the load cell, N.
+    /// Standard deviation of the load cell \[N\].
     pub noise: f64,
-    /// Quantum of the displacement reading, m.
+    /// Resolution of the displacement reading \[m\].
     pub resolution: f64,
-    /// Quantum of the force reading, N.
+    /// Resolution of the force reading \[N\].
     pub force_resolution: f64,
-    /// First-order time constant of the actuator, s.
+    /// First-order time constant of the actuator \[s\].
     pub lag: f64,
     /// Fraction of each increment not reached.
     pub tracking: f64,
-    /// Drift of the load cell, N/s of rig time.
+    /// Zero drift of the load cell \[N/s\] in laboratory time.
     pub drift: f64,
     pub seed: u64,
-    /// Of a dry run on an ideal rig: what another one declares of its readings. None of it is done to them, all of it is in the
-    /// uncertainty that is foretold.
+    /// For a simulation on an ideal rig: the reading errors that another rig declares. The simulated readings have none of them, the predicted
+    /// uncertainty has all of them.
     pub foretold: Option<ReadingErrors>,
 }
 
 impl VirtualLink {
-    /// An ideal rig in place of another: nothing is done to its readings, and uncertainties are foretold with their errors.
+    /// An ideal rig in place of another: its readings have no errors, and the predicted uncertainty includes those that the other declares.
     #[must_use]
     pub fn ideal_of(rig: &RigPlan) -> Self {
         let (seed, foretold) = match &rig.link {
@@ -138,30 +138,30 @@ impl VirtualLink {
     }
 }
 
-/// Speed at which a virtual rig moves where none is asked of it, m/s: that of a slow quasi-static test.
+/// Speed of a virtual rig where none is specified \[m/s\]: that of a slow quasi-static test.
 pub const VIRTUAL_SPEED: f64 = 1e-3;
 
-/// When a reading counts. A zero band is "at once".
+/// The conditions under which a reading counts. A zero band means immediately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {
-    /// Displacement stays within this of the target, m.
+    /// Displacement stays within this of the target \[m\].
     pub band: f64,
-    /// |dF/dt| stays under this, N/s.
+    /// abs(dF/dt) stays below this \[N/s\].
     pub force_rate: f64,
-    /// … for this long, s.
+    /// Both hold for this long \[s\].
     pub dwell: f64,
-    /// Longest wait, s; past it the rig holds and the run is aborted.
+    /// Longest wait \[s\]; after it the rig holds and the run is aborted.
     pub timeout: f64,
 }
 
-/// How far the zeros of a rig may drift in a run, and how they are read.
+/// Allowed zero drift of a rig in a run, and how the zero is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriftCheck {
-    /// Change of the force at no load, by size, N.
+    /// Change of the force at zero load, absolute value \[N\].
     pub force: f64,
-    /// Change of the displacement reading against its target, by size, m; None: it is told and not judged.
+    /// Change of the displacement reading against its target, absolute value \[m\]; None: it is reported and not assessed.
     pub displacement: Option<f64>,
-    /// Time over which a zero is read; a hold as long tells a slope, s.
+    /// Time over which a zero is read \[s\]; a dwell of this length shows a slope.
     pub over: f64,
     pub after: ZeroAfter,
 }
@@ -169,16 +169,16 @@ pub struct DriftCheck {
 /// Where the force is known again when a run is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZeroAfter {
-    /// Back where the run began, of a specimen that is as it was there.
+    /// At the position where the run began, with a specimen that is as it was there.
     Start,
-    /// A person has taken the specimen off the load cell.
+    /// With the specimen removed from the load cell by the operator.
     Free,
-    /// Nowhere: only what no load and no relaxation can do is judged.
+    /// Nowhere: only changes that neither load nor relaxation can cause are assessed.
     Nowhere,
 }
 
 impl ZeroAfter {
-    /// As a plan writes it.
+    /// The word in a plan.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -189,39 +189,39 @@ impl ZeroAfter {
     }
 }
 
-/// Where the numbers of a rig are traced to.
+/// The calibrations of a rig.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Calibration {
-    /// Text of the calibration reference, if given; of the force alone where `displacement` has one of its own.
+    /// Calibration reference, if given; of the force alone where `displacement` has a separate one.
     pub reference: Option<String>,
-    /// Day until which it holds, `YYYY-MM-DD`, if given.
+    /// Calibration due date, `YYYY-MM-DD`, if given.
     pub due: Option<String>,
     /// Class of the force measurement, as stated.
     pub force_class: Option<String>,
-    /// Forces, by size, over which the calibration holds, N.
+    /// Forces for which the calibration is valid, absolute value \[N\].
     pub force_calibrated: Option<Interval>,
-    /// Of the displacement: its own reference and the day until which that holds, where it has one.
+    /// Calibration reference and due date of the displacement, where they are separate.
     pub displacement: Option<(String, Option<String>)>,
     /// Class of the displacement measurement, as stated.
     pub displacement_class: Option<String>,
-    /// Displacements, by size, over which the calibration holds, m.
+    /// Displacements for which the calibration is valid, absolute value \[m\].
     pub displacement_calibrated: Option<Interval>,
-    /// Of a cell that gives raw counts: N per count, its sign the cell's.
+    /// For a load cell that returns raw counts: the scale factor \[N per count\], with the polarity of the cell.
     pub newtons_per_count: Option<f64>,
-    /// Count at no force.
+    /// Zero offset: the count at zero force.
     pub zero_count: f64,
-    /// Standard uncertainty of the factor between its newtons and newtons; 0 where none is stated.
+    /// Standard uncertainty of the scale factor of the force, relative; 0 where none is stated.
     pub force_uncertainty: f64,
-    /// Of the factor between its metres and metres.
+    /// Standard uncertainty of the scale factor of the displacement, relative.
     pub displacement_uncertainty: f64,
-    /// Of its reading of no force, N.
+    /// Standard uncertainty of the zero reading of the force \[N\].
     pub zero_uncertainty: f64,
-    /// Of what that reading may drift in a run that decides anything: the bound over √3, N.
+    /// Standard uncertainty of the zero drift in a run for which conformity is stated: the bound over √3 \[N\].
     pub zero_drift: f64,
 }
 
 impl Calibration {
-    /// Standard uncertainty of a reading of no force at any time of a run, N.
+    /// Standard uncertainty of the zero of the force at any time of a run \[N\].
     #[must_use]
     pub fn zero(&self) -> f64 {
         self.zero_uncertainty.hypot(self.zero_drift)
@@ -231,19 +231,19 @@ impl Calibration {
 /// A rig that moves a real specimen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RealLink {
-    /// What moves, and what reads the force too where there is no cell of its own.
+    /// The actuator, which measures the force too where there is no separate cell.
     pub actuator: DeviceLink,
     pub load_cell: Option<DeviceLink>,
     pub safe_state: SafeState,
     pub datum: Datum,
     pub gate: Gate,
     pub readings: ReadingRules,
-    /// Longest time without a sign of life between program and rig, s: past it the rig is to hold by itself, and the
-    /// program does not go on.
+    /// Watchdog time of the communication between program and rig \[s\]: after it the rig is to hold on its own, and the
+    /// program stops.
     pub watchdog: f64,
-    /// Speed of a move for which none is asked and the plan limits none, m/s.
+    /// Speed of a move for which none is specified and the plan limits none \[m/s\].
     pub own_speed: f64,
-    /// What each axis says of itself, lowest floor first; empty: one axis, all of which is said above.
+    /// Entries of each axis, lowest floor first; empty: one axis, with the entries above.
     pub axes: Vec<AxisPlan>,
 }
 
@@ -252,13 +252,13 @@ pub struct RealLink {
 pub struct DeviceLink {
     pub port: PortPlan,
     pub dialect: Dialect,
-    /// A frame is sent again after T, 2T and 4T of silence; then the rig holds, s.
+    /// Reply time-out T: a request is repeated after T, 2T and 4T of silence; then the rig holds \[s\].
     pub reply_timeout: f64,
-    /// The device must give this serial number.
+    /// The device must report this serial number.
     pub serial_number: Option<String>,
 }
 
-/// Where a device is reached.
+/// The port of a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PortPlan {
     Serial {
@@ -280,36 +280,36 @@ impl std::fmt::Display for PortPlan {
     }
 }
 
-/// What a device speaks.
+/// The protocol of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dialect {
-    /// psd's own line protocol: moves, reads displacement and force.
+    /// psd's own line protocol: moves, measures displacement and force.
     Native,
     /// Grbl 1.1, axis X: moves; its position is commanded steps, not a measurement.
     Grbl,
-    /// Load cell: one raw count a line.
+    /// Load cell: one raw count for each line.
     Hx711,
     /// Load cell: weighing indicator, `ST,GS,+0001234,kg`; the unit is in the line.
     Indicator,
-    /// Load cells or transducers: SCPI `READ?`; N per reading unit, one a channel.
+    /// Load cells or transducers: SCPI `READ?`; newtons for each unit of the reading, one factor for each channel.
     Scpi { newtons_per_unit: Vec<f64> },
-    /// Instron 8800-style console: moves, reads both.
+    /// Instron 8800-style console: moves, measures both.
     Instron,
-    /// Mark-10 stand with its gauge: moves, reads both.
+    /// Mark-10 stand with its gauge: moves, measures both.
     Mark10,
     /// Load cell: Mark-10 gauge alone.
     Mark10Gauge,
-    /// Modbus RTU with its register map: moves, reads what the map has.
+    /// Modbus RTU with its register map: moves, measures whatever the map has.
     Modbus(ModbusMap),
-    /// NEES "LabVIEW plugin" ASCII, psd as coordinator: moves, reads both.
+    /// NEES "LabVIEW plugin" ASCII, with psd as coordinator: moves, measures both.
     Nees {
-        /// One an axis, the lowest storey first.
+        /// One for each axis, the lowest storey first.
         control_points: Vec<String>,
     },
 }
 
 impl Dialect {
-    /// The word of the language.
+    /// The keyword of the language.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -326,7 +326,7 @@ impl Dialect {
         }
     }
 
-    /// Axes that one device of this dialect drives together, at most.
+    /// Most axes that one device of this protocol moves together.
     #[must_use]
     pub const fn most_axes(&self) -> usize {
         match self {
@@ -335,7 +335,7 @@ impl Dialect {
         }
     }
 
-    /// Axes that one device of this dialect weighs, at most.
+    /// Most axes whose force one device of this protocol measures.
     #[must_use]
     pub const fn most_channels(&self) -> usize {
         match self {
@@ -344,7 +344,7 @@ impl Dialect {
         }
     }
 
-    /// Whether it is asked if it would move before it is told to.
+    /// Whether a move is proposed to it before it is commanded.
     #[must_use]
     pub const fn proposes(&self) -> bool {
         matches!(self, Self::Nees { .. })
@@ -366,7 +366,7 @@ impl Dialect {
         }
     }
 
-    /// Whether it reads the force.
+    /// Whether it measures the force.
     #[must_use]
     pub const fn weighs(&self) -> bool {
         match self {
@@ -376,14 +376,14 @@ impl Dialect {
         }
     }
 
-    /// Whether its force comes as raw counts, which need a calibration.
+    /// Whether it returns the force as raw counts, which need a scale factor.
     #[must_use]
     pub const fn counts(&self) -> bool {
         matches!(self, Self::Hx711)
     }
 }
 
-/// Registers of a Modbus RTU drive, transmitter or both. Addresses are as on the wire, from 0.
+/// Registers of a Modbus RTU drive, transmitter or both. Addresses are those on the line, from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModbusMap {
     /// 1 … 247
@@ -404,15 +404,15 @@ pub struct ModbusMap {
     pub command: Option<u16>,
     pub start_word: u16,
     pub stop_word: u16,
-    /// m per unit of position and target.
+    /// Metres per unit of position and target.
     pub length_unit: f64,
-    /// m/s per unit of speed.
+    /// Metres per second per unit of speed.
     pub speed_unit: f64,
-    /// N per unit of force.
+    /// Newtons per unit of force.
     pub force_unit: f64,
 }
 
-/// How a number lies in registers. The word order of 32-bit numbers is the vendor's.
+/// The encoding of a number in registers. The word order of 32-bit numbers depends on the vendor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModbusNumber {
     Int16,
@@ -420,12 +420,12 @@ pub enum ModbusNumber {
     Float32 { high_word_first: bool },
 }
 
-/// What a real rig does when a run ends early.
+/// The reaction of a real rig when a run ends early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SafeState {
     /// Stops and keeps the load.
     Hold,
-    /// Holds, then goes back to where the run began, if rig and readings are still trusted.
+    /// Holds, then returns to where the run began, if rig and readings are still trusted.
     Unload,
 }
 
@@ -439,41 +439,41 @@ impl SafeState {
     }
 }
 
-/// Where the zero of the plan's displacements lies. Targets, readings and limits count from it.
+/// The zero of the plan's displacements. Targets, readings and limits count from it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Datum {
-    /// At the rig's own zero: the rig must stand there when a run begins.
+    /// At the rig's own zero: the rig must be there when a run begins.
     Machine,
-    /// Where the rig stands when it is opened for a run.
+    /// The position of the rig when it is opened for a run.
     Here,
-    /// At these places of the rig's own coordinate, m, one an axis: on record, of a run that goes on.
+    /// These positions in the rig's own coordinate \[m\], one for each axis, from the log of a run that is resumed.
     At(Vec<f64>),
 }
 
-/// What must be so before the first step: the readings at rest, and the stiffness that a tiny move shows.
+/// The pre-test check: readings at rest, and the stiffness that a small move shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gate {
-    /// |force| at rest before anything moves, N.
+    /// abs(force) at rest before any move \[N\].
     pub zero: f64,
-    /// The tiny move, m.
+    /// Length of the small move \[m\].
     pub probe: f64,
-    /// What it must show, N/m.
+    /// The stiffness that it must show \[N/m\].
     pub stiffness: Interval,
 }
 
-/// What the rig declares of its readings, and how many make one.
+/// The declared properties of the readings, and how many make one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReadingRules {
-    /// Settled readings of which the median counts, odd, at least 1.
+    /// Settled readings whose median counts; odd, at least 1.
     pub samples: u32,
-    /// Readings a second while settling.
+    /// Readings per second while settling.
     pub rate: f64,
-    /// Quantum of the displacement reading, m.
+    /// Resolution of the displacement reading \[m\].
     pub resolution: f64,
-    /// Standard deviation of one force reading, N.
+    /// Standard deviation of one force reading \[N\].
     pub noise: f64,
-    /// What the cell can read, N; a reading within 0.1 % of an end is saturated.
+    /// Measuring range of the load cell \[N\]; a reading within 0.1 % of an end is saturated.
     pub force_range: Interval,
-    /// Identical force readings in a row while the displacement changes: the sensor is taken for frozen.
+    /// Identical force readings in a row while the displacement changes, after which the sensor counts as frozen.
     pub frozen_after: u32,
 }

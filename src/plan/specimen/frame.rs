@@ -1,11 +1,11 @@
-//! What a plan does with frames of storeys: the motion of the ground under them, a striker on one of their floors, their damping.
-//! In: what `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
+//! Frames in a plan: the ground motion under them, a striker on one of their floors, their damping.
+//! In: numbers that `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
 use crate::physics::frame::Damping;
 use crate::plan::formula::Formula;
 use crate::plan::{Contact, Stepping, Until};
 
-/// Degrees of freedom of one frame, at most: each has an actuator and a load cell of its own.
+/// Most degrees of freedom of one frame: each has its own actuator and load cell.
 pub const MOST_STOREYS: usize = 64;
 
 /// The motion of the ground, from 0 s on.
@@ -13,26 +13,26 @@ pub const MOST_STOREYS: usize = 64;
 pub struct Ground {
     pub name: String,
     pub file: String,
-    /// What one of the record's numbers is worth, m/s², already in `accelerations`.
+    /// Scale factor of the record's numbers \[m/s²\], already in `accelerations`.
     pub unit: f64,
-    /// Factor of the plan, already in `accelerations`.
+    /// Scale of the plan, already in `accelerations`.
     pub scale: f64,
-    /// Standard, of the accelerations, relative; 0 where none is stated.
+    /// Relative standard uncertainty of the accelerations; 0 where none is stated.
     pub scale_uncertainty: f64,
-    /// s, from 0, rising.
+    /// \[s\], from 0, increasing.
     pub times: Vec<f64>,
-    /// m/s²
+    /// \[m/s²\]
     pub accelerations: Vec<f64>,
 }
 
 impl Ground {
-    /// s
+    /// Time of the last sample \[s\].
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// Shortest and longest time between two samples, s.
+    /// Shortest and longest time between two samples \[s\].
     #[must_use]
     pub fn spacing(&self) -> (f64, f64) {
         let spacings = self.times.windows(2).map(|pair| pair[1] - pair[0]);
@@ -41,7 +41,7 @@ impl Ground {
         })
     }
 
-    /// Largest acceleration by size, m/s².
+    /// Largest absolute acceleration \[m/s²\].
     #[must_use]
     pub fn peak(&self) -> f64 {
         self.accelerations
@@ -58,12 +58,12 @@ pub struct Shake {
     /// Index into `Plan::grounds`.
     pub ground: usize,
     pub damping: ShakeDamping,
-    /// Standard, of each damping ratio; 0 where none is stated.
+    /// Standard uncertainty of each damping ratio; 0 where none is stated.
     pub damping_uncertainty: f64,
     pub stepping: Stepping,
     /// Factor on the record.
     pub scale: Formula,
-    /// s of virtual time. None: to the end of the record.
+    /// Simulated time \[s\]. None: to the end of the record.
     pub duration: Option<Formula>,
 }
 
@@ -74,14 +74,14 @@ pub struct StoreyImpact {
     pub specimen: usize,
     /// Index into `Plan::strikers`.
     pub striker: usize,
-    /// The struck floor, from 0.
+    /// Index of the struck floor, from 0.
     pub struck: usize,
     pub damping: ShakeDamping,
-    /// Standard, of each damping ratio; 0 where none is stated.
+    /// Standard uncertainty of each damping ratio; 0 where none is stated.
     pub damping_uncertainty: f64,
     pub contact: Contact,
     pub stepping: Stepping,
-    /// s, at most.
+    /// Most simulated time \[s\].
     pub duration: Formula,
     pub until: Until,
 }
@@ -89,9 +89,9 @@ pub struct StoreyImpact {
 /// Fractions of critical damping.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShakeDamping {
-    /// C = a M + b K, this ratio in the first two modes; in the only mode of one storey.
+    /// C = a M + b K, with this ratio in the first two modes, or in the only mode of one storey.
     Rayleigh(Formula),
-    /// Each mode its own, the longest period first.
+    /// A ratio for each mode, the longest period first.
     Modal(Vec<Formula>),
 }
 
@@ -111,7 +111,7 @@ impl ShakeDamping {
     }
 }
 
-/// Rayleigh damping with one ratio in the first two modes; no ratio is no damping at all.
+/// Rayleigh damping with the same ratio in the first two modes; without a ratio there is no damping.
 #[must_use]
 pub fn rayleigh(ratio: f64) -> Damping {
     if ratio == 0.0 {

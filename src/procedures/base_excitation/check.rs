@@ -1,7 +1,7 @@
 //! `shake NAME { … }`: the frame, the ground under it, damping, and a time step that is stable.
 
 use crate::language::check::checker::{Checker, Shape};
-use crate::language::check::declarations::frame;
+use crate::language::check::declarations::specimen::frame;
 use crate::language::check::messages::{frames as fault, types};
 use crate::plan::formula::Formula;
 use crate::plan::{Contact, Frame, Ground, ProcedureKind, Shake, ShakeDamping};
@@ -27,13 +27,13 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
             tested.block.head,
         );
         let at = checker
-            .given(block, "specimen")
+            .field(block, "specimen")
             .map_or(head, |(_, entry)| entry.value.span);
         return checker.fail(fault::no_storeys(name, at, declared));
     }
     Some(ProcedureKind::Shake(Shake {
-        specimen: checker.scope.place_in_kind(specimen),
-        ground: checker.scope.place_in_kind(ground?),
+        specimen: checker.scope.index_in_kind(specimen),
+        ground: checker.scope.index_in_kind(ground?),
         damping: damping?,
         damping_uncertainty: damping_uncertainty?,
         stepping: stepping?,
@@ -44,7 +44,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
 
 /// One number is Rayleigh's, a list has one for each mode.
 pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
-    let Some((entry, written)) = checker.given(block, "damping_ratio") else {
+    let Some((entry, written)) = checker.field(block, "damping_ratio") else {
         return Some(ShakeDamping::Rayleigh(Formula::Constant(0.0)));
     };
     let typed = checker.entry(block, entry, written.value.span)?;
@@ -72,7 +72,7 @@ pub fn damping_uncertainty(
     let least = ratios.iter().filter_map(Formula::constant).reduce(f64::min);
     match (
         least.filter(|least| uncertainty > *least),
-        checker.given(block, FIELD),
+        checker.field(block, FIELD),
     ) {
         (Some(least), Some((_, entry))) => {
             let at = entry.value.span;
@@ -111,9 +111,9 @@ pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, 
     if step > spacing * (1.0 + 1e-9) {
         let head = checker.scope.blocks[block].block.head;
         let at = checker
-            .given(block, "time_step")
+            .field(block, "time_step")
             .map_or(head, |(_, entry)| entry.value.span);
-        checker.faults.push(fault::record_finer_than_step(
+        checker.diagnostics.push(fault::record_finer_than_step(
             at,
             step,
             spacing,

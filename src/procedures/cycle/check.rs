@@ -1,6 +1,6 @@
 //! `cycle NAME { … }`: amplitudes, or a protocol that gives them.
 
-use crate::language::check::checker::{Checker, Place};
+use crate::language::check::checker::{Checker, Context};
 use crate::language::check::declarations::curve;
 use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::{cyclic as fault, names, values};
@@ -20,16 +20,16 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         checker.optional(block, "speed"),
         checker.optional(block, "rate"),
     );
-    if let Some((_, rate)) = checker.given(block, "rate") {
-        if checker.given(block, "speed").is_none() && !checker.misspelt(block, &["speed"]) {
+    if let Some((_, rate)) = checker.field(block, "rate") {
+        if checker.field(block, "speed").is_none() && !checker.misspelt(block, &["speed"]) {
             checker
-                .faults
+                .diagnostics
                 .push(fault::rate_without_speed(rate.span, head));
         }
         for field in ["points", "samples"] {
-            if let Some((_, entry)) = checker.given(block, field) {
+            if let Some((_, entry)) = checker.field(block, field) {
                 checker
-                    .faults
+                    .diagnostics
                     .push(fault::no_use_with_rate(field, entry.span, rate.span));
             }
         }
@@ -78,10 +78,10 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     reason = "left out and faulty are different things here"
 )]
 fn fit(checker: &mut Checker, block: usize) -> Option<Option<BreakCount>> {
-    let Some((entry, _)) = checker.given(block, "fit") else {
+    let Some((entry, _)) = checker.field(block, "fit") else {
         return Some(None);
     };
-    let place = checker.place(block, entry);
+    let place = checker.context_of(block, entry);
     let chosen = checker.choice(block, "fit")?;
     curve::breaks(checker, &chosen, place).map(Some)
 }
@@ -89,13 +89,13 @@ fn fit(checker: &mut Checker, block: usize) -> Option<Option<BreakCount>> {
 /// The amplitudes in order, each with its number of cycles; None where a fault was reported.
 fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
     let declared = &checker.scope.blocks[block];
-    let repeats = match checker.given(block, "repeats") {
+    let repeats = match checker.field(block, "repeats") {
         Some(_) => Some(checker.count(block, "repeats")?),
         None => None,
     };
     match (
-        checker.given(block, "amplitudes"),
-        checker.given(block, "protocol"),
+        checker.field(block, "amplitudes"),
+        checker.field(block, "protocol"),
     ) {
         (Some((_, amplitudes)), Some((_, protocol))) => checker.fail(fault::amplitudes_twice(
             protocol.key.span,
@@ -123,7 +123,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
             )
         }
         (None, Some((entry, _))) => {
-            let place = checker.place(block, entry);
+            let place = checker.context_of(block, entry);
             let (amplitudes, own) = protocol(checker, block, place)?;
             let cycles = repeats.unwrap_or(own);
             Some(
@@ -142,7 +142,7 @@ const FEMA_RATIO: f64 = 1.4;
 const FEMA_CYCLES: u32 = 2;
 
 /// The amplitudes of a protocol, and the cycles it runs at each.
-fn protocol(checker: &mut Checker, block: usize, place: Place) -> Option<(Vec<Formula>, u32)> {
+fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<Formula>, u32)> {
     let chosen = checker.choice(block, "protocol")?;
     let levels = checker
         .constant_argument(&chosen, "levels", place)
@@ -156,7 +156,7 @@ fn protocol(checker: &mut Checker, block: usize, place: Place) -> Option<(Vec<Fo
             );
             if let (1, Some(span)) = (levels, chosen.span("last")) {
                 let message = "a ramp of one level has its first amplitude alone".to_owned();
-                checker.faults.push(values::no_effect(
+                checker.diagnostics.push(values::no_effect(
                     message,
                     span,
                     "is never reached",
@@ -209,10 +209,10 @@ fn product(one: Formula, other: Formula) -> Formula {
 }
 
 fn inspections(checker: &mut Checker, block: usize) -> Option<Vec<CycleInspection>> {
-    let Some((entry, _)) = checker.given(block, "inspect") else {
+    let Some((entry, _)) = checker.field(block, "inspect") else {
         return Some(Vec::new());
     };
-    let place = checker.place(block, entry);
+    let place = checker.context_of(block, entry);
     let chosen = checker.choices(block, "inspect")?;
     let each = chosen.iter().map(|chosen| {
         Some(match chosen.variant.name {

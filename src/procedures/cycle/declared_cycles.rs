@@ -28,7 +28,7 @@ pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedur
         let cycles = cycle.levels.iter().map(|level| level.cycles as usize).sum();
         if BY_CYCLE.contains(&reference.name) && place >= cycles {
             checker
-                .faults
+                .diagnostics
                 .push(fault::no_such_entry(span, place, cycles));
         }
     }
@@ -69,11 +69,11 @@ pub fn hold_cycles(
             continue;
         };
         let given = checker
-            .given(*block, "amplitudes")
-            .or_else(|| checker.given(*block, "protocol"));
+            .field(*block, "amplitudes")
+            .or_else(|| checker.field(*block, "protocol"));
         let Some((_, entry)) = given else { continue };
         let (field, span) = (entry.key.node.as_str(), entry.value.span);
-        checker.faults.push(whole::beyond_limits(
+        checker.diagnostics.push(whole::beyond_limits(
             field,
             beyond,
             Dimension::LENGTH,

@@ -30,7 +30,7 @@ fn read_together(checker: &mut Checker, block: usize) {
     let at = checker.scope.blocks[block].block.head;
     let entry = |field| {
         checker
-            .given(rig, field)
+            .field(rig, field)
             .map(|(_, entry)| entry.key.span.to(entry.value.span))
     };
     let apart = match (entry("load_cell"), stops_at_targets(checker, rig)) {
@@ -47,6 +47,6 @@ fn read_together(checker: &mut Checker, block: usize) {
         (None, None) => None,
     };
     if let Some((link, told)) = apart {
-        checker.faults.push(fault::read_apart(at, link, told));
+        checker.diagnostics.push(fault::read_apart(at, link, told));
     }
 }

@@ -19,16 +19,16 @@ pub fn hold(checker: &mut Checker, block: usize, striker: &Striker, duration: Op
     let Some(duration) = duration.filter(|duration| arrives >= *duration) else {
         return;
     };
-    let Some((_, at)) = checker.given(block, "duration") else {
+    let Some((_, at)) = checker.field(block, "duration") else {
         return;
     };
     let declared = checker
         .scope
         .of_kind(Kind::Striker)
         .find(|(_, it)| it.name.is_some_and(|name| name.node == striker.name));
-    let gap = declared.and_then(|(declared, _)| checker.given(declared, "gap"));
+    let gap = declared.and_then(|(declared, _)| checker.field(declared, "gap"));
     let Some((_, gap)) = gap else { return };
-    checker.faults.push(fault::never_arrives(
+    checker.diagnostics.push(fault::never_arrives(
         &striker.name,
         striker.gap,
         arrives,

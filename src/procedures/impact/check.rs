@@ -1,7 +1,7 @@
 //! `impact NAME { … }`
 
 use super::storey_check;
-use crate::language::check::checker::{Checker, Place};
+use crate::language::check::checker::{Checker, Context};
 use crate::language::check::declarations::specimen;
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
@@ -35,13 +35,13 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
     let striker = checker.reference(block, "striker", Kind::Striker);
     let specimen_block = checker.specimen_block(block);
     let no_frame = storey_check::no_frame(checker, block, specimen_block);
-    let mass = match checker.given(block, "mass") {
+    let mass = match checker.field(block, "mass") {
         Some(_) => checker.quantity(block, "mass"),
         None => specimen_block
             .and_then(|tested| specimen::export(checker, tested, "mass", head))
             .map(Formula::Constant),
     };
-    let mass_uncertainty = match checker.given(block, "mass") {
+    let mass_uncertainty = match checker.field(block, "mass") {
         Some(_) => Some(0.0),
         None => specimen_block.and_then(|tested| specimen::mass_uncertainty(checker, tested)),
     };
@@ -52,8 +52,8 @@ pub fn blow(checker: &mut Checker, block: usize) -> Option<Impact> {
     let duration = checker.quantity(block, "duration");
     let until = until(checker, block);
     let impact = Impact {
-        specimen: checker.scope.place_in_kind(specimen_block?),
-        striker: checker.scope.place_in_kind(striker?),
+        specimen: checker.scope.index_in_kind(specimen_block?),
+        striker: checker.scope.index_in_kind(striker?),
         mass: mass?,
         mass_uncertainty: mass_uncertainty?,
         stiffness: stiffness?,
@@ -103,21 +103,21 @@ pub fn judge(
     {
         let head = checker.scope.blocks[block].block.head;
         let at = checker
-            .given(block, "duration")
+            .field(block, "duration")
             .map_or(head, |(_, entry)| entry.value.span);
         let steps = steps_in(duration, time_step);
         let help = "shorten `duration` or take a longer `time_step`";
         checker
-            .faults
+            .diagnostics
             .push(values::too_many("steps", steps, MOST_STEPS, at, help));
         return;
     }
     returns(checker, block, impact.until, striker);
     beyond_duration(checker, block, time_step, impact.duration.constant());
-    let before = checker.faults.len();
+    let before = checker.diagnostics.len();
     mode_check::damping_twice(checker, block, impact, specimen);
     integrator_check::stable(checker, block, impact, striker, specimen);
-    let allowed = checker.faults[before..]
+    let allowed = checker.diagnostics[before..]
         .iter()
         .any(|fault| fault.code == Code::BeyondStability);
     warnings::impact(checker, block, impact, striker, specimen, allowed);
@@ -140,10 +140,10 @@ pub fn beyond_duration(
     let head = checker.scope.blocks[block].block.head;
     let at = |field| {
         checker
-            .given(block, field)
+            .field(block, field)
             .map_or(head, |(_, entry)| entry.value.span)
     };
-    checker.faults.push(values::step_beyond_duration(
+    checker.diagnostics.push(values::step_beyond_duration(
         at("time_step"),
         step,
         at("duration"),
@@ -154,12 +154,12 @@ pub fn beyond_duration(
 /// A run that waits for a striker to have left for good, which one that falls never has.
 pub fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Striker) {
     if let (Until::Rebound, true, Some((_, entry))) =
-        (until, striker.gravity > 0.0, checker.given(block, "until"))
+        (until, striker.gravity > 0.0, checker.field(block, "until"))
     {
         let message =
             "a striker that falls always comes back: `rebound` never ends this run".to_owned();
         let help = "write `until = striker_stop` or `until = duration`, or leave `gravity` out";
-        checker.faults.push(values::no_effect(
+        checker.diagnostics.push(values::no_effect(
             message,
             entry.value.span,
             "goes on to its `duration`",
@@ -229,10 +229,10 @@ pub fn time_step_before_the_run(impact: &Impact, striker: &Striker) -> Option<f6
 }
 
 pub fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
-    let Some((entry, _)) = checker.given(block, "contact") else {
+    let Some((entry, _)) = checker.field(block, "contact") else {
         return Some(Contact::Rigid);
     };
-    let place = checker.place(block, entry);
+    let place = checker.context_of(block, entry);
     let chosen = checker.choice(block, "contact")?;
     Some(match chosen.variant.name {
         "limit" => Contact::Limit {
@@ -259,10 +259,10 @@ pub fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
 }
 
 pub fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigger>> {
-    let Some((entry, _)) = checker.given(block, "inspect") else {
+    let Some((entry, _)) = checker.field(block, "inspect") else {
         return Some(Vec::new());
     };
-    let place = checker.place(block, entry);
+    let place = checker.context_of(block, entry);
     let chosen = checker.choices(block, "inspect")?;
     let triggers: Vec<Option<InspectTrigger>> = chosen
         .iter()
@@ -274,7 +274,7 @@ pub fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigge
 fn trigger<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Place,
+    place: Context,
 ) -> Option<InspectTrigger> {
     Some(match chosen.variant.name {
         "every" => InspectTrigger::Every(

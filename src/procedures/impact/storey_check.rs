@@ -4,7 +4,7 @@
 use std::rc::Rc;
 
 use crate::language::check::checker::Checker;
-use crate::language::check::declarations::frame;
+use crate::language::check::declarations::specimen::frame;
 use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::frames as fault;
 use crate::physics::structure::frame_properties::FrameProperties;
@@ -25,7 +25,7 @@ pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Optio
     let several = frame
         .as_ref()
         .is_none_or(|frame| frame.degrees_of_freedom() > 1);
-    (several || checker.given(block, "storey").is_some()).then_some((specimen, frame))
+    (several || checker.field(block, "storey").is_some()).then_some((specimen, frame))
 }
 
 pub fn storey_impact(
@@ -54,9 +54,9 @@ pub fn storey_impact(
     ];
     let mut foreign = false;
     for (field, help) in own {
-        if let Some((_, entry)) = checker.given(block, field) {
+        if let Some((_, entry)) = checker.field(block, field) {
             let at = entry.key.span;
-            checker.faults.push(fault::no_use_on_a_frame(
+            checker.diagnostics.push(fault::no_use_on_a_frame(
                 field,
                 "an impact on a storey",
                 at,
@@ -77,8 +77,8 @@ pub fn storey_impact(
         return None;
     }
     let impact = StoreyImpact {
-        specimen: checker.scope.place_in_kind(named?),
-        striker: checker.scope.place_in_kind(striker?),
+        specimen: checker.scope.index_in_kind(named?),
+        striker: checker.scope.index_in_kind(striker?),
         struck: struck?,
         damping: damping?,
         damping_uncertainty: damping_uncertainty?,
@@ -112,7 +112,7 @@ fn storey(
         tested.block.head,
     );
     let storeys = frame.map(|frame| frame.degrees_of_freedom());
-    let Some((_, entry)) = checker.given(block, "storey") else {
+    let Some((_, entry)) = checker.field(block, "storey") else {
         return checker.fail(fault::which_storey(name, storeys?, head, declared));
     };
     let at = entry.value.span;
@@ -159,7 +159,7 @@ pub fn judge(
     {
         let head = checker.scope.blocks[block].block.head;
         let at = checker
-            .given(block, "time_step")
+            .field(block, "time_step")
             .map_or(head, |(_, entry)| entry.value.span);
         warnings::limit_force(
             checker,
@@ -182,12 +182,12 @@ pub fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) ->
         ),
     ];
     for (field, hint) in hints {
-        if let Some((_, entry)) = checker.given(block, field) {
+        if let Some((_, entry)) = checker.field(block, field) {
             let at = entry.key.span;
             sound = checker.fail(fault::of_a_frame_only(field, at, hint));
         }
     }
-    if let (Some((_, entry)), Some(specimen)) = (checker.given(block, "storey"), specimen) {
+    if let (Some((_, entry)), Some(specimen)) = (checker.field(block, "storey"), specimen) {
         let (at, tested) = (entry.key.span, &checker.scope.blocks[specimen]);
         let (name, declared) = (
             tested.name.map_or("", |name| name.node.as_str()),

@@ -20,7 +20,7 @@ pub fn impact(
 ) {
     let head = checker.scope.blocks[block].block.head;
     let at = checker
-        .given(block, "time_step")
+        .field(block, "time_step")
         .map_or(head, |(_, entry)| entry.value.span);
     let critical = critical_foreseen(checker, impact, striker, specimen);
     if let Some((critical, foreseen)) = critical
@@ -32,11 +32,11 @@ pub fn impact(
         && !allowed_beyond_stability
     {
         let fault = if foreseen {
-            fault::step_above_foreseen
+            fault::step_above_predicted
         } else {
             fault::step_above_critical
         };
-        checker.faults.push(fault(at, step.value, critical));
+        checker.diagnostics.push(fault(at, step.value, critical));
     }
     let Some(step) = time_step_before_the_run(impact, striker) else {
         return;
@@ -67,12 +67,13 @@ pub fn mechanism(
         .and_then(|specimen| specimen.behaviour.as_ref())
         .and_then(Behaviour::portal);
     if let (Some(force), Some(portal), Some((_, entry))) =
-        (bound, portal, checker.given(block, "contact"))
+        (bound, portal, checker.field(block, "contact"))
         && let Some(most) = mechanism_limit(portal).filter(|most| force > *most)
     {
-        checker.faults.push(specimens::beyond_mechanism(
+        checker.diagnostics.push(specimens::beyond_mechanism(
             portal.mechanism(),
-            (force, most),
+            force,
+            most,
             entry.value.span,
         ));
     }
@@ -92,7 +93,7 @@ pub fn limit_force(
     let resolved = mass * striker.mass / (mass + striker.mass) * striker.velocity / (5.0 * force);
     if step > resolved {
         checker
-            .faults
+            .diagnostics
             .push(fault::limit_force_not_resolved(at, step, first, resolved));
     }
 }

@@ -1,6 +1,6 @@
 //! `escalate NAME { … }`: the fields of an impact, its levels, and the condition that lets the next blow follow.
 
-use crate::language::check::checker::{Checker, Place, Reads};
+use crate::language::check::checker::{Checker, Context, Reads};
 use crate::language::check::declarations::striker::STANDARD_GRAVITY;
 use crate::language::check::messages::{cyclic as fault, names, values};
 use crate::plan::formula::{Formula, Function, Operator};
@@ -52,7 +52,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
         .into_iter()
         .filter_map(|field| {
             checker
-                .given(block, field)
+                .field(block, field)
                 .map(|(_, entry)| (field, entry.key.span, entry.value.span))
         })
         .collect();
@@ -60,7 +60,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
         [(field, _, span)] => (*field, *span),
         [] => {
             if !checker.misspelt(block, &LEVELS) {
-                checker.faults.push(names::missing_field(
+                checker.diagnostics.push(names::missing_field(
                     kind,
                     name,
                     head,
@@ -73,7 +73,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
         [(first, at, _), rest @ ..] => {
             for (again, span, _) in rest {
                 checker
-                    .faults
+                    .diagnostics
                     .push(fault::levels_twice(again, *span, first, *at));
             }
             return None;
@@ -96,7 +96,9 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
     }
     let known: Vec<f64> = levels.iter().filter_map(Formula::constant).collect();
     if known.windows(2).any(|pair| pair[1] <= pair[0]) {
-        checker.faults.push(fault::levels_do_not_rise(field, span));
+        checker
+            .diagnostics
+            .push(fault::levels_do_not_rise(field, span));
     }
     let root = |twice: f64, of: Formula| {
         let product = Formula::Binary(
@@ -134,10 +136,10 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
 /// `while`: conditions on the results of a blow, by their own names.
 fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
     let own = checker.scope.blocks[block].procedure?;
-    let (entry, written) = checker.given(block, "while")?;
-    let place = Place {
+    let (entry, written) = checker.field(block, "while")?;
+    let place = Context {
         entry: Some((block, entry)),
-        reads: Reads::Blow(own),
+        reads: Reads::Impact(own),
         critical: false,
     };
     let conditions = checker.conditions_at(&written.value, place)?;
@@ -150,7 +152,7 @@ fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
         .any(|reference| reference.procedure == own)
     {
         let text = checker.text(written.value.span);
-        return checker.fail(fault::condition_without_blow(text, written.value.span));
+        return checker.fail(fault::condition_without_result(text, written.value.span));
     }
     Some(conditions)
 }

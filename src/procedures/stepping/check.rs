@@ -30,7 +30,7 @@ pub fn stepping(
     let i_modification = checker
         .word(block, "i_modification", unsaid)
         .map(|word| word == "true");
-    let time_step = match checker.given(block, "time_step") {
+    let time_step = match checker.field(block, "time_step") {
         Some(_) => checker.quantity(block, "time_step"),
         None => Some(Formula::Binary(
             Operator::Divide,
@@ -41,13 +41,13 @@ pub fn stepping(
     let pause = checker.quantity(block, "pause");
     let max_tangent_ratio = checker.quantity(block, "max_tangent_ratio");
     if let (Some(Integrator::Explicit | Integrator::AlphaOs { .. }), Some((_, entry))) =
-        (integrator, checker.given(block, "max_tangent_ratio"))
+        (integrator, checker.field(block, "max_tangent_ratio"))
     {
         let name = integrator.map_or("", Integrator::name);
         let message = format!(
             "`max_tangent_ratio` bounds the tangent that is measured, and `{name}` measures none"
         );
-        checker.faults.push(values::no_effect(
+        checker.diagnostics.push(values::no_effect(
             message,
             entry.key.span,
             "has no effect",
@@ -95,7 +95,7 @@ pub fn judge(
     let head = checker.scope.blocks[block].block.head;
     let at = |checker: &Checker, field| {
         checker
-            .given(block, field)
+            .field(block, field)
             .map_or(head, |(_, entry)| entry.value.span)
     };
     let known = damping.known()?;
@@ -116,10 +116,10 @@ pub fn judge(
     if let (Integrator::Tangent, None, Some((_, entry))) = (
         stepping.integrator,
         storeys_of(&properties.matrices.stiffness),
-        checker.given(block, "max_tangent_ratio"),
+        checker.field(block, "max_tangent_ratio"),
     ) {
         let message = "`max_tangent_ratio` bounds the tangent that each storey shows, and full matrices keep the initial stiffness";
-        checker.faults.push(values::no_effect(
+        checker.diagnostics.push(values::no_effect(
             message.to_owned(),
             entry.key.span,
             "has no effect",
@@ -149,7 +149,7 @@ pub fn judge(
     impact::check::beyond_duration(checker, block, Some(step), duration);
     if let Some(critical) = critical.filter(|critical| step > *critical) {
         checker
-            .faults
+            .diagnostics
             .push(whole::step_above_critical(step_at, step, critical));
     }
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
@@ -157,7 +157,7 @@ pub fn judge(
         duration.map(|duration| steps_in(duration, step) * frame.degrees_of_freedom() as f64);
     if let Some(rows) = rows.filter(|rows| *rows > MOST_STEPS) {
         let help = "shorten `duration` or take a longer `time_step`";
-        checker.faults.push(values::too_many(
+        checker.diagnostics.push(values::too_many(
             "steps of its storeys",
             rows,
             MOST_STEPS,

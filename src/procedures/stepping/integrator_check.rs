@@ -15,7 +15,7 @@ pub fn integrator(
     mode: Option<Mode>,
     contact: Option<&Contact>,
 ) -> Option<Integrator> {
-    let Some((entry, _)) = checker.given(block, "integrator") else {
+    let Some((entry, _)) = checker.field(block, "integrator") else {
         let continuous = matches!(mode, Some(Mode::Continuous { .. }));
         let whole_steps = matches!(contact, Some(Contact::Rigid | Contact::Limit { .. }));
         return Some(if continuous && whole_steps {
@@ -24,7 +24,7 @@ pub fn integrator(
             Integrator::Tangent
         });
     };
-    let place = checker.place(block, entry);
+    let place = checker.context_of(block, entry);
     let chosen = checker.choice(block, "integrator")?;
     Some(match chosen.variant.name {
         "explicit" => Integrator::Explicit,
@@ -54,7 +54,7 @@ pub fn meets_the_contact(
     let head = checker.scope.blocks[block].block.head;
     let at = |field| {
         checker
-            .given(block, field)
+            .field(block, field)
             .map_or(head, |(_, entry)| entry.value.span)
     };
     let (named, struck) = (at("integrator"), at("contact"));
@@ -101,10 +101,10 @@ pub fn stable(
     {
         let head = checker.scope.blocks[block].block.head;
         let at = checker
-            .given(block, "stiffness")
+            .field(block, "stiffness")
             .map_or(head, |(_, entry)| entry.value.span);
         checker
-            .faults
+            .diagnostics
             .push(fault::stiffer_than_operator(at, behaves, assumed, limit));
     }
     if let (Integrator::Tangent, Some(assumed), Some(ratio)) = (
@@ -115,10 +115,10 @@ pub fn stable(
     {
         let head = checker.scope.blocks[block].block.head;
         let at = checker
-            .given(block, "stiffness")
+            .field(block, "stiffness")
             .map_or(head, |(_, entry)| entry.value.span);
         checker
-            .faults
+            .diagnostics
             .push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
     }
     if step <= limit {
@@ -126,9 +126,9 @@ pub fn stable(
     }
     let head = checker.scope.blocks[block].block.head;
     let at = checker
-        .given(block, "time_step")
+        .field(block, "time_step")
         .map_or(head, |(_, entry)| entry.value.span);
-    checker.faults.push(if impact.stepping.allow_unstable {
+    checker.diagnostics.push(if impact.stepping.allow_unstable {
         frames::unstable_though(at, step, limit)
     } else {
         fault::unstable(at, impact.stepping.integrator, step, limit)

@@ -9,10 +9,10 @@ use crate::schema::Kind;
 
 /// The mode a block names, else step and pause.
 pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
-    let Some((entry, written)) = checker.given(block, "mode") else {
+    let Some((entry, written)) = checker.field(block, "mode") else {
         return Some(Mode::StepAndPause);
     };
-    let (place, at) = (checker.place(block, entry), written.value.span);
+    let (place, at) = (checker.context_of(block, entry), written.value.span);
     let chosen = checker.choice(block, "mode")?;
     if chosen.variant.name == "step_and_pause" {
         return Some(Mode::StepAndPause);
@@ -26,7 +26,7 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
     }
     let stops = ["pause", "inspect"]
         .into_iter()
-        .find_map(|field| checker.given(block, field).map(|(_, entry)| (field, entry)));
+        .find_map(|field| checker.field(block, field).map(|(_, entry)| (field, entry)));
     if let Some((field, entry)) = stops {
         return checker.fail(fault::stops_on_the_way(field, entry.span, at));
     }
@@ -37,8 +37,8 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
 /// dialect is another fault.
 pub fn stops_at_targets<'a>(checker: &Checker<'a>, rig: usize) -> Option<&'a str> {
     let (_, written) = checker
-        .given(rig, "link")
-        .or_else(|| checker.given(rig, "actuator"))?;
+        .field(rig, "link")
+        .or_else(|| checker.field(rig, "actuator"))?;
     let ExprKind::Call { arguments, .. } = &written.value.kind else {
         return None;
     };
@@ -75,12 +75,14 @@ pub fn damping_twice(
         .of_kind(Kind::Specimen)
         .nth(impact.specimen)
         .map(|(index, _)| index);
-    let at = |block, field| checker.given(block, field).map(|(_, entry)| entry.span);
+    let at = |block, field| checker.field(block, field).map(|(_, entry)| entry.span);
     if let (Some(computed), Some(felt)) = (
         at(block, "damping"),
         of_specimen.and_then(|index| at(index, "damping")),
     ) {
-        checker.faults.push(fault::damping_twice(computed, felt));
+        checker
+            .diagnostics
+            .push(fault::damping_twice(computed, felt));
     }
 }
 
@@ -106,9 +108,11 @@ pub fn storeys_damped_twice(
         .of_kind(Kind::Specimen)
         .nth(specimen)
         .map(|(index, _)| index);
-    let at = |block, field| checker.given(block, field).map(|(_, entry)| entry.span);
+    let at = |block, field| checker.field(block, field).map(|(_, entry)| entry.span);
     let felt = of_specimen.and_then(|index| at(index, "storeys"));
     if let (Some(computed), Some(felt)) = (at(block, "damping_ratio"), felt) {
-        checker.faults.push(fault::damping_twice(computed, felt));
+        checker
+            .diagnostics
+            .push(fault::damping_twice(computed, felt));
     }
 }

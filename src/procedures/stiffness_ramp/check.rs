@@ -30,7 +30,7 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
     let relaxation = relaxation(checker, block);
     let speed = checker.optional(block, "speed");
     let (displacements, samples, repeats, pause) = (displacements?, samples?, repeats?, pause?);
-    if let Some((_, entry)) = checker.given(block, "relaxation")
+    if let Some((_, entry)) = checker.field(block, "relaxation")
         && pause.constant() == Some(0.0)
     {
         return checker.fail(specimens::relaxation_without_hold(entry.value.span));
@@ -68,10 +68,10 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
 }
 
 fn fit(checker: &mut Checker, block: usize) -> Option<RampFit> {
-    let Some((entry, _)) = checker.given(block, "fit") else {
+    let Some((entry, _)) = checker.field(block, "fit") else {
         return Some(RampFit::Linear);
     };
-    let place = checker.place(block, entry);
+    let place = checker.context_of(block, entry);
     let chosen = checker.choice(block, "fit")?;
     match chosen.variant.name {
         "multilinear" => curve::breaks(checker, &chosen, place).map(RampFit::Multilinear),
@@ -86,10 +86,10 @@ fn fit(checker: &mut Checker, block: usize) -> Option<RampFit> {
     reason = "left out and faulty are different things here"
 )]
 fn relaxation(checker: &mut Checker, block: usize) -> Option<Option<WatchedHold>> {
-    let Some((entry, written)) = checker.given(block, "relaxation") else {
+    let Some((entry, written)) = checker.field(block, "relaxation") else {
         return Some(None);
     };
-    let place = checker.place(block, entry);
+    let place = checker.context_of(block, entry);
     let chosen = checker.choice(block, "relaxation")?;
     let readings = checker
         .constant_argument(&chosen, "readings", place)
@@ -119,7 +119,9 @@ fn relaxation(checker: &mut Checker, block: usize) -> Option<Option<WatchedHold>
             .find("readings")
             .and_then(|(_, given)| given)
             .map_or(written.value.span, |given| given.span);
-        checker.faults.push(specimens::few_decades(readings, at));
+        checker
+            .diagnostics
+            .push(specimens::few_decades(readings, at));
     }
     Some(Some(WatchedHold {
         model: WatchedModel::Reached { law, rate },

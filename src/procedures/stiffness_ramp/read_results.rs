@@ -40,12 +40,12 @@ pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
         };
         let head = checker.scope.blocks[*block].block.head;
         let displacements = checker
-            .given(*block, "displacements")
+            .field(*block, "displacements")
             .map_or(head, |(_, entry)| entry.value.span);
         if let Some((lacks, way_out)) = lacks(ramp, reference.name) {
             if never.insert(*block) {
                 let ramp = (procedure.name.as_str(), displacements);
-                checker.faults.push(fault::never_given(
+                checker.diagnostics.push(fault::never_given(
                     reference.name,
                     span,
                     ramp,
@@ -59,7 +59,7 @@ pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
                 .filter(|(_, degrees)| *degrees < usize::from(FEW))
             && few.insert(*block)
         {
-            checker.faults.push(fault::few_degrees_of_freedom(
+            checker.diagnostics.push(fault::few_degrees_of_freedom(
                 &procedure.name,
                 points,
                 degrees,

@@ -1,20 +1,20 @@
 //! `unload NAME { … }`: of one degree of freedom, or of all floors of a frame together.
 
 use crate::language::check::checker::Checker;
-use crate::language::check::declarations::frame;
+use crate::language::check::declarations::specimen::frame;
 use crate::language::check::messages::frames as fault;
 use crate::plan::formula::Formula;
 use crate::plan::{FrameUnload, ProcedureKind, Unload};
 
 pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let tested = checker.specimen_block(block);
-    let specimen = tested.map(|tested| checker.scope.place_in_kind(tested));
+    let specimen = tested.map(|tested| checker.scope.index_in_kind(tested));
     if tested.is_some_and(|tested| frame::is_frame(checker, tested)) {
         let (within, speed) = (
             checker.optional(block, "within"),
             checker.optional(block, "speed"),
         );
-        if let Some((_, entry)) = checker.given(block, "stiffness") {
+        if let Some((_, entry)) = checker.field(block, "stiffness") {
             let help = "remove it: the storeys of the frame have stiffnesses of their own";
             return checker.fail(fault::no_use_on_a_frame(
                 "stiffness",
@@ -50,7 +50,7 @@ impl Checker<'_> {
         block: usize,
         specimen: Option<usize>,
     ) -> Option<Formula> {
-        if self.given(block, "stiffness").is_some() {
+        if self.field(block, "stiffness").is_some() {
             return self.quantity(block, "stiffness");
         }
         if self.real_rig.is_some() {

@@ -5,7 +5,7 @@
 
 use super::stage::{header, open, stand};
 use crate::emulator::Log;
-use crate::language::check::{Checked, LoadFault, Loader, Options, check};
+use crate::language::check::{Checked, LoadError, Loader, Options, check};
 use crate::plan::Plan;
 use crate::plan::formula::ResultValue;
 use crate::record::journal::testing::PowerLoss;
@@ -83,14 +83,14 @@ const CASES: &[Case] = &[
 struct Libraries<'a>(&'a Case);
 
 impl Loader for Libraries<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         match path {
             "lib/instron_frame.psd" => {
                 Ok(include_str!("../../../plans/lib/instron_frame.psd").to_owned())
             }
             "lib/gfrp_beam.psd" => Ok(include_str!("../../../plans/lib/gfrp_beam.psd").to_owned()),
             "lib/real_frame.psd" => Ok(self.0.frame()),
-            _ => Err(LoadFault::NotFound),
+            _ => Err(LoadError::NotFound),
         }
     }
 }

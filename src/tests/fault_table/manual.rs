@@ -3,7 +3,7 @@
 
 use super::stage::{header, open, stand};
 use crate::emulator::Log;
-use crate::language::check::{LoadFault, Loader, Options, check};
+use crate::language::check::{LoadError, Loader, Options, check};
 use crate::plan::Plan;
 use crate::record::Outcome;
 use crate::record::journal::testing::PowerLoss;
@@ -14,12 +14,12 @@ use crate::run::{Unwatched, replay};
 struct Ground;
 
 impl Loader for Ground {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
         if path == "ground.csv" {
             Ok(ground.to_owned())
         } else {
-            Err(LoadFault::NotFound)
+            Err(LoadError::NotFound)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The plans of this folder's tests of several axes: a frame of two storeys shaken on a rig of two axes, the upper one of
 //! which counts the other way round. In: text. Out: checked plans, and the same on an ideal virtual rig.
 
-use crate::language::check::{LoadFault, Loader, Options, check};
+use crate::language::check::{LoadError, Loader, Options, check};
 use crate::plan::formula::ResultValue;
 use crate::plan::{AxisPlan, Plan, RealLink};
 use crate::record::Record;
@@ -54,7 +54,7 @@ const GROUND: &str = "time_s,acceleration_m_per_s2\n0,0\n0.05,3\n0.1,3\n0.2,-3\n
 struct Folder;
 
 impl Loader for Folder {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         let known = [
             ("ground.csv", GROUND),
             (
@@ -74,7 +74,7 @@ impl Loader for Folder {
             .iter()
             .find(|(name, _)| *name == path)
             .map(|(_, text)| (*text).to_owned())
-            .ok_or(LoadFault::NotFound)
+            .ok_or(LoadError::NotFound)
     }
 }
 

@@ -23,7 +23,7 @@ macro_rules! codes {
                 match self { $(Code::$name => Severity::$severity),* }
             }
 
-            /// The page `psd explain` shows: what, why, a wrong plan and a right one.
+            /// The page that `psd explain` shows: meaning, reason, a wrong plan and a right one.
             #[must_use]
             pub const fn page(self) -> &'static str {
                 match self { $(Code::$name => include_str!(concat!("explain/", stringify!($code), ".md"))),* }
@@ -32,7 +32,7 @@ macro_rules! codes {
     };
 }
 
-/// Codes that no plan gives: what they say is of the machine that is to run it.
+/// Codes that do not depend on the plan alone: they are about the machine that is to run it.
 pub const OF_THE_MACHINE: &[Code] = &[Code::NoRoom];
 
 codes! {
@@ -136,7 +136,7 @@ codes! {
     E653 RecordTooLong Error;
     E654 ReadApart Error;
     E655 NeverGiven Error;
-    // 7: what runs but is unwise
+    // 7: what runs but is not advisable
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
     W703 LimitForceNotResolved Warning;

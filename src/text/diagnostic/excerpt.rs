@@ -1,6 +1,6 @@
-//! The source text as it may be shown: control and direction characters escaped, very long lines cut around the
-//! places, several files side by side. In: a diagnostic and its sources. Out: text the drawing tool can read, and
-//! the places in it. Must not change what line and column a place is said to have.
+//! The source text as it is shown: control and direction characters escaped, very long lines cut around the marked
+//! spans, several files one after the other. In: a diagnostic and its sources. Out: text for the drawing library, and
+//! the spans in it. Every span keeps its true line and column.
 
 use std::ops::Range;
 
@@ -11,35 +11,35 @@ use crate::text::sanitize::steers;
 pub use crate::text::sanitize::{escape, one_line};
 use crate::text::source::{FileId, Position, SourceFile, Sources, Span};
 
-/// Characters of a line that are shown.
+/// Characters of a line that are shown, at most.
 const WIDEST_LINE: usize = 120;
-/// Characters shown before the first place of a line that is cut.
+/// Characters shown before the first span of a line that is cut.
 const LEAD: usize = 50;
-/// Lines kept before and after a place: the drawing tool shows one, and joins what it shows of two places that are near.
+/// Lines kept before and after a span: the drawing library shows one, and joins the lines of two spans that are near.
 const AROUND: usize = 2;
 
-/// The lines around the places of a diagnostic, one stretch after the other; the first place's file is the first.
+/// The lines around the spans of a diagnostic, one segment after the other; the file of the first span is the first.
 #[derive(Debug)]
 pub struct Excerpt {
     stretches: Vec<Stretch>,
-    /// Where each place really is, by its offset in the shown text.
+    /// The true position of each span, by its offset in the shown text.
     positions: Vec<(usize, Position)>,
 }
 
 /// Some lines of one file.
 #[derive(Debug)]
 struct Stretch {
-    /// Of the file.
+    /// Line numbers in the file.
     name: String,
     text: String,
-    /// Offset of the text among all stretches.
+    /// Offset of the text among all segments.
     start: usize,
-    /// Lines of the file before it.
+    /// Lines of the file before this segment.
     before: usize,
 }
 
 impl Excerpt {
-    /// The excerpt and the diagnostic's places in it. `folder` is put before every file's name.
+    /// The excerpt and the spans of the diagnostic in it. `folder` is put before the name of every file.
     pub fn new(
         diagnostic: &Diagnostic,
         sources: &Sources,
@@ -95,7 +95,7 @@ impl Excerpt {
                     start,
                     before,
                 });
-                // One byte between stretches keeps the end of one apart from the start of the next.
+                // One byte between segments separates the end of one from the start of the next.
                 start += length + 1;
             }
         }
@@ -103,7 +103,7 @@ impl Excerpt {
     }
 }
 
-/// A label, and where it is shown.
+/// A label, and its span in the shown text.
 struct Place<'a> {
     label: &'a Label,
     primary: bool,
@@ -136,7 +136,7 @@ impl SourceCode for Excerpt {
         lines_before: usize,
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        // A span over two stretches is refused: the drawing tool then draws two snippets.
+        // A span over two segments is rejected: the drawing library then draws two snippets.
         let end = span.offset() + span.len();
         let stretch = self
             .stretches
@@ -150,7 +150,7 @@ impl SourceCode for Excerpt {
             .text
             .as_str()
             .read_span(&local, lines_before, lines_after)?;
-        // Without context the tool asks for a place's line and column: the true ones, whatever was cut or escaped.
+        // Without context the library asks for line and column of a span: the true ones, whatever was cut or escaped.
         let place = self
             .positions
             .iter()
@@ -174,7 +174,7 @@ impl SourceCode for Excerpt {
     }
 }
 
-/// A place that spans lines is shown on its first one; a place past the text, at the end of its last line.
+/// A span of several lines is shown on its first line; a span after the end of the text, at the end of its last line.
 fn clip(file: &SourceFile, range: Range<usize>) -> Range<usize> {
     let text = &file.text;
     let start =
@@ -186,7 +186,7 @@ fn clip(file: &SourceFile, range: Range<usize>) -> Range<usize> {
     start..text.ceil_char_boundary(range.end.clamp(start, line_end))
 }
 
-/// The text to show, and where each of `places` lies in it.
+/// The text to show, and each of the `spans` in it.
 fn show(text: &str, places: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
     let mut shown = String::with_capacity(text.len());
     let mut moved = vec![0..0; places.len()];
@@ -211,7 +211,7 @@ fn show(text: &str, places: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
             mark(places, &mut moved, offset, shown.len());
             push_shown(&mut shown, character);
         }
-        // Whatever lies past the window ends at its end.
+        // A span after the window ends at its end.
         for (place, moved) in places
             .iter()
             .zip(&mut moved)
@@ -234,7 +234,7 @@ fn show(text: &str, places: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
     (shown, moved)
 }
 
-/// Notes that the byte `original` is shown at `now`.
+/// Records that the byte `original` is shown at `now`.
 fn mark(places: &[Range<usize>], moved: &mut [Range<usize>], original: usize, now: usize) {
     for (place, moved) in places.iter().zip(moved) {
         if place.start == original {
@@ -278,7 +278,7 @@ mod tests {
     use super::*;
     use crate::text::diagnostic::Code;
 
-    /// A fault in the middle of a large file and one at its end, which the drawing tool joins with nothing.
+    /// An error in the middle of a large file and another at its end: no excerpt joins them.
     #[test]
     fn an_excerpt_of_a_large_file_holds_the_lines_around_its_places_only() {
         let mut sources = Sources::default();

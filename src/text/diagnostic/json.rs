@@ -1,5 +1,5 @@
 //! Diagnostics for an editor. In: diagnostics and their sources. Out: a JSON value, every diagnostic with file, line,
-//! column (characters, from 1) and byte span. Nothing is left out and nothing is drawn.
+//! column (characters, from 1) and byte span. Nothing is omitted and nothing is drawn.
 
 use serde_json::{Value, json};
 
@@ -24,13 +24,13 @@ pub fn document(diagnostics: &[Value]) -> Value {
     json!({ "schema": SCHEMA, "errors": errors, "warnings": warnings, "diagnostics": diagnostics })
 }
 
-/// The document as it is printed: indented, and no text of a plan in it steers a terminal.
+/// The document as it is printed: indented, with no control character from the text of a plan.
 #[must_use]
 pub fn text(diagnostics: &[Value]) -> String {
     sanitize::json(&format!("{:#}\n", document(diagnostics)))
 }
 
-/// One diagnostic. `plan` names the file of a diagnostic without a place; `folder` is put before every file's name.
+/// One diagnostic. `plan` names the file of a diagnostic without a span; `folder` is put before the name of every file.
 #[must_use]
 pub fn diagnostic(diagnostic: &Diagnostic, sources: &Sources, plan: &str, folder: &str) -> Value {
     let place = diagnostic.span().map_or_else(
@@ -55,7 +55,7 @@ pub fn diagnostic(diagnostic: &Diagnostic, sources: &Sources, plan: &str, folder
     value
 }
 
-/// A plan that cannot be read: an error of no code, and of no place but where its text is none.
+/// A plan that cannot be read: an error without a code, with a span only where the text is not valid UTF-8.
 #[must_use]
 pub fn unreadable(file: &str, message: &str, at: Option<Position>) -> Value {
     let (line, column) = (at.map(|at| at.line), at.map(|at| at.column));

@@ -1,4 +1,4 @@
-//! Diagnostics as data. Every stage makes [`Diagnostic`]s; only [`render`] prints them for people
+//! Diagnostics as data. Every stage makes [`Diagnostic`]s; only [`render`] prints them for readers
 //! and [`json`] for editors. [`code`] lists each code once, with its page for `psd explain`.
 
 pub mod code;
@@ -10,7 +10,7 @@ pub use code::{Code, OF_THE_MACHINE};
 
 use crate::text::source::Span;
 
-/// How bad it is. Nothing runs while an error stands.
+/// Severity of a diagnostic. No plan runs while there is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     Error,
@@ -18,23 +18,23 @@ pub enum Severity {
     Advice,
 }
 
-/// A place and what is to be said about it.
+/// A span and the note on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
     pub span: Span,
     pub text: String,
 }
 
-/// One fault or warning: a stable code, one sentence, the places, and the way out.
+/// One error or warning: a stable code, one sentence, the spans, and a suggestion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
     pub code: Code,
     pub severity: Severity,
-    /// What is wrong, one sentence without a full stop.
+    /// The message, one sentence without a full stop.
     pub message: String,
-    /// The first is the place of the fault. Empty for faults of the command line.
+    /// The first is where the error is. Empty for errors of the command line.
     pub labels: Vec<Label>,
-    /// How to mend it.
+    /// A suggestion how to correct it.
     pub help: Option<String>,
 }
 
@@ -51,7 +51,7 @@ impl Diagnostic {
         }
     }
 
-    /// Adds a place; the first one added is the place of the fault.
+    /// Adds a span; the first one that is added is where the error is.
     #[must_use]
     pub fn at(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label {
@@ -67,7 +67,7 @@ impl Diagnostic {
         self
     }
 
-    /// The place of the fault.
+    /// Where the error is.
     #[must_use]
     pub fn span(&self) -> Option<Span> {
         self.labels.first().map(|label| label.span)

@@ -1,5 +1,5 @@
-//! Diagnostics for a person, the one place where they become text. In: diagnostics and their sources.
-//! Out: the drawing, source line, places and help. Knows the drawing tool; reads no environment.
+//! Diagnostics for the reader: the only code that turns them into text. In: diagnostics and their sources.
+//! Out: the drawing, with source line, labels and help. Knows the drawing library; reads no environment.
 
 use std::fmt;
 
@@ -12,22 +12,22 @@ use super::excerpt::{Excerpt, escape};
 use super::{Diagnostic, Severity};
 use crate::text::source::Sources;
 
-/// How many diagnostics are drawn before only the count is given.
+/// Number of diagnostics that are drawn; of the others only the count is given.
 pub const DRAWN: usize = 20;
 
-/// What the drawing may use.
+/// Properties of the terminal that the drawing may use.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Appearance {
     pub color: bool,
     pub unicode: bool,
-    /// Columns; None: as many as the terminal has, which the drawing tool asks for itself.
+    /// Columns; None: the width of the terminal, which the drawing library reads itself.
     pub width: Option<usize>,
-    /// Put before the name of a file, so that it can be opened from where the person stands: `plans/`.
+    /// Prefix for the names of files, so that they can be opened from the working directory: `plans/`.
     pub folder: String,
 }
 
 impl Appearance {
-    /// No colour, 100 columns: a pipe.
+    /// For a pipe: no colour, 100 columns.
     #[must_use]
     pub const fn plain() -> Self {
         Self {
@@ -39,7 +39,7 @@ impl Appearance {
     }
 }
 
-/// Draws the first [`DRAWN`] diagnostics, errors before warnings, then says how many there are.
+/// Draws the first [`DRAWN`] diagnostics, errors before warnings, then states their number.
 #[must_use]
 pub fn render_all(
     diagnostics: &[Diagnostic],
@@ -104,7 +104,7 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources, appearance: &Appearanc
     format!("{}\n", trimmed.join("\n"))
 }
 
-/// `2 errors and 1 warning, the first 20 shown; psd explain E202 says more`
+/// `2 errors and 1 warning, the first 20 shown; psd explain E202 shows more`
 fn closing_line(ordered: &[&Diagnostic]) -> String {
     let count = |severity, one: &str| {
         let number = ordered
@@ -132,7 +132,7 @@ fn closing_line(ordered: &[&Diagnostic]) -> String {
     )
 }
 
-/// The word for a severity, as printed and as in JSON.
+/// The name of a severity, as printed and as in JSON.
 #[must_use]
 pub const fn severity_name(severity: Severity) -> &'static str {
     match severity {
@@ -142,7 +142,7 @@ pub const fn severity_name(severity: Severity) -> &'static str {
     }
 }
 
-/// The first place in the colour of the severity, every other one in the colour of advice.
+/// The first label in the colour of the severity, every other one in the colour of advice.
 fn theme(drawn: &Drawn, appearance: &Appearance) -> GraphicalTheme {
     let mut styles = if appearance.color {
         ThemeStyles::ansi()
@@ -154,7 +154,7 @@ fn theme(drawn: &Drawn, appearance: &Appearance) -> GraphicalTheme {
         miette::Severity::Warning => styles.warning,
         miette::Severity::Advice => styles.advice,
     };
-    // The drawing tool gives out highlights in the order of the text.
+    // The drawing library assigns colours in the order of the text.
     let mut in_order: Vec<(usize, bool)> = drawn
         .labels
         .iter()
@@ -175,7 +175,7 @@ fn theme(drawn: &Drawn, appearance: &Appearance) -> GraphicalTheme {
     GraphicalTheme { characters, styles }
 }
 
-/// The drawing tool draws into a formatter only.
+/// The drawing library draws into a formatter only.
 struct Drawing<'a> {
     handler: miette::MietteHandler,
     diagnostic: &'a Drawn,
@@ -183,14 +183,14 @@ struct Drawing<'a> {
 
 impl fmt::Display for Drawing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Should the drawing itself fail, the message must still be seen.
+        // If the drawing fails, the message must still be shown.
         self.handler
             .debug(self.diagnostic, f)
             .or_else(|_| write!(f, "{}: {}", self.diagnostic.head, self.diagnostic.message))
     }
 }
 
-/// A diagnostic in the drawing tool's words.
+/// A diagnostic in the terms of the drawing library.
 #[derive(Debug)]
 struct Drawn {
     head: String,

@@ -5,7 +5,7 @@ use psd::golden::comparison::{Comparison, Side, csv};
 use psd::golden::{
     Change, Finding, Outcome as TestOutcome, Part, Report, Tested, json as golden_json, junit, tap,
 };
-use psd::language::check::{Checked, LoadFault, Loader, Options, check};
+use psd::language::check::{Checked, LoadError, Loader, Options, check};
 use psd::plan::Format;
 use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::record::{EventKind, Outcome};
@@ -463,8 +463,8 @@ fn no_label_is_markup_or_a_formula_in_a_comparison() {
 struct Nothing;
 
 impl Loader for Nothing {
-    fn load(&self, _: &str) -> Result<String, LoadFault> {
-        Err(LoadFault::NotFound)
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::NotFound)
     }
 }
 

@@ -49,13 +49,13 @@ pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::check::{LoadFault, Loader, Options, check};
+    use crate::language::check::{LoadError, Loader, Options, check};
 
     struct NoFiles;
 
     impl Loader for NoFiles {
-        fn load(&self, _: &str) -> Result<String, LoadFault> {
-            Err(LoadFault::NotFound)
+        fn load(&self, _: &str) -> Result<String, LoadError> {
+            Err(LoadError::NotFound)
         }
     }
 

@@ -122,14 +122,14 @@ fn time_between(found: &Drift) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::check::{LoadFault, Loader, Options, check};
+    use crate::language::check::{LoadError, Loader, Options, check};
     use crate::rig::virtual_rig;
     use crate::run::{Unwatched, run};
 
     struct NoFiles;
 
     impl Loader for NoFiles {
-        fn load(&self, _: &str) -> Result<String, LoadFault> {
+        fn load(&self, _: &str) -> Result<String, LoadError> {
             unreachable!("the plan uses no file")
         }
     }

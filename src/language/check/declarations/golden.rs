@@ -1,9 +1,9 @@
-//! `golden { … }`: how near a rerun must come to the blessed results. Its tolerances are fixed before the run; a `%` is
-//! of the size of the number, as in `require … within`.
+//! `golden { … }`: how near a rerun must come to the accepted results. Its tolerances are fixed before the run; `%` is
+//! relative to the absolute value of the number, as in `require … within`.
 
-use crate::language::check::checker::{Checker, Place, Reads};
+use crate::language::check::checker::{Checker, Context, Reads};
 use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{golden as fault, names};
+use crate::language::check::messages::{golden as message, names};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::formula::{Part, ProcedureId};
@@ -13,15 +13,15 @@ use crate::schema::{Column, Kind};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
-/// Above this nothing much is held: a tenth.
+/// A tolerance of a tenth or more has little effect.
 const WIDE: f64 = 0.1;
 
-const CONSTANT: Place = Place {
+const CONSTANT: Context = Context {
     entry: None,
     reads: Reads::Nothing("a tolerance"),
     critical: false,
 };
-const RESULTS: Place = Place {
+const RESULTS: Context = Context {
     entry: None,
     reads: Reads::All,
     critical: false,
@@ -37,20 +37,20 @@ pub fn golden(checker: &mut Checker) -> Option<Golden> {
         return Some(Golden::default());
     };
     let tolerance = checker.constant(block, "tolerance");
-    if let (Some(tolerance), Some((_, entry))) = (tolerance, checker.given(block, "tolerance"))
+    if let (Some(tolerance), Some((_, entry))) = (tolerance, checker.field(block, "tolerance"))
         && tolerance > WIDE
     {
         checker
-            .faults
-            .push(fault::wide(tolerance, entry.value.span));
+            .diagnostics
+            .push(message::wide(tolerance, entry.value.span));
     }
-    let mut said = Vec::new();
+    let mut named = Vec::new();
     let results = each(checker, block, "results", |checker, chosen| {
-        near_result(checker, chosen, &mut said)
+        near_result(checker, chosen, &mut named)
     });
-    let mut said = Vec::new();
+    let mut named = Vec::new();
     let columns = each(checker, block, "columns", |checker, chosen| {
-        near_column(checker, chosen, &mut said)
+        near_column(checker, chosen, &mut named)
     });
     Some(Golden {
         tolerance: tolerance?,
@@ -59,14 +59,14 @@ pub fn golden(checker: &mut Checker) -> Option<Golden> {
     })
 }
 
-/// Every entry of a list, so that all that is wrong is said; none where the list is left out.
+/// Checks every entry of a list, so that all errors are reported; an absent list is empty.
 fn each<'a, T>(
     checker: &mut Checker<'a>,
     block: usize,
     field: &str,
     mut read: impl FnMut(&mut Checker<'a>, &Chosen<'a>) -> Option<T>,
 ) -> Option<Vec<T>> {
-    if checker.given(block, field).is_none() {
+    if checker.field(block, field).is_none() {
         return Some(Vec::new());
     }
     let chosen = checker.choices(block, field)?;
@@ -74,13 +74,13 @@ fn each<'a, T>(
     read.into_iter().collect()
 }
 
-type Said<T> = Vec<(T, Span)>;
+type Named<T> = Vec<(T, Span)>;
 
 /// `near(hit.stop_time, 1 us)`
 fn near_result<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    said: &mut Said<(ProcedureId, &'static str)>,
+    named: &mut Named<(ProcedureId, &'static str)>,
 ) -> Option<NearResult> {
     let of = chosen.find("result")?.1?;
     let typed = checker.value(of, RESULTS)?;
@@ -89,11 +89,11 @@ fn near_result<'a>(
         .as_result()
         .filter(|reference| reference.part == Part::Value)
     else {
-        return checker.fail(fault::result_wanted(of.span, checker.text(of.span)));
+        return checker.fail(message::result_wanted(of.span, checker.text(of.span)));
     };
     once(
         checker,
-        said,
+        named,
         (reference.procedure, reference.name),
         of.span,
     )?;
@@ -110,11 +110,11 @@ fn near_result<'a>(
 fn near_column<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    said: &mut Said<(Option<ProcedureId>, &'static str)>,
+    named: &mut Named<(Option<ProcedureId>, &'static str)>,
 ) -> Option<NearColumn> {
     let of = chosen.find("column")?.1?;
     let (procedure, column) = column(checker, of)?;
-    once(checker, said, (procedure, column.name), of.span)?;
+    once(checker, named, (procedure, column.name), of.span)?;
     let tolerance = tolerance(checker, chosen, column.dimension)?;
     Some(NearColumn {
         procedure,
@@ -124,7 +124,7 @@ fn near_column<'a>(
     })
 }
 
-/// The column that is named, of one procedure or of all.
+/// The named column, of one procedure or of all.
 fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Column)> {
     let (procedure, kinds, name, span) = match &of.kind {
         ExprKind::Name(name) => {
@@ -137,7 +137,7 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
         }
         ExprKind::Field { base, name } => {
             let ExprKind::Name(owner) = &base.kind else {
-                return checker.fail(fault::column_wanted(of.span, checker.text(of.span)));
+                return checker.fail(message::column_wanted(of.span, checker.text(of.span)));
             };
             let block = match checker.scope.meaning(owner) {
                 Some(Meaning::Poisoned) => return None,
@@ -168,7 +168,7 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
             )
         }
         ExprKind::Faulty => return None,
-        _ => return checker.fail(fault::column_wanted(of.span, checker.text(of.span))),
+        _ => return checker.fail(message::column_wanted(of.span, checker.text(of.span))),
     };
     let known: Vec<Column> = kinds
         .into_iter()
@@ -177,7 +177,7 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
         .collect();
     match known.iter().find(|column| column.name == name) {
         Some(column) => Some((procedure, *column)),
-        None => checker.fail(fault::unknown_column(
+        None => checker.fail(message::unknown_column(
             name,
             span,
             known.iter().map(|column| column.name),
@@ -185,22 +185,22 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
     }
 }
 
-/// A name has one tolerance.
+/// A name has only one tolerance.
 fn once<T: PartialEq>(
     checker: &mut Checker,
-    said: &mut Said<T>,
+    named: &mut Named<T>,
     name: T,
     span: Span,
 ) -> Option<()> {
-    if let Some((_, first)) = said.iter().find(|(before, _)| *before == name) {
-        let fault = fault::near_twice(checker.text(span), span, *first);
-        return checker.fail(fault);
+    if let Some((_, first)) = named.iter().find(|(before, _)| *before == name) {
+        let diagnostic = message::near_twice(checker.text(span), span, *first);
+        return checker.fail(diagnostic);
     }
-    said.push((name, span));
+    named.push((name, span));
     Some(())
 }
 
-/// `1 us` is absolute, `0.1 %` of the size of the number.
+/// `1 us` is absolute, `0.1 %` is relative to the absolute value of the number.
 fn tolerance<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
@@ -217,10 +217,10 @@ fn tolerance<'a>(
     };
     let value = typed.constant()?;
     if value < 0.0 {
-        return checker.fail(fault::negative(written.span, checker.text(written.span)));
+        return checker.fail(message::negative(written.span, checker.text(written.span)));
     }
     if relative && value > WIDE {
-        checker.faults.push(fault::wide(value, written.span));
+        checker.diagnostics.push(message::wide(value, written.span));
     }
     Some(if relative {
         Tolerance::Relative(value)

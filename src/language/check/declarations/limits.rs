@@ -1,6 +1,6 @@
-//! `limits`: ranges and bounds, the intersection of the plan's and the rig's, and targets known before the run.
+//! `limits`: ranges and bounds, the intersection of the plan's and the rig's limits, and targets that are known before the run.
 
-use crate::language::check::checker::{Checker, Place, Typed};
+use crate::language::check::checker::{Checker, Context, Typed};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{types, values, whole};
 use crate::language::syntax::ast::{Expr, ExprKind};
@@ -10,7 +10,7 @@ use crate::schema::{Field, FieldType, Kind};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
-/// The limits of a run, and where the bound on each quantity was written.
+/// The limits of a run, with the span of the bound on each quantity.
 pub struct CheckedLimits {
     pub limits: Limits,
     pub displacement_at: Option<Span>,
@@ -20,14 +20,18 @@ pub struct CheckedLimits {
 
 impl<'a> Checker<'a> {
     /// `a .. b`, known before the run, with its dimension.
-    pub fn interval(&mut self, written: &'a Expr, place: Place) -> Option<(Interval, Dimension)> {
+    pub fn interval(
+        &mut self,
+        written: &'a Expr,
+        context: Context,
+    ) -> Option<(Interval, Dimension)> {
         if !matches!(written.kind, ExprKind::Range { .. }) {
             return match written.kind {
                 ExprKind::Faulty => None,
                 _ => self.fail(types::range_wanted(written.span, self.text(written.span))),
             };
         }
-        let parts = self.range_parts(written, None, place)?;
+        let parts = self.range_parts(written, None, context)?;
         if let Some(step) = &parts.step {
             return self.fail(values::step_in_bounds(step.span));
         }
@@ -41,24 +45,24 @@ impl<'a> Checker<'a> {
                 self.text(parts.end.span),
             ));
         }
-        // A range whose ends are both without a unit is the one that may have forgotten it.
+        // A range with no unit at either end is the one whose unit may have been forgotten.
         if parts.start.bare && parts.end.bare {
             return Some((Interval { low, high }, Dimension::NUMBER));
         }
         Some((Interval { low, high }, parts.start.dimension))
     }
 
-    /// A range, or a bound `b`: −b .. b where both signs make sense, else 0 .. b.
+    /// A range, or a bound `b`: −b .. b where both signs are meaningful, else 0 .. b.
     pub fn bounds(&mut self, block: usize, field: &'static str) -> Option<Interval> {
-        let Some((entry, written)) = self.given(block, field) else {
+        let Some((entry, written)) = self.field(block, field) else {
             return Some(Interval::ALL);
         };
         let field = self.scope.blocks[block].kind.field(field)?;
-        let place = self.place(block, entry);
-        self.bounds_of(field, &written.value, place)
+        let context = self.context_of(block, entry);
+        self.bounds_of(field, &written.value, context)
     }
 
-    /// The same of an argument; `Some(None)` where it is left out, None where it is faulty.
+    /// The same for an argument; `Some(None)` where it is left out, None where it has an error.
     #[expect(
         clippy::option_option,
         reason = "left out and faulty are different things here"
@@ -67,10 +71,10 @@ impl<'a> Checker<'a> {
         &mut self,
         chosen: &Chosen<'a>,
         name: &str,
-        place: Place,
+        context: Context,
     ) -> Option<Option<Interval>> {
         match chosen.find(name)? {
-            (field, Some(written)) => self.bounds_of(field, written, place).map(Some),
+            (field, Some(written)) => self.bounds_of(field, written, context).map(Some),
             (_, None) => Some(None),
         }
     }
@@ -79,7 +83,7 @@ impl<'a> Checker<'a> {
         &mut self,
         field: &'static Field,
         written: &'a Expr,
-        place: Place,
+        context: Context,
     ) -> Option<Interval> {
         let FieldType::Bounds {
             dimension,
@@ -89,7 +93,7 @@ impl<'a> Checker<'a> {
             return None;
         };
         if let ExprKind::Range { .. } = written.kind {
-            let (interval, found) = self.interval(written, place)?;
+            let (interval, found) = self.interval(written, context)?;
             let bare = found == Dimension::NUMBER && dimension != Dimension::NUMBER;
             let typed = Typed {
                 bare,
@@ -98,7 +102,7 @@ impl<'a> Checker<'a> {
             self.expect(typed, dimension, field.name, written)?;
             return self.moves_at_all(field.name, interval, written.span);
         }
-        let typed = self.single(written, place)?;
+        let typed = self.single(written, context)?;
         let typed = self.expect(typed, dimension, field.name, written)?;
         let bound = typed.constant()?;
         if bound < 0.0 {
@@ -116,7 +120,7 @@ impl<'a> Checker<'a> {
         self.moves_at_all(field.name, interval, written.span)
     }
 
-    /// An actuator that may have no speed never arrives.
+    /// An actuator that is allowed no speed never arrives.
     fn moves_at_all(&mut self, field: &str, interval: Interval, span: Span) -> Option<Interval> {
         if field == "speed" && interval.high <= 0.0 {
             return self.fail(values::no_speed(span));
@@ -146,8 +150,8 @@ impl<'a> Checker<'a> {
         })
     }
 
-    /// Every `limits` block; the intersection of those without a name and of the one the rig names. A plan that asks for
-    /// more than its rig allows is at fault.
+    /// Every `limits` block; the intersection of those without a name and the one that the rig names. A plan that asks for
+    /// more than its rig allows is an error.
     pub fn limits(&mut self, rig_limits: Option<usize>) -> Option<CheckedLimits> {
         let blocks: Vec<usize> = self
             .scope
@@ -174,15 +178,15 @@ impl<'a> Checker<'a> {
             }
             all = intersection(&all, limits);
             displacement_at = self
-                .given(*index, "displacement")
+                .field(*index, "displacement")
                 .map(|(_, entry)| entry.span)
                 .or(displacement_at);
             force_at = self
-                .given(*index, "force")
+                .field(*index, "force")
                 .map(|(_, entry)| entry.span)
                 .or(force_at);
             speed_at = self
-                .given(*index, "speed")
+                .field(*index, "speed")
                 .map(|(_, entry)| entry.span)
                 .or(speed_at);
         }
@@ -194,16 +198,16 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn compare_limits(&mut self, plan: usize, asked: &Limits, rig: usize, allowed: &Limits) {
-        for ((field, asked), (_, allowed)) in by_field(asked).into_iter().zip(by_field(allowed)) {
-            let wider = asked.is_bounded()
+    fn compare_limits(&mut self, plan: usize, wanted: &Limits, rig: usize, allowed: &Limits) {
+        for ((field, wanted), (_, allowed)) in by_field(wanted).into_iter().zip(by_field(allowed)) {
+            let wider = wanted.is_bounded()
                 && allowed.is_bounded()
-                && (asked.low < allowed.low || asked.high > allowed.high);
+                && (wanted.low < allowed.low || wanted.high > allowed.high);
             if let (true, Some((_, plan)), Some((_, rig))) =
-                (wider, self.given(plan, field), self.given(rig, field))
+                (wider, self.field(plan, field), self.field(rig, field))
             {
                 let (plan_text, rig_text) = (self.text(plan.value.span), self.text(rig.value.span));
-                self.faults.push(whole::limits_wider(
+                self.diagnostics.push(whole::limits_wider(
                     field,
                     plan.value.span,
                     plan_text,
@@ -244,9 +248,9 @@ fn intersection(one: &Limits, other: &Limits) -> Limits {
     }
 }
 
-/// A virtual rig begins at rest, with displacement and force 0: limits that leave those out stop it before it moves. Where a
-/// real one stands, nobody knows here.
-pub fn hold_start(checker: &mut Checker, limits: &CheckedLimits) {
+/// A virtual rig begins at rest, with displacement and force 0: limits that exclude them stop it before it moves. The initial
+/// position of a real rig is unknown here.
+pub fn check_start(checker: &mut Checker, limits: &CheckedLimits) {
     if checker.real_rig.is_some() {
         return;
     }
@@ -266,14 +270,14 @@ pub fn hold_start(checker: &mut Checker, limits: &CheckedLimits) {
     ] {
         if let (Some(at), false) = (at, interval.contains(0.0)) {
             checker
-                .faults
+                .diagnostics
                 .push(whole::start_beyond_limits(name, interval, dimension, at));
         }
     }
 }
 
-/// Targets (m) and speeds (m/s) of the procedures, known before the run, against the limits.
-pub fn hold_targets(checker: &mut Checker, limits: &CheckedLimits) {
+/// Compares targets \[m\] and speeds \[m/s\] of the procedures that are known before the run with the limits.
+pub fn check_targets(checker: &mut Checker, limits: &CheckedLimits) {
     let procedures: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
     for block in procedures {
         for (field, interval, at) in [
@@ -287,7 +291,7 @@ pub fn hold_targets(checker: &mut Checker, limits: &CheckedLimits) {
             ("speed", limits.limits.speed, limits.speed_at),
             ("velocities", limits.limits.speed, limits.speed_at),
         ] {
-            let Some((entry, written)) = checker.given(block, field) else {
+            let Some((entry, written)) = checker.field(block, field) else {
                 continue;
             };
             let (Some(field), Some(at)) = (checker.scope.blocks[block].kind.field(field), at)
@@ -303,7 +307,7 @@ pub fn hold_targets(checker: &mut Checker, limits: &CheckedLimits) {
                 .filter_map(Formula::constant)
                 .find(|value| !interval.contains(*value));
             if let Some(value) = beyond {
-                let fault = whole::beyond_limits(
+                let diagnostic = whole::beyond_limits(
                     field.name,
                     value,
                     typed.dimension,
@@ -311,7 +315,7 @@ pub fn hold_targets(checker: &mut Checker, limits: &CheckedLimits) {
                     interval,
                     at,
                 );
-                checker.faults.push(fault);
+                checker.diagnostics.push(diagnostic);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! `plan "Title" { … }`: the title, the edition and the data of the certificate.
+//! `plan "Title" { … }`: the title, the edition and the administrative data of the report.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::expressions::calendar;
@@ -6,13 +6,13 @@ use crate::language::check::messages::{rigs, values};
 use crate::plan::DecisionRule;
 use crate::schema::{FieldType, Kind};
 
-/// The edition this version reads.
+/// The edition that this version reads.
 const EDITION: f64 = 1.0;
 
-/// What a certificate shows as a day is one.
+/// Fields whose value must be a day of the calendar.
 const DAYS: [&str; 2] = ["date", "issued"];
 
-/// Title, where one is given, and the data of the certificate in the schema's order.
+/// Title, if given, and the administrative data in the schema's order.
 pub fn plan_block(
     checker: &mut Checker,
     date: Option<&str>,
@@ -33,10 +33,10 @@ pub fn plan_block(
         });
         if let (true, Some(day), Some(block)) = (DAYS.contains(&field.name), &given, block)
             && !calendar::is_day(day)
-            && let Some((_, written)) = checker.given(block, field.name)
+            && let Some((_, written)) = checker.field(block, field.name)
         {
             checker
-                .faults
+                .diagnostics
                 .push(rigs::not_a_day(day, written.value.span));
         }
         let text = if field.name == "date" {
@@ -51,10 +51,10 @@ pub fn plan_block(
     };
     if let (Some(edition), Some((_, written))) = (
         checker.constant(block, "edition"),
-        checker.given(block, "edition"),
+        checker.field(block, "edition"),
     ) && edition != EDITION
     {
-        checker.faults.push(values::edition(
+        checker.diagnostics.push(values::edition(
             written.value.span,
             checker.text(written.value.span),
         ));
@@ -67,7 +67,7 @@ pub fn plan_block(
     (title, particulars)
 }
 
-/// The rule that the particulars name; the simple one where they name none.
+/// The decision rule that the block names; simple acceptance where it names none.
 pub fn decision_rule(particulars: &[(&'static str, String)]) -> DecisionRule {
     let named = particulars
         .iter()

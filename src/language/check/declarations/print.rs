@@ -1,15 +1,15 @@
-//! Texts that reach the certificate, against the letters that paper can show. In: titles, particulars, names of requirements. Out:
-//! one warning for all that holds a letter which the fonts lack. It knows neither fonts nor pages.
+//! Strings that appear in the report, compared with the characters that its fonts have. In: titles, administrative data, names of
+//! requirements. Out: one warning for all that contain a character which the fonts lack. It knows neither fonts nor pages.
 
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::whole as fault;
+use crate::language::check::messages::whole as message;
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::{Format, Report};
 use crate::schema::Kind;
 use crate::text::glyphs;
 use crate::text::source::Span;
 
-/// Warns of letters that stand as code points on paper; asked for only where no error stands.
+/// Warns of characters that are printed as code points; called only where there is no error.
 pub fn warn(checker: &mut Checker, report: &Report) {
     if !report.formats.contains(&Format::Pdf) {
         return;
@@ -43,7 +43,7 @@ pub fn warn(checker: &mut Checker, report: &Report) {
     texts.sort_by_key(|(span, _)| span.start);
     if let Some((span, text)) = texts.first() {
         let letters: String = text.chars().filter(|c| !glyphs::has(*c)).take(4).collect();
-        checker.faults.push(fault::not_printed(
+        checker.diagnostics.push(message::not_printed(
             &letters,
             &glyphs::shown(&letters),
             texts.len() - 1,
@@ -52,7 +52,7 @@ pub fn warn(checker: &mut Checker, report: &Report) {
     }
 }
 
-/// The texts of a value: one, or those of a list.
+/// The strings of a value: one, or those of a list.
 fn collect<'a>(value: &'a Expr, into: &mut Vec<(Span, &'a str)>) {
     match &value.kind {
         ExprKind::Text(text) => into.push((value.span, text)),

@@ -1,4 +1,4 @@
-//! `report { … }`: figures, formats, who signs. Without it: every table and figure.
+//! `report { … }`: figures, formats, signatories. Without it: every table and figure.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{names, types};
@@ -7,11 +7,11 @@ use crate::language::syntax::ast::{Argument, Expr, ExprKind};
 use crate::plan::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind, Format, MOST_TOGETHER, Procedure, Report};
 use crate::schema::Kind;
-use crate::text::source::Span;
+use crate::text::source::{Span, Spanned};
 
 const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
 
-/// `procedures` holds those without a fault, by their place in the plan.
+/// `procedures` are in the order of the plan, None for each with an error.
 pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option<Report> {
     let Some(block) = checker
         .scope
@@ -26,12 +26,12 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
             sign: Vec::new(),
         });
     };
-    let title = match checker.given(block, "title") {
+    let title = match checker.field(block, "title") {
         Some(_) => checker.text_field(block, "title").map(Some),
         None => Some(None),
     };
     let figures = figures(checker, block, procedures);
-    let formats = match checker.given(block, "formats") {
+    let formats = match checker.field(block, "formats") {
         Some(_) => checker.choices(block, "formats").map(|chosen| {
             chosen
                 .iter()
@@ -40,7 +40,7 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
         }),
         None => Some(EVERY_FORMAT.to_vec()),
     };
-    let sign = match checker.given(block, "sign") {
+    let sign = match checker.field(block, "sign") {
         Some(_) => checker.texts(block, "sign"),
         None => Some(Vec::new()),
     };
@@ -80,7 +80,7 @@ fn figures(
     block: usize,
     procedures: &[Option<Procedure>],
 ) -> Option<Vec<Figure>> {
-    let Some((_, written)) = checker.given(block, "figures") else {
+    let Some((_, written)) = checker.field(block, "figures") else {
         return Some(every_figure(procedures));
     };
     let items = match &written.value.kind {
@@ -140,7 +140,7 @@ fn figure(
     })
 }
 
-/// The procedure that a figure names, if it draws such a figure.
+/// The procedure that a figure names, if it has such a figure.
 fn drawn_of(
     checker: &mut Checker,
     kind: FigureKind,
@@ -186,7 +186,7 @@ fn drawn_of(
     Some(procedure)
 }
 
-/// Whether these procedures can stand on one chart: one curve of each, all of one kind, none twice, few enough.
+/// Whether these procedures fit on one chart: one curve of each, all of one kind, each once, not too many.
 fn together(
     checker: &mut Checker,
     kind: FigureKind,
@@ -202,7 +202,7 @@ fn together(
     };
     let first = of(&drawn[0])?;
     let keyword = first.keyword();
-    let at = |place: usize| arguments[place].value.span;
+    let at = |index: usize| arguments[index].value.span;
     let shared = crate::procedures::facts_of(first).shared_figures;
     if !shared.contains(&kind) {
         let shared = crate::procedures::facts_of(first)
@@ -212,17 +212,17 @@ fn together(
             .map(|kind| kind.name());
         return checker.fail(names::figure_of_one(kind.name(), keyword, at(1), shared));
     }
-    for (place, procedure) in drawn.iter().enumerate().skip(1) {
+    for (index, procedure) in drawn.iter().enumerate().skip(1) {
         let kinds = of(procedure)?;
         if kinds.keyword() != keyword {
             return checker.fail(names::figure_of_two_kinds(
                 kind.name(),
-                (keyword, at(0)),
-                (kinds.keyword(), at(place)),
+                Spanned::new(keyword, at(0)),
+                Spanned::new(kinds.keyword(), at(index)),
             ));
         }
-        if let Some(before) = drawn[..place].iter().position(|other| other == procedure) {
-            return checker.fail(names::figure_drawn_twice(at(before), at(place)));
+        if let Some(before) = drawn[..index].iter().position(|other| other == procedure) {
+            return checker.fail(names::figure_drawn_twice(at(before), at(index)));
         }
     }
     if drawn.len() > MOST_TOGETHER {

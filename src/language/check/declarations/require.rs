@@ -1,20 +1,20 @@
 //! `require "label" condition`: comparisons and `within`, one condition for each part joined with `and`.
 
-use crate::language::check::checker::{Checker, Place, Reads, Typed};
-use crate::language::check::messages::{types as fault, values};
+use crate::language::check::checker::{Checker, Context, Reads, Typed};
+use crate::language::check::messages::{types as message, values};
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use crate::plan::formula::Formula;
 use crate::plan::{Comparison, Condition, Requirement, Test};
 use crate::units::Dimension;
 
-const PLACE: Place = Place {
+const PLACE: Context = Context {
     entry: None,
     reads: Reads::All,
     critical: false,
 };
 
 impl<'a> Checker<'a> {
-    /// Every requirement; None if one has a fault.
+    /// Every requirement; None if one has an error.
     pub fn requirements(&mut self) -> Option<Vec<Requirement>> {
         let checked: Vec<Option<Requirement>> = (0..self.scope.requirements.len())
             .map(|index| {
@@ -31,32 +31,32 @@ impl<'a> Checker<'a> {
         checked.into_iter().collect()
     }
 
-    /// The conditions of an expression, one for each part joined with `and`; None if one has a fault.
-    pub fn conditions_at(&mut self, expr: &'a Expr, place: Place) -> Option<Vec<Condition>> {
+    /// The conditions of an expression, one for each part joined with `and`; None if one has an error.
+    pub fn conditions_at(&mut self, expr: &'a Expr, context: Context) -> Option<Vec<Condition>> {
         let mut conditions = Vec::new();
-        self.conditions(expr, place, &mut conditions);
+        self.conditions(expr, context, &mut conditions);
         conditions.into_iter().collect()
     }
 
-    fn conditions(&mut self, expr: &'a Expr, place: Place, into: &mut Vec<Option<Condition>>) {
+    fn conditions(&mut self, expr: &'a Expr, context: Context, into: &mut Vec<Option<Condition>>) {
         match &expr.kind {
-            ExprKind::Parenthesised(inner) => self.conditions(inner, place, into),
+            ExprKind::Parenthesised(inner) => self.conditions(inner, context, into),
             ExprKind::Binary {
                 operator,
                 left,
                 right,
             } if operator.node == BinaryOperator::And => {
-                self.conditions(left, place, into);
-                self.conditions(right, place, into);
+                self.conditions(left, context, into);
+                self.conditions(right, context, into);
             }
             _ => {
-                let condition = self.condition(expr, place);
+                let condition = self.condition(expr, context);
                 into.push(condition);
             }
         }
     }
 
-    fn condition(&mut self, expr: &'a Expr, place: Place) -> Option<Condition> {
+    fn condition(&mut self, expr: &'a Expr, context: Context) -> Option<Condition> {
         let text = self
             .text(expr.span)
             .split_whitespace()
@@ -70,15 +70,15 @@ impl<'a> Checker<'a> {
                 target,
             } => {
                 let (value, width, target) = (
-                    self.single(value, place),
-                    self.single(tolerance, place),
-                    self.single(target, place),
+                    self.single(value, context),
+                    self.single(tolerance, context),
+                    self.single(target, context),
                 );
                 let (value, width, target) = (value?, width?, target?);
                 if value.dimension != target.dimension {
-                    return self.fail(fault::mismatched("within", &value, &target));
+                    return self.fail(message::mismatched("within", &value, &target));
                 }
-                // `%` is of the target; a plain number beside a quantity would be a forgotten unit.
+                // `%` is relative to the target; a plain number beside a quantity would be a forgotten unit.
                 let relative = width.percent
                     || (width.dimension == Dimension::NUMBER
                         && value.dimension != Dimension::NUMBER
@@ -112,10 +112,10 @@ impl<'a> Checker<'a> {
                 right,
             } if comparison(operator.node).is_some() => {
                 let comparison = comparison(operator.node)?;
-                let (left, right) = (self.single(left, place), self.single(right, place));
+                let (left, right) = (self.single(left, context), self.single(right, context));
                 let (left, right) = (left?, right?);
                 if left.dimension != right.dimension {
-                    return self.fail(fault::mismatched(operator.node.symbol(), &left, &right));
+                    return self.fail(message::mismatched(operator.node.symbol(), &left, &right));
                 }
                 let dimension = left.dimension;
                 let (value, comparison, limit) = value_first(left, comparison, right);
@@ -127,12 +127,12 @@ impl<'a> Checker<'a> {
                 })
             }
             _ => {
-                let wanted_by = if matches!(place.reads, Reads::Blow(_)) {
+                let wanted_by = if matches!(context.reads, Reads::Impact(_)) {
                     "while"
                 } else {
                     "require"
                 };
-                self.fail(fault::condition_wanted(
+                self.fail(message::condition_wanted(
                     wanted_by,
                     expr.span,
                     self.text(expr.span),
@@ -142,7 +142,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// What is measured stands first: `8 mm >= hit.max_displacement` is `hit.max_displacement <= 8 mm`.
+/// The measured value comes first: `8 mm >= hit.max_displacement` is `hit.max_displacement <= 8 mm`.
 fn value_first(
     left: Typed,
     comparison: Comparison,

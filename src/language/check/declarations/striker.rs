@@ -1,20 +1,20 @@
-//! `striker NAME { … }`: mass, gap, and its velocity, which a height of fall or the swing of a pendulum gives as well.
+//! `striker NAME { … }`: mass, gap, and velocity, which may be stated as a height of fall or the swing of a pendulum.
 
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::{names as fault, values};
+use crate::language::check::messages::{names as message, values};
 use crate::plan::Striker;
 use crate::plan::formula::{Formula, Operator, Stated};
 use crate::text::source::Span;
 use crate::uncertainty::Source;
 use crate::units::Dimension;
 
-/// Standard gravity, m/s².
+/// Standard gravity \[m/s²\].
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// The fields each of which gives the velocity; an angle needs its arm.
+/// The fields that each give the velocity; an angle needs its arm.
 const FORMS: [&str; 3] = ["velocity", "drop_height", "angle"];
 
-/// A striker whose entries are all right; None where a fault was reported.
+/// A striker whose entries are all valid; None where an error was reported.
 pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     let declared = &checker.scope.blocks[block];
     let (kind, name, head) = (declared.kind, declared.name, declared.block.head);
@@ -23,15 +23,15 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
         .into_iter()
         .filter_map(|form| {
             checker
-                .given(block, form)
+                .field(block, form)
                 .map(|(entry, written)| (entry, form, written.key.span))
         })
         .map(|(_, form, span)| (form, span))
         .collect();
     forms.sort_by_key(|(_, span)| span.start);
     match forms.as_slice() {
-        [] if checker.given(block, "arm").is_some() || checker.misspelt(block, &FORMS) => {}
-        [] => checker.faults.push(fault::missing_field(
+        [] if checker.field(block, "arm").is_some() || checker.misspelt(block, &FORMS) => {}
+        [] => checker.diagnostics.push(message::missing_field(
             kind,
             name,
             head,
@@ -42,8 +42,8 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
         [(first, first_span), rest @ ..] => {
             for (again, span) in rest {
                 checker
-                    .faults
-                    .push(fault::velocity_twice(again, *span, first, *first_span));
+                    .diagnostics
+                    .push(message::velocity_twice(again, *span, first, *first_span));
             }
         }
     }
@@ -52,15 +52,15 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
         ("arm", "angle", "angle = 60 deg"),
     ] {
         let pairless =
-            checker.given(block, form).is_some() && checker.given(block, other).is_none();
+            checker.field(block, form).is_some() && checker.field(block, other).is_none();
         let lacking = form == "angle" || forms.is_empty();
         if pairless && lacking && !checker.misspelt(block, &[other]) {
             checker
-                .faults
-                .push(fault::missing_field(kind, name, head, other, example));
+                .diagnostics
+                .push(message::missing_field(kind, name, head, other, example));
         }
     }
-    // Every entry is read, so that each has its fault said.
+    // Every entry is read, so that every error is reported.
     for field in ["drop_height", "arm", "angle"] {
         checker.quantity(block, field);
     }
@@ -89,7 +89,7 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     })
 }
 
-/// A standard uncertainty (SI), small beside the `value` it is of.
+/// A standard uncertainty in SI units that is small relative to its `value`.
 pub fn uncertainty(
     checker: &mut Checker,
     block: usize,
@@ -97,7 +97,7 @@ pub fn uncertainty(
     value: Option<f64>,
 ) -> Option<f64> {
     let uncertainty = checker.constant(block, field)?;
-    match (value, checker.given(block, field)) {
+    match (value, checker.field(block, field)) {
         (Some(value), Some((_, entry))) if uncertainty > MOST_UNCERTAIN * value => {
             let dimension = entry_dimension(field);
             checker.fail(values::too_uncertain(
@@ -112,7 +112,7 @@ pub fn uncertainty(
     }
 }
 
-/// Share of a value that its standard uncertainty may be: beyond it, nothing is linear, and 0 is no longer out of reach.
+/// Largest relative standard uncertainty of a value: beyond it first-order propagation fails, and 0 is within reach.
 pub const MOST_UNCERTAIN: f64 = 0.2;
 
 fn entry_dimension(field: &str) -> Dimension {
@@ -125,10 +125,10 @@ fn entry_dimension(field: &str) -> Dimension {
 
 /// `velocity`, else √(2·gn·h), where a pendulum falls by h = L(1 − cos θ).
 fn velocity(checker: &mut Checker, block: usize) -> Option<f64> {
-    if checker.given(block, "velocity").is_some() {
+    if checker.field(block, "velocity").is_some() {
         return checker.constant(block, "velocity");
     }
-    let height = if checker.given(block, "drop_height").is_some() {
+    let height = if checker.field(block, "drop_height").is_some() {
         checker.constant(block, "drop_height")?
     } else {
         let (arm, angle) = (
@@ -141,10 +141,10 @@ fn velocity(checker: &mut Checker, block: usize) -> Option<f64> {
     Some((2.0 * STANDARD_GRAVITY * height).sqrt())
 }
 
-/// `pendulum.energy` and its like, with what is uncertain of them; None where the striker has a fault that is reported in its
-/// place.
+/// `pendulum.energy` and the like, with their uncertainty contributions; None where the striker has an error that is reported
+/// there.
 pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formula> {
-    let place = checker.scope.place_in_kind(block);
+    let index = checker.scope.index_in_kind(block);
     let stated = |checker: &mut Checker, field, source, value| {
         let uncertainty = checker.constant(block, field)?;
         Some(
@@ -161,7 +161,7 @@ pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formu
         stated(
             checker,
             "mass_uncertainty",
-            Source::StrikerMass(place),
+            Source::StrikerMass(index),
             value,
         )
     };
@@ -169,7 +169,7 @@ pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formu
         stated(
             checker,
             "velocity_uncertainty",
-            Source::StrikerVelocity(place),
+            Source::StrikerVelocity(index),
             value,
         )
     };
@@ -184,11 +184,11 @@ pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formu
             match name {
                 "velocity" => velocity,
                 "drop_height" => {
-                    let height = match checker.given(block, "drop_height") {
+                    let height = match checker.field(block, "drop_height") {
                         Some(_) => checker.constant(block, "drop_height")?,
                         None => value * value / (2.0 * STANDARD_GRAVITY),
                     };
-                    // h (v/v₀)²: as high as it is stated, as uncertain as the velocity that follows.
+                    // h (v/v₀)²: the stated height, with the uncertainty that follows from the velocity.
                     let ratio = Formula::Binary(
                         Operator::Divide,
                         Box::new(velocity),
@@ -206,7 +206,7 @@ pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formu
     Some(folded(formula))
 }
 
-/// A number that nothing makes uncertain.
+/// A number without an uncertainty.
 fn folded(formula: Formula) -> Formula {
     match formula.constant() {
         Some(value) if !formula.is_uncertain() => Formula::Constant(value),

@@ -1,4 +1,4 @@
-//! Days of the calendar, as they are written in a plan: `2027-03-01`. Knows no clock.
+//! Calendar days as they are written in a plan: `2027-03-01`. Knows no clock.
 
 /// Whether a text is a day of the Gregorian calendar, written `YYYY-MM-DD`.
 pub fn is_day(text: &str) -> bool {
@@ -24,7 +24,7 @@ pub fn is_day(text: &str) -> bool {
     (1..=days_of(year, month)).contains(&day)
 }
 
-/// Days of a month; none of a month that there is not.
+/// Days of a month; 0 for an invalid month.
 fn days_of(year: u32, month: u32) -> u32 {
     let leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
     match month {

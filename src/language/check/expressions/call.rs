@@ -1,7 +1,7 @@
 //! Functions: `abs(x)`, `max(a, b)`, `sqrt(area)`.
 
-use crate::language::check::checker::{Checker, Place, Shape, Typed};
-use crate::language::check::messages::{names, types as fault};
+use crate::language::check::checker::{Checker, Context, Shape, Typed};
+use crate::language::check::messages::{names, types as message};
 use crate::language::syntax::ast::{Argument, Ident};
 use crate::plan::formula::{Formula, Function};
 use crate::schema::{FUNCTIONS, FunctionKind};
@@ -14,7 +14,7 @@ impl<'a> Checker<'a> {
         name: &Ident,
         arguments: &'a [Argument],
         span: Span,
-        place: Place,
+        context: Context,
     ) -> Option<Typed> {
         let Some(kind) = FUNCTIONS.iter().find(|function| function.name == name.node) else {
             return self.fail(names::unknown_function(&name.node, name.span));
@@ -24,7 +24,7 @@ impl<'a> Checker<'a> {
         }
         let checked: Vec<Option<Typed>> = arguments
             .iter()
-            .map(|argument| self.value(&argument.value, place))
+            .map(|argument| self.value(&argument.value, context))
             .collect();
         let checked: Vec<Typed> = checked.into_iter().collect::<Option<_>>()?;
         let wrong_count = if kind.many {
@@ -36,13 +36,13 @@ impl<'a> Checker<'a> {
             return self.fail(names::function_arguments(kind, checked.len(), span));
         };
         if !kind.many && first.shape == Shape::List {
-            return self.fail(fault::list_for_number(first.span));
+            return self.fail(message::list_for_number(first.span));
         }
         if let Some(other) = checked
             .iter()
             .find(|other| other.dimension != first.dimension)
         {
-            return self.fail(fault::mismatched(kind.name, first, other));
+            return self.fail(message::mismatched(kind.name, first, other));
         }
         let dimension = self.result_dimension(kind, first, span)?;
         let bare = checked.iter().all(|argument| argument.bare);
@@ -66,12 +66,12 @@ impl<'a> Checker<'a> {
             Function::Sqrt => {
                 let root = Exponent::ratio(1, 2).and_then(|half| argument.dimension.to_power(half));
                 if root.is_none() {
-                    return self.fail(fault::exponent_too_large(span));
+                    return self.fail(message::exponent_too_large(span));
                 }
                 root
             }
             Function::Sin | Function::Cos if argument.dimension != Dimension::NUMBER => {
-                self.fail(fault::angle_with_unit(kind.name, argument))
+                self.fail(message::angle_with_unit(kind.name, argument))
             }
             _ => Some(argument.dimension),
         }

@@ -1,9 +1,9 @@
-//! Words and variants: `rigid`, `limit(1500 N)`, `[every(20), force_drop(10 %)]`. In: an expression and the variants a
-//! field knows. Out: a [`Chosen`], its arguments in SI.
+//! Words and variants: `rigid`, `limit(1500 N)`, `[every(20), force_drop(10 %)]`. In: an expression and the variants of a
+//! field. Out: a [`Chosen`], with its arguments in SI.
 
-use crate::language::check::checker::{Checker, Place, Typed};
+use crate::language::check::checker::{Checker, Context, Typed};
 use crate::language::check::messages::values;
-use crate::language::check::messages::{names as fault, types};
+use crate::language::check::messages::{names as message, types};
 use crate::language::syntax::ast::{Argument, Expr, ExprKind};
 use crate::plan::Interval;
 use crate::plan::formula::Formula;
@@ -11,41 +11,41 @@ use crate::schema::{Field, FieldType, Need, Variant};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
-/// A variant as it was written.
+/// A variant as it is written.
 pub struct Chosen<'a> {
     pub variant: &'static Variant,
-    /// What stands for each argument of the variant, in the schema's order.
+    /// The expression for each argument of the variant, in the schema's order.
     arguments: Vec<Option<&'a Expr>>,
-    /// What stands after the last of them, where it takes several.
+    /// Further expressions for the last argument, where it takes several.
     rest: Vec<&'a Expr>,
 }
 
 impl<'a> Checker<'a> {
-    /// The variant a field names. None where the field is left out or faulty.
+    /// The variant that a field names. None where the field is left out or has an error.
     pub fn choice(&mut self, block: usize, field: &str) -> Option<Chosen<'a>> {
-        let (_, written) = self.given(block, field)?;
+        let (_, written) = self.field(block, field)?;
         let FieldType::Choice(variants) = self.scope.blocks[block].kind.field(field)?.ty else {
             return None;
         };
         self.chosen(field, variants, &written.value)
     }
 
-    /// The word a field names, or `default` where it is left out.
+    /// The word that a field names, or `default` where it is left out.
     pub fn word(
         &mut self,
         block: usize,
         field: &str,
         default: &'static str,
     ) -> Option<&'static str> {
-        if self.given(block, field).is_none() {
+        if self.field(block, field).is_none() {
             return Some(default);
         }
         self.choice(block, field).map(|chosen| chosen.variant.name)
     }
 
-    /// The variants a field lists. None where the field is left out or faulty.
+    /// The variants that a field lists. None where the field is left out or has an error.
     pub fn choices(&mut self, block: usize, field: &str) -> Option<Vec<Chosen<'a>>> {
-        let (_, written) = self.given(block, field)?;
+        let (_, written) = self.field(block, field)?;
         let FieldType::Choices(variants) = self.scope.blocks[block].kind.field(field)?.ty else {
             return None;
         };
@@ -84,9 +84,9 @@ impl<'a> Checker<'a> {
             }
         };
         let Some(variant) = variants.iter().find(|variant| variant.name == name) else {
-            return self.fail(fault::unknown_variant(field, name, span, variants));
+            return self.fail(message::unknown_variant(field, name, span, variants));
         };
-        let (placed, rest) = self.place_arguments(variant, arguments, written.span)?;
+        let (placed, rest) = self.match_arguments(variant, arguments, written.span)?;
         Some(Chosen {
             variant,
             arguments: placed,
@@ -94,7 +94,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn place_arguments(
+    fn match_arguments(
         &mut self,
         variant: &'static Variant,
         arguments: &'a [Argument],
@@ -124,7 +124,7 @@ impl<'a> Checker<'a> {
                     .name
                     .as_ref()
                     .map_or(argument.value.span, |name| name.span);
-                self.faults.push(fault::unknown_argument(
+                self.diagnostics.push(message::unknown_argument(
                     variant,
                     argument.name.as_ref().map(|name| name.node.as_str()),
                     at,
@@ -137,7 +137,7 @@ impl<'a> Checker<'a> {
                     .name
                     .as_ref()
                     .map_or(argument.value.span, |name| name.span);
-                self.faults.push(fault::argument_twice(
+                self.diagnostics.push(message::argument_twice(
                     variant.arguments[position].name,
                     at,
                     first.span,
@@ -150,47 +150,52 @@ impl<'a> Checker<'a> {
         }
         for (field, given) in variant.arguments.iter().zip(&placed) {
             if given.is_none() && field.need == Need::Required {
-                self.faults
-                    .push(fault::missing_argument(variant, field, span));
+                self.diagnostics
+                    .push(message::missing_argument(variant, field, span));
                 faulty = true;
             }
         }
         (!faulty).then_some((placed, rest))
     }
 
-    /// An argument that is a number: what was written, else its default. None where it is faulty or stands nowhere.
-    pub fn argument(&mut self, chosen: &Chosen<'a>, name: &str, place: Place) -> Option<Formula> {
+    /// A numeric argument, or its default. None where it has an error, or is left out without a default.
+    pub fn argument(
+        &mut self,
+        chosen: &Chosen<'a>,
+        name: &str,
+        context: Context,
+    ) -> Option<Formula> {
         let (field, written) = chosen.find(name)?;
         match written {
             Some(written) => self
-                .typed_field(field, written, place)
+                .typed_field(field, written, context)
                 .map(|typed| typed.formula),
             None => field.default_number().map(Formula::Constant),
         }
     }
 
-    /// An argument that is a number known before the run.
+    /// A numeric argument that is known before the run.
     pub fn constant_argument(
         &mut self,
         chosen: &Chosen<'a>,
         name: &str,
-        place: Place,
+        context: Context,
     ) -> Option<f64> {
-        let formula = self.argument(chosen, name, place)?;
+        let formula = self.argument(chosen, name, context)?;
         let value = formula.constant();
         if value.is_none()
             && let Some((_, Some(written))) = chosen.find(name)
         {
-            self.faults
+            self.diagnostics
                 .push(values::needs_the_run(written.span, self.text(written.span)));
         }
         value
     }
 }
 
-/// Arguments that are no single number; a required one always stands, or its variant was faulty.
+/// Arguments other than one number. A required one is always there, because its variant had an error otherwise.
 impl<'a> Checker<'a> {
-    /// An argument that may be left out, a number known before the run: `Some(None)` where it is, None where it is faulty.
+    /// An argument that may be left out, a number known before the run: `Some(None)` where it is, None where it has an error.
     #[expect(
         clippy::option_option,
         reason = "left out and faulty are different things here"
@@ -199,15 +204,15 @@ impl<'a> Checker<'a> {
         &mut self,
         chosen: &Chosen<'a>,
         name: &str,
-        place: Place,
+        context: Context,
     ) -> Option<Option<f64>> {
         match chosen.find(name)? {
-            (_, Some(_)) => self.constant_argument(chosen, name, place).map(Some),
+            (_, Some(_)) => self.constant_argument(chosen, name, context).map(Some),
             (_, None) => Some(None),
         }
     }
 
-    /// An argument that is a word or a variant itself.
+    /// An argument that is itself a word or variant.
     pub fn chosen_argument(&mut self, chosen: &Chosen<'a>, name: &str) -> Option<Chosen<'a>> {
         let (field, written) = chosen.find(name)?;
         let FieldType::Choice(variants) = field.ty else {
@@ -216,29 +221,29 @@ impl<'a> Checker<'a> {
         self.chosen(field.name, variants, written?)
     }
 
-    /// An argument that is a list of numbers known before the run, and where it stands.
+    /// An argument that is a list of numbers known before the run, with its span.
     pub fn list_argument(
         &mut self,
         chosen: &Chosen<'a>,
         name: &str,
-        place: Place,
+        context: Context,
     ) -> Option<Vec<f64>> {
         let (field, written) = chosen.find(name)?;
         let written = written?;
         let values: Option<Vec<f64>> = self
-            .typed_field(field, written, place)?
+            .typed_field(field, written, context)?
             .parts()
             .iter()
             .map(Formula::constant)
             .collect();
         if values.is_none() {
-            self.faults
+            self.diagnostics
                 .push(values::needs_the_run(written.span, self.text(written.span)));
         }
         values
     }
 
-    /// An argument that is a text, and where it stands; `Some(None)` where it is left out, None where it is no text.
+    /// An argument that is a string, with its span; `Some(None)` where it is left out, None where it is not a string.
     #[expect(
         clippy::option_option,
         reason = "left out and faulty are different things here"
@@ -257,12 +262,12 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// An argument that is a range, both ends inside the field's own.
+    /// An argument that is a range, with both ends inside the field's own range.
     pub fn interval_argument(
         &mut self,
         chosen: &Chosen<'a>,
         name: &str,
-        place: Place,
+        context: Context,
     ) -> Option<Interval> {
         let (field, written) = chosen.find(name)?;
         let (written, dimension) = (written?, field.dimension()?);
@@ -272,7 +277,7 @@ impl<'a> Checker<'a> {
                 _ => self.fail(types::range_wanted_by(field, written.span)),
             };
         };
-        let (interval, found) = self.interval(written, place)?;
+        let (interval, found) = self.interval(written, context)?;
         let typed = Typed {
             bare: found == Dimension::NUMBER && dimension != Dimension::NUMBER,
             ..Typed::number(Formula::Constant(interval.high), found, written.span)
@@ -293,12 +298,12 @@ impl<'a> Checker<'a> {
 }
 
 impl<'a> Chosen<'a> {
-    /// Where an argument was written.
+    /// The span of an argument.
     pub fn span(&self, name: &str) -> Option<Span> {
         self.find(name)?.1.map(|written| written.span)
     }
 
-    /// What was written for an argument that takes several: after each other, or as a list.
+    /// The expressions for an argument that takes several: one after another, or as a list.
     pub fn several(&self, name: &str) -> Vec<&'a Expr> {
         let first = self.find(name).and_then(|(_, written)| written);
         let items = first.into_iter().flat_map(|written| match &written.kind {
@@ -308,7 +313,7 @@ impl<'a> Chosen<'a> {
         items.chain(self.rest.iter().copied()).collect()
     }
 
-    /// The argument of the schema, and what was written for it.
+    /// The argument of the schema, and the expression for it.
     pub fn find(&self, name: &str) -> Option<(&'static Field, Option<&'a Expr>)> {
         let index = self
             .variant

@@ -1,12 +1,12 @@
-//! Data files that a plan names: `record = "ground/quake.csv"`. In: the text in quotes and where it stands. Out: the file's
-//! text, which from then on belongs to the plan as a used file does. What the text means is for the block that asked.
+//! Data files that a plan names: `record = "ground/quake.csv"`. In: the string and its span. Out: the file's
+//! text, which then belongs to the plan like a used file. The block that names the file interprets it.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::language::check::checker::Checker;
 use crate::language::check::imports::{MOST_FILES, refused, resolved};
-use crate::language::check::messages::files as fault;
-use crate::language::check::{LoadFault, imports};
+use crate::language::check::messages::files as message;
+use crate::language::check::{LoadError, imports};
 use crate::plan::PlanFile;
 use crate::text::source::Span;
 
@@ -15,15 +15,15 @@ use crate::text::source::Span;
 pub struct DataFile {
     /// Relative to the plan's folder, with `/`.
     pub name: String,
-    pub text: Rc<str>,
+    pub text: Arc<str>,
 }
 
 impl Checker<'_> {
     /// The text of the data file `written`, whose path is relative to the file that names it. Read once, however often it is
-    /// asked for.
+    /// requested.
     pub fn data_file(&mut self, written: &str, span: Span) -> Option<DataFile> {
         if let Some(reason) = refused(written) {
-            return self.fail(fault::bad_data_path(written, span, reason));
+            return self.fail(message::bad_data_path(written, span, reason));
         }
         let from = imports::own_path(self.sources, span.file);
         let name = resolved(&from, written);
@@ -31,7 +31,7 @@ impl Checker<'_> {
             return Some(known.clone());
         }
         if self.sources.iter().count() + self.data.len() >= MOST_FILES {
-            return self.fail(fault::too_many_files(MOST_FILES, span));
+            return self.fail(message::too_many_files(MOST_FILES, span));
         }
         match self.loader.load(&name) {
             Ok(text) => {
@@ -42,12 +42,14 @@ impl Checker<'_> {
                 self.data.push(file.clone());
                 Some(file)
             }
-            Err(LoadFault::NotFound) => self.fail(fault::not_found(&name, span)),
-            Err(LoadFault::Refused(reason)) => self.fail(fault::data_refused(&name, &reason, span)),
+            Err(LoadError::NotFound) => self.fail(message::not_found(&name, span)),
+            Err(LoadError::Refused(reason)) => {
+                self.fail(message::data_refused(&name, &reason, span))
+            }
         }
     }
 
-    /// The data files that the plan named, in the order they were asked for; not those that it uses as plans too.
+    /// The data files that the plan names, in the order of the requests, without those that it also uses as plans.
     pub fn data_files(&self) -> Vec<PlanFile> {
         let is_plan = |name: &str| self.sources.iter().any(|(_, file)| file.name == name);
         let named = self.data.iter().filter(|file| !is_plan(&file.name));

@@ -1,8 +1,8 @@
-//! The entries of a block against the fields of its kind: unknown, twice, missing; and their values, typed as the schema
-//! says. In: a declared block. Out: formulas and numbers in SI; a field left out gives its default.
+//! The entries of a block compared with the fields of its kind: unknown, repeated, missing; and their values, typed according to the
+//! schema. In: a declared block. Out: formulas and numbers in SI; a field that is left out has its default.
 
-use crate::language::check::checker::{Checker, Node, Place, Reads, Typed};
-use crate::language::check::messages::{names as fault, types, values};
+use crate::language::check::checker::{Checker, Context, Node, Reads, Typed};
+use crate::language::check::messages::{names as message, types, values};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Entry, Expr, ExprKind};
 use crate::plan::formula::Formula;
@@ -11,7 +11,7 @@ use crate::text::source::Span;
 use crate::text::suggest;
 
 impl<'a> Checker<'a> {
-    /// Reports what is wrong with the set of entries. Their values are for the block's own file to ask for.
+    /// Reports errors of the set of entries. Each block reads their values itself.
     pub fn entries_of(&mut self, block: usize) {
         let declared = &self.scope.blocks[block];
         let kind = declared.kind;
@@ -24,18 +24,19 @@ impl<'a> Checker<'a> {
                         key,
                         kind.fields.iter().map(|field| field.name),
                     ));
-                    self.faults.push(fault::unknown_field(kind, &entry.key));
+                    self.diagnostics
+                        .push(message::unknown_field(kind, &entry.key));
                 }
                 Some(field) if !field.available => self
-                    .faults
-                    .push(fault::field_of_later_version(kind, field, &entry.key)),
+                    .diagnostics
+                    .push(message::field_of_later_version(kind, field, &entry.key)),
                 Some(_) => {
                     if let Some(first) = declared.block.fields[..index]
                         .iter()
                         .find(|other| other.key.node == key)
                     {
-                        self.faults
-                            .push(fault::field_twice(&entry.key, first.key.span));
+                        self.diagnostics
+                            .push(message::field_twice(&entry.key, first.key.span));
                     }
                 }
             }
@@ -48,26 +49,26 @@ impl<'a> Checker<'a> {
         };
         let required = |field: &&Field| match field.need {
             Need::Required => true,
-            // What a rig itself lacks is said of it as a whole.
+            // The missing entries of a rig are reported together.
             Need::RequiredOn(on, _) => on == rig && kind.kind != Kind::Rig,
             _ => false,
         };
         for field in kind.fields.iter().filter(required) {
             if !meant.contains(&field.name)
                 && !unreadable
-                && self.given(block, field.name).is_none()
+                && self.field(block, field.name).is_none()
                 && !self.replaced(block, field.name)
             {
                 let example = self.example_of(block, field);
-                self.faults.push(match field.need {
-                    Need::RequiredOn(rig, _) => fault::missing_field_on(
+                self.diagnostics.push(match field.need {
+                    Need::RequiredOn(rig, _) => message::missing_field_on(
                         rig,
                         kind,
                         declared.name,
                         declared.block.head,
                         field,
                     ),
-                    _ => fault::missing_field(
+                    _ => message::missing_field(
                         kind,
                         declared.name,
                         declared.block.head,
@@ -79,15 +80,15 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What the field could be: of a rig that says what only a real one says, a real link.
+    /// An example of the field: for a rig with fields of real rigs only, a real link.
     fn example_of(&self, block: usize, field: &Field) -> &'static str {
         const REAL: &str = "link = serial(port: \"/dev/ttyUSB0\", dialect: native)";
         let is_link = self.scope.blocks[block].kind.kind == Kind::Rig && field.name == "link";
-        let real = is_link && crate::language::check::rig::says_of_real_rigs(self, block);
+        let real = is_link && crate::language::check::rig::has_fields_of_real_rigs(self, block);
         if real { REAL } else { field.example }
     }
 
-    /// What stands in place of a field that is required otherwise: storeys or matrices of a behaviour.
+    /// Whether something replaces a field that is required otherwise: storeys or matrices replace a model.
     fn replaced(&self, block: usize, field: &str) -> bool {
         let declared = &self.scope.blocks[block];
         let has = |name: &str| {
@@ -100,25 +101,27 @@ impl<'a> Checker<'a> {
         match declared.kind.kind {
             Kind::Specimen => {
                 field == "behaviour"
-                    && crate::language::check::declarations::frame::FIELDS
+                    && crate::language::check::declarations::specimen::frame::FIELDS
                         .iter()
                         .any(|frame| has(frame))
             }
-            // What a load cell alone lacks is said in its place.
+            // The missing parts of a separate load cell are reported in its context.
             Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
-            // The storeys have stiffnesses of their own.
+            // Storeys have their own stiffnesses.
             Kind::Unload => {
                 field == "stiffness"
                     && self.tested(block).is_some_and(|tested| {
-                        crate::language::check::declarations::frame::is_frame(self, tested)
+                        crate::language::check::declarations::specimen::frame::is_frame(
+                            self, tested,
+                        )
                     })
             }
             _ => false,
         }
     }
 
-    /// The entry of a field, where it stands, and its place among the entries.
-    pub fn given(&self, block: usize, field: &str) -> Option<(usize, &'a Entry)> {
+    /// The entry of a field, with its index among the entries; None where the field is left out.
+    pub fn field(&self, block: usize, field: &str) -> Option<(usize, &'a Entry)> {
         self.scope.blocks[block]
             .block
             .fields
@@ -127,7 +130,7 @@ impl<'a> Checker<'a> {
             .find(|(_, entry)| entry.key.node == field)
     }
 
-    /// Whether an entry of the block is a misspelt one of these fields, which is said already.
+    /// Whether an entry of the block is a misspelling of one of these fields, which is reported already.
     pub fn misspelt(&self, block: usize, fields: &[&str]) -> bool {
         let declared = &self.scope.blocks[block];
         let unknown = declared
@@ -143,7 +146,7 @@ impl<'a> Checker<'a> {
             || self.unreadable(block)
     }
 
-    /// Whether some line of the block could not be read, so that fields may be missing through that.
+    /// Whether a line of the block could not be parsed, so that fields may only seem to be missing.
     fn unreadable(&self, block: usize) -> bool {
         let span = self.scope.blocks[block].span;
         self.unread
@@ -151,8 +154,8 @@ impl<'a> Checker<'a> {
             .any(|line| line.file == span.file && line.start < span.end && span.start < line.end)
     }
 
-    /// Where the entry of a block stands: which results it may read, and whether `critical` means something.
-    pub fn place(&self, block: usize, entry: usize) -> Place {
+    /// The context of an entry of a block: the results that it may read, and whether `critical` has a meaning.
+    pub fn context_of(&self, block: usize, entry: usize) -> Context {
         let declared = &self.scope.blocks[block];
         let reads = match (declared.procedure, declared.kind.kind) {
             (Some(procedure), _) => Reads::Before(procedure),
@@ -167,35 +170,35 @@ impl<'a> Checker<'a> {
             declared.kind.kind,
             Kind::Impact | Kind::Escalate | Kind::Shake
         ) && declared.block.fields[entry].key.node == "time_step";
-        Place {
+        Context {
             entry: Some((block, entry)),
             reads,
             critical,
         }
     }
 
-    /// The value of an entry with numbers, as its field wants it.
+    /// The value of a numeric entry, checked against its field.
     pub fn entry_value(&mut self, block: usize, entry: usize) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
         let written = &declared.block.fields[entry];
         let field = declared.kind.field(&written.key.node)?;
-        let place = self.place(block, entry);
-        self.typed_field(field, &written.value, place)
+        let context = self.context_of(block, entry);
+        self.typed_field(field, &written.value, context)
     }
 
-    /// A number or a list of them against a field or argument.
+    /// A number or a list, checked against a field or argument.
     pub fn typed_field(
         &mut self,
         field: &'static Field,
         written: &'a Expr,
-        place: Place,
+        context: Context,
     ) -> Option<Typed> {
         let dimension = field.dimension()?;
         let many = matches!(field.ty, FieldType::Quantities(_));
         let typed = if many {
-            self.value(written, place)?
+            self.value(written, context)?
         } else {
-            self.single(written, place)?
+            self.single(written, context)?
         };
         let typed = self.expect(typed, dimension, field.name, written)?;
         if field.angle && !self.recorded && self.is_plain(&typed, written) {
@@ -229,7 +232,7 @@ impl<'a> Checker<'a> {
         Some(typed)
     }
 
-    /// Whether a number has neither `deg` nor `rad`, here or where its name was declared.
+    /// Whether a number has neither `deg` nor `rad`, here or at the declaration of its name.
     fn is_plain(&mut self, typed: &Typed, written: &'a Expr) -> bool {
         let declared = match &written.kind {
             ExprKind::Name(name) => match self.scope.meaning(name) {
@@ -242,9 +245,9 @@ impl<'a> Checker<'a> {
         typed.bare || typed.percent
     }
 
-    /// One number: the entry, else the default. None where it is faulty or stands nowhere.
+    /// One number: the entry, else the default. None where it has an error, or there is neither.
     pub fn quantity(&mut self, block: usize, field: &str) -> Option<Formula> {
-        match self.given(block, field) {
+        match self.field(block, field) {
             Some((entry, written)) => self
                 .entry(block, entry, written.value.span)
                 .map(|typed| typed.formula),
@@ -261,9 +264,9 @@ impl<'a> Checker<'a> {
         let formula = self.quantity(block, field)?;
         let value = formula.constant();
         if value.is_none()
-            && let Some((_, written)) = self.given(block, field)
+            && let Some((_, written)) = self.field(block, field)
         {
-            self.faults.push(values::needs_the_run(
+            self.diagnostics.push(values::needs_the_run(
                 written.value.span,
                 self.text(written.value.span),
             ));
@@ -276,13 +279,13 @@ impl<'a> Checker<'a> {
         self.constant(block, field).and_then(whole)
     }
 
-    /// Some(None) where the field is left out, None where it is faulty.
+    /// Some(None) where the field is left out, None where it has an error.
     #[expect(
         clippy::option_option,
         reason = "left out and faulty are different things here"
     )]
     pub fn optional(&mut self, block: usize, field: &str) -> Option<Option<Formula>> {
-        match self.given(block, field) {
+        match self.field(block, field) {
             Some(_) => self.quantity(block, field).map(Some),
             None => Some(None),
         }
@@ -290,14 +293,14 @@ impl<'a> Checker<'a> {
 
     /// The numbers of a list or range.
     pub fn quantities(&mut self, block: usize, field: &str) -> Option<Vec<Formula>> {
-        let (entry, written) = self.given(block, field)?;
+        let (entry, written) = self.field(block, field)?;
         self.entry(block, entry, written.value.span)
             .map(|typed| typed.parts())
     }
 
-    /// A text in quotes.
+    /// A string.
     pub fn text_field(&mut self, block: usize, field: &str) -> Option<String> {
-        let (_, written) = self.given(block, field)?;
+        let (_, written) = self.field(block, field)?;
         self.text_value(field, &written.value)
     }
 
@@ -313,9 +316,9 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A list of texts; one text stands for a list of one.
+    /// A list of strings; a single string is a list of one.
     pub fn texts(&mut self, block: usize, field: &str) -> Option<Vec<String>> {
-        let (_, written) = self.given(block, field)?;
+        let (_, written) = self.field(block, field)?;
         match &written.value.kind {
             ExprKind::List { items, unit: None } => {
                 let texts: Vec<Option<String>> = items
@@ -330,9 +333,9 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The block a field names.
+    /// The block that a field names.
     pub fn reference(&mut self, block: usize, field: &str, kind: Kind) -> Option<usize> {
-        let (_, written) = self.given(block, field)?;
+        let (_, written) = self.field(block, field)?;
         let span = written.value.span;
         let ExprKind::Name(name) = &written.value.kind else {
             return match written.value.kind {
@@ -363,28 +366,28 @@ impl<'a> Checker<'a> {
                     .filter_map(|(_, block)| block.name)
                     .map(|name| name.node.as_str());
                 let known: Vec<&str> = declared.take(self.most_to_suggest()).collect();
-                self.fail(fault::unknown_block_name(kind, name, span, &known))
+                self.fail(message::unknown_block_name(kind, name, span, &known))
             }
         }
     }
 
-    /// Does `work` for the entry of a field that has no number of its own, so that a ring through it is seen.
+    /// Does `work` for the entry of a field whose value is not a number, so that a dependency cycle through it is found.
     pub fn within_entry<T>(
         &mut self,
         block: usize,
         field: &str,
-        asked_at: Span,
-        work: impl FnOnce(&mut Self, &'a Expr, Place) -> Option<T>,
+        requested_at: Span,
+        work: impl FnOnce(&mut Self, &'a Expr, Context) -> Option<T>,
     ) -> Option<T> {
-        let (entry, written) = self.given(block, field)?;
-        let place = self.place(block, entry);
-        self.guarded(Node::Entry { block, entry }, asked_at, |checker| {
-            work(checker, &written.value, place)
+        let (entry, written) = self.field(block, field)?;
+        let context = self.context_of(block, entry);
+        self.guarded(Node::Entry { block, entry }, requested_at, |checker| {
+            work(checker, &written.value, context)
         })
     }
 }
 
-/// Where entry `index` of a list was written, if the list was written out entry by entry.
+/// The span of entry `index` of a list, if its entries are written one by one.
 fn entry_span(written: &Expr, index: usize, count: usize) -> Span {
     match &written.kind {
         ExprKind::List { items, .. } if items.len() == count => items[index].span,
@@ -392,7 +395,7 @@ fn entry_span(written: &Expr, index: usize, count: usize) -> Span {
     }
 }
 
-/// A whole number of at least 0 that fits.
+/// A whole number of at least 0, if it is in range.
 pub fn whole(value: f64) -> Option<u32> {
     #[expect(
         clippy::cast_possible_truncation,

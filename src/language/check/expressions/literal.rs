@@ -5,8 +5,8 @@
     reason = "a list has at most 100,000 entries"
 )]
 
-use crate::language::check::checker::{Checker, Place, Shape, Typed, literal};
-use crate::language::check::messages::{names, types as fault, values};
+use crate::language::check::checker::{Checker, Context, Shape, Typed, literal};
+use crate::language::check::messages::{names, types as message, values};
 use crate::language::syntax::ast::{Expr, ExprKind, UnitToken};
 use crate::plan::formula::Formula;
 use crate::text::source::Span;
@@ -14,7 +14,7 @@ use crate::units::unit;
 use crate::units::unit::UnitError;
 use crate::units::{Dimension, Unit};
 
-/// Longest list, written out or as a range.
+/// Most entries of a list, written one by one or as a range.
 pub const MOST_ENTRIES: usize = 100_000;
 
 /// Parts of a range, each a checked number.
@@ -41,7 +41,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    /// `number`: the number the unit belongs to, with the unit.
+    /// `number`: the number before the unit, with the unit.
     fn unit(&mut self, token: &UnitToken, number: Span) -> Option<Unit> {
         let at = |start: usize, length: usize| {
             let start = token.span.start as usize + start;
@@ -49,7 +49,7 @@ impl<'a> Checker<'a> {
         };
         match unit::parse(&token.node) {
             Ok(unit) => Some(unit),
-            // `2 kg*ratio`: the blanks around `*` are missing.
+            // `2 kg*ratio`: the spaces around `*` are missing.
             Err(UnitError::Unknown { name, start }) if start > 0 && self.is_named(&name) => {
                 let number = if number.start <= token.span.start {
                     number
@@ -62,20 +62,20 @@ impl<'a> Checker<'a> {
                 });
                 let (head, tail) = before.split_at(before.len() - (token.node.len() - start));
                 let (head, operator) = head.split_at(head.len() - 1);
-                let mended = format!("{head} {operator} {tail}");
+                let corrected = format!("{head} {operator} {tail}");
                 self.fail(names::name_glued_to_unit(
                     &name,
                     at(start, name.len()),
-                    &mended,
+                    &corrected,
                 ))
             }
             Err(UnitError::Unknown { name, start }) => {
                 self.fail(names::unknown_unit(&name, at(start, name.len())))
             }
             Err(UnitError::Exponent { text, start }) => {
-                self.fail(fault::unit_exponent(&text, at(start, text.len())))
+                self.fail(message::unit_exponent(&text, at(start, text.len())))
             }
-            Err(UnitError::TooLarge) => self.fail(fault::exponent_too_large(token.span)),
+            Err(UnitError::TooLarge) => self.fail(message::exponent_too_large(token.span)),
         }
     }
 
@@ -89,11 +89,13 @@ impl<'a> Checker<'a> {
         self.scope.meaning(name).is_some() || fields.any(|entry| entry.key.node == name)
     }
 
-    /// A list, or a range with a step, written out.
-    pub fn list(&mut self, expr: &'a Expr, place: Place) -> Option<Typed> {
+    /// A list, or a range with a step, as its entries.
+    pub fn list(&mut self, expr: &'a Expr, context: Context) -> Option<Typed> {
         match &expr.kind {
-            ExprKind::List { items, unit } => self.entries(items, unit.as_ref(), expr.span, place),
-            _ => self.written_out(expr, None, place),
+            ExprKind::List { items, unit } => {
+                self.entries(items, unit.as_ref(), expr.span, context)
+            }
+            _ => self.written_out(expr, None, context),
         }
     }
 
@@ -102,7 +104,7 @@ impl<'a> Checker<'a> {
         items: &'a [Expr],
         unit: Option<&'a UnitToken>,
         span: Span,
-        place: Place,
+        context: Context,
     ) -> Option<Typed> {
         if let Some(token) = unit {
             self.unit(token, token.span)?;
@@ -110,8 +112,8 @@ impl<'a> Checker<'a> {
         let checked: Vec<Option<Typed>> = items
             .iter()
             .map(|item| match &item.kind {
-                ExprKind::Range { .. } => self.written_out(item, unit, place),
-                _ => self.with_unit(item, unit, place),
+                ExprKind::Range { .. } => self.written_out(item, unit, context),
+                _ => self.with_unit(item, unit, context),
             })
             .collect();
         let checked: Vec<Typed> = checked.into_iter().collect::<Option<_>>()?;
@@ -122,7 +124,7 @@ impl<'a> Checker<'a> {
             .iter()
             .find(|other| other.dimension != first.dimension)
         {
-            return self.fail(fault::mismatched("[ ]", first, other));
+            return self.fail(message::mismatched("[ ]", first, other));
         }
         let (dimension, bare, percent) = (
             first.dimension,
@@ -152,11 +154,11 @@ impl<'a> Checker<'a> {
         &mut self,
         expr: &'a Expr,
         unit: Option<&UnitToken>,
-        place: Place,
+        context: Context,
     ) -> Option<Typed> {
         let bare = literal(expr)
             .filter(|number| matches!(&number.kind, ExprKind::Number { unit: None, .. }));
-        let typed = self.single(expr, place)?;
+        let typed = self.single(expr, context)?;
         match (unit, bare, typed.constant()) {
             (Some(token), Some(_), Some(value)) => {
                 let number = self.number(value, Some(token), expr.span)?;
@@ -169,21 +171,21 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Start, end and step of a range; bare numbers take the unit that stands last, or `unit` if none does.
+    /// Start, end and step of a range; bare numbers take the last unit, or `unit` if there is none.
     pub fn range_parts(
         &mut self,
         expr: &'a Expr,
         unit: Option<&'a UnitToken>,
-        place: Place,
+        context: Context,
     ) -> Option<RangeParts> {
         let ExprKind::Range { start, end, step } = &expr.kind else {
             return None;
         };
         let last = unit_of(step.as_deref().unwrap_or(end)).or(unit);
-        let start_value = self.with_unit(start, last, place);
-        let end_value = self.with_unit(end, last, place);
+        let start_value = self.with_unit(start, last, context);
+        let end_value = self.with_unit(end, last, context);
         let step_value = match step {
-            Some(step) => Some(self.with_unit(step, last, place)?),
+            Some(step) => Some(self.with_unit(step, last, context)?),
             None => None,
         };
         let (start_value, end_value) = (start_value?, end_value?);
@@ -192,7 +194,7 @@ impl<'a> Checker<'a> {
             .flatten()
         {
             if other.dimension != start_value.dimension {
-                return self.fail(fault::mismatched("..", &start_value, other));
+                return self.fail(message::mismatched("..", &start_value, other));
             }
         }
         Some(RangeParts {
@@ -207,9 +209,9 @@ impl<'a> Checker<'a> {
         &mut self,
         expr: &'a Expr,
         unit: Option<&'a UnitToken>,
-        place: Place,
+        context: Context,
     ) -> Option<Typed> {
-        let parts = self.range_parts(expr, unit, place)?;
+        let parts = self.range_parts(expr, unit, context)?;
         let Some(step) = &parts.step else {
             return self.fail(values::range_without_step(expr.span, self.text(expr.span)));
         };
@@ -229,7 +231,7 @@ impl<'a> Checker<'a> {
                 size == 0.0,
             ));
         }
-        // The step must divide the range to 1e-9 of the number of steps.
+        // The range must be a multiple of the step, to 1e-9 of the number of steps.
         if (count - count.round()).abs() > 1e-9 * count.abs().max(1.0) {
             return self.fail(values::step_does_not_divide(
                 expr.span,
@@ -274,7 +276,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The unit a literal ends with.
+/// The unit at the end of a literal.
 fn unit_of(expr: &Expr) -> Option<&UnitToken> {
     literal(expr).and_then(|number| {
         if let ExprKind::Number { unit, .. } = &number.kind {
@@ -285,7 +287,7 @@ fn unit_of(expr: &Expr) -> Option<&UnitToken> {
     })
 }
 
-/// `value · factor`, by division where the factor is a whole fraction: 51 mm is then 0.051 to the last bit.
+/// `value · factor`, by division where the factor is the reciprocal of a whole number: 51 mm is then exactly 0.051.
 pub fn scaled(value: f64, factor: f64) -> f64 {
     let inverse = (1.0 / factor).round();
     if factor < 1.0 && inverse < 1e15 && ((inverse * factor) - 1.0).abs() < 4.0 * f64::EPSILON {

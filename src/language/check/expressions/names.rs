@@ -1,9 +1,10 @@
-//! What a name means where it stands: a sibling field, then a `let`, a `param`, a block; and what is read from a block,
-//! `pendulum.energy`, or from a procedure that ran, `k0.stiffness.u`.
+//! The meaning of a name in its context: a sibling field, then a `let`, a `param`, a block; and members of a block,
+//! `pendulum.energy`, or of a procedure, `k0.stiffness.u`.
 
-use crate::language::check::checker::{Checker, Node, Place, Reads, Shape, Typed};
-use crate::language::check::declarations::{frame, specimen, striker};
-use crate::language::check::messages::{frames, names as fault, types, values};
+use crate::language::check::checker::{Checker, Context, Node, Reads, Shape, Typed};
+use crate::language::check::declarations::specimen::{self, frame};
+use crate::language::check::declarations::striker;
+use crate::language::check::messages::{frames, names as message, types, values};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Expr, ExprKind, Ident};
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
@@ -13,18 +14,18 @@ use crate::text::source::Span;
 use crate::units::Dimension;
 
 impl<'a> Checker<'a> {
-    /// The value a bare name stands for.
-    pub fn name(&mut self, name: &str, span: Span, place: Place) -> Option<Typed> {
-        if let Reads::Blow(procedure) = place.reads
+    /// The value of a bare name.
+    pub fn name(&mut self, name: &str, span: Span, context: Context) -> Option<Typed> {
+        if let Reads::Impact(procedure) = context.reads
             && let Some(block) = self.procedure(procedure)
             && let renamed = self
                 .left_under_another_name(block, name)
-                .filter(|last| self.result_of_blow(block, last.name).is_some())
-            && let Some(result) = self.result_of_blow(block, name).or(renamed)
+                .filter(|last| self.result_of_impact(block, last.name).is_some())
+            && let Some(result) = self.result_of_impact(block, name).or(renamed)
             && (!result.of_storey || self.strikes_a_storey(procedure))
         {
             if result.name != name && !self.recorded {
-                return self.fail(fault::left_under_another_name(
+                return self.fail(message::left_under_another_name(
                     self.scope.blocks[block].kind,
                     name,
                     result.name,
@@ -46,13 +47,13 @@ impl<'a> Checker<'a> {
                 ..Typed::number(formula, result.dimension, span)
             });
         }
-        if let Some((block, own)) = place.entry
+        if let Some((block, own)) = context.entry
             && let Some(entry) = self.sibling(block, own, name)
         {
             let typed = self.entry(block, entry, span)?;
-            return self.reads_allowed(typed, span, place);
+            return self.reads_allowed(typed, span, context);
         }
-        if name == "critical" && place.critical {
+        if name == "critical" && context.critical {
             return Some(Typed::number(
                 Formula::CriticalTimeStep,
                 Dimension::TIME,
@@ -70,7 +71,7 @@ impl<'a> Checker<'a> {
                         ..typed
                     },
                     span,
-                    place,
+                    context,
                 )
             }
             Some(Meaning::Block(index)) => {
@@ -85,11 +86,11 @@ impl<'a> Checker<'a> {
                     .find(|(_, block)| block.kind.result(name).is_some());
                 if let Some(owner) = owner
                     .and_then(|(_, block)| block.name)
-                    .filter(|_| matches!(place.reads, Reads::All))
+                    .filter(|_| matches!(context.reads, Reads::All))
                 {
-                    return self.fail(fault::result_without_procedure(name, &owner.node, span));
+                    return self.fail(message::result_without_procedure(name, &owner.node, span));
                 }
-                let siblings = place
+                let siblings = context
                     .entry
                     .map_or(&[][..], |(block, _)| &self.scope.blocks[block].block.fields);
                 let known = siblings
@@ -97,10 +98,10 @@ impl<'a> Checker<'a> {
                     .map(|entry| entry.key.node.as_str())
                     .filter(|key| *key != name)
                     .chain(self.names_to_suggest());
-                // After a blow its results have names of their own.
+                // After an impact its results have names of their own.
                 let known: Vec<&str> = known.collect();
-                let (results, storey) = match place.reads {
-                    Reads::Blow(procedure) => (
+                let (results, storey) = match context.reads {
+                    Reads::Impact(procedure) => (
                         schema::block(Kind::Impact).results,
                         self.strikes_a_storey(procedure),
                     ),
@@ -110,25 +111,25 @@ impl<'a> Checker<'a> {
                     .iter()
                     .filter(|result| !result.of_storey || storey)
                     .map(|result| result.name);
-                let fault = fault::unknown_name(
+                let diagnostic = message::unknown_name(
                     name,
                     span,
                     self.before(span),
                     known.into_iter().chain(results),
                 );
-                self.fail(fault)
+                self.fail(diagnostic)
             }
         }
     }
 
-    /// What stands before a place on its line.
+    /// The text before a span on its line.
     fn before(&self, span: Span) -> &'a str {
         let text = &self.sources.file(span.file).text;
         let before = &text[..text.floor_char_boundary(span.range().start)];
         before.rsplit('\n').next().unwrap_or_default()
     }
 
-    /// The entry `name` of a block, if it is one with a number and not the entry that asks.
+    /// The entry `name` of a block, if it is numeric and not the entry that asks.
     fn sibling(&self, block: usize, own: usize, name: &str) -> Option<usize> {
         let declared = &self.scope.blocks[block];
         declared
@@ -149,19 +150,19 @@ impl<'a> Checker<'a> {
         base: &'a Expr,
         name: &Ident,
         span: Span,
-        place: Place,
+        context: Context,
     ) -> Option<Typed> {
         if let ExprKind::Name(owner) = &base.kind
             && let Some(meaning) = self.scope.meaning(owner)
         {
             return match meaning {
                 Meaning::Poisoned => None,
-                Meaning::Block(block) => self.member(block, name, span, place),
-                Meaning::Value(_) => self.uncertainty(base, name, span, place),
+                Meaning::Block(block) => self.member(block, name, span, context),
+                Meaning::Value(_) => self.uncertainty(base, name, span, context),
             };
         }
         if let ExprKind::Name(owner) = &base.kind {
-            let is_sibling = place
+            let is_sibling = context
                 .entry
                 .is_some_and(|(block, own)| self.sibling(block, own, owner).is_some());
             if !is_sibling {
@@ -173,29 +174,29 @@ impl<'a> Checker<'a> {
                 if self.may_be_lost(owner) || self.scope.nameless().any(has) {
                     return None;
                 }
-                let fault = fault::unknown_name(
+                let diagnostic = message::unknown_name(
                     owner,
                     base.span,
                     self.before(base.span),
                     self.names_to_suggest(),
                 );
-                return self.fail(fault);
+                return self.fail(diagnostic);
             }
         }
-        self.uncertainty(base, name, span, place)
+        self.uncertainty(base, name, span, context)
     }
 
-    /// `.u` of a result, or of a name that stands for one.
+    /// `.u` of a result, or of a name for one.
     fn uncertainty(
         &mut self,
         base: &'a Expr,
         name: &Ident,
         span: Span,
-        place: Place,
+        context: Context,
     ) -> Option<Typed> {
-        let typed = self.value(base, place)?;
+        let typed = self.value(base, context)?;
         if name.node != "u" {
-            return self.fail(fault::no_member_of_number(&name.node, name.span));
+            return self.fail(message::no_member_of_number(&name.node, name.span));
         }
         let measured = typed
             .formula
@@ -209,7 +210,7 @@ impl<'a> Checker<'a> {
             });
         let Some(reference) = measured else {
             let text = self.text(base.span);
-            return self.fail(fault::no_uncertainty(text, name.span));
+            return self.fail(message::no_uncertainty(text, name.span));
         };
         let formula = Formula::Result(ResultReference {
             part: Part::Uncertainty,
@@ -221,12 +222,18 @@ impl<'a> Checker<'a> {
         })
     }
 
-    /// What a block gives: a result, a derived value, or a field.
-    fn member(&mut self, block: usize, name: &Ident, span: Span, place: Place) -> Option<Typed> {
+    /// A member of a block: a result, a derived value, or a field.
+    fn member(
+        &mut self,
+        block: usize,
+        name: &Ident,
+        span: Span,
+        context: Context,
+    ) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
         let renamed = self.left_under_another_name(block, &name.node);
         if let Some(now) = renamed.filter(|_| !self.recorded) {
-            return self.fail(fault::left_under_another_name(
+            return self.fail(message::left_under_another_name(
                 declared.kind,
                 &name.node,
                 now.name,
@@ -237,12 +244,14 @@ impl<'a> Checker<'a> {
         if let (Some(result), Some(procedure)) = (known, declared.procedure) {
             let unloads = declared.kind.kind == Kind::Unload;
             if result.of_storey && !unloads && storey_check::struck_frame(self, block).is_none() {
-                let fault = frames::result_of_a_storey(result.name, name.span, declared.block.head);
-                return self.fail(fault);
+                let diagnostic =
+                    frames::result_of_a_storey(result.name, name.span, declared.block.head);
+                return self.fail(diagnostic);
             }
             if result.of_storey && unloads && !self.tests_a_frame(block) {
-                let fault = frames::result_of_a_frame(result.name, name.span, declared.block.head);
-                return self.fail(fault);
+                let diagnostic =
+                    frames::result_of_a_frame(result.name, name.span, declared.block.head);
+                return self.fail(diagnostic);
             }
             let reference = ResultReference {
                 procedure,
@@ -260,7 +269,7 @@ impl<'a> Checker<'a> {
                 shape,
                 ..Typed::number(formula, result.dimension, span)
             };
-            return self.reads_allowed(typed, span, place);
+            return self.reads_allowed(typed, span, context);
         }
         if let Some(export) = declared.kind.export(&name.node) {
             let formula = match declared.kind.kind {
@@ -281,7 +290,7 @@ impl<'a> Checker<'a> {
                 .iter()
                 .position(|entry| entry.key.node == name.node)
             else {
-                return self.fail(fault::field_not_given(
+                return self.fail(message::field_not_given(
                     declared.kind,
                     declared.name,
                     &name.node,
@@ -295,7 +304,7 @@ impl<'a> Checker<'a> {
                     "a time step that follows `critical`",
                 ));
             }
-            return self.reads_allowed(Typed { span, ..typed }, span, place);
+            return self.reads_allowed(Typed { span, ..typed }, span, context);
         }
         let (kind, owner) = (declared.kind, declared.name);
         // `hit.max-displacement` is read as a difference, and `psd fmt` writes it as one: `hit.max - displacement`.
@@ -307,47 +316,47 @@ impl<'a> Checker<'a> {
                 ..name.span
             };
             self.explained.push(whole);
-            return self.fail(fault::minus_in_name(&text[..end], &joined, whole));
+            return self.fail(message::minus_in_name(&text[..end], &joined, whole));
         }
-        let fault = fault::unknown_result(kind, owner, &name.node, name.span);
-        self.fail(fault)
+        let diagnostic = message::unknown_result(kind, owner, &name.node, name.span);
+        self.fail(diagnostic)
     }
 
-    /// Whether a procedure, by its place, strikes one storey of a frame.
+    /// Whether a procedure strikes one storey of a frame.
     fn strikes_a_storey(&mut self, procedure: ProcedureId) -> bool {
         self.procedure(procedure)
             .is_some_and(|block| storey_check::struck_frame(self, block).is_some())
     }
 
-    /// Whether what a block tests is a frame.
+    /// Whether a block tests a frame.
     fn tests_a_frame(&mut self, block: usize) -> bool {
         self.tested(block)
             .is_some_and(|specimen| frame::is_frame(self, specimen))
     }
 
-    /// Holds every result that a value reads against what may be read here.
-    fn reads_allowed(&mut self, typed: Typed, span: Span, place: Place) -> Option<Typed> {
+    /// Checks that every result that a value reads may be read in this context.
+    fn reads_allowed(&mut self, typed: Typed, span: Span, context: Context) -> Option<Typed> {
         let mut references = Vec::new();
         typed.formula.collect_references(&mut references);
         for reference in references {
             let owner = self.procedure(reference.procedure)?;
             let head = self.scope.blocks[owner].block.head;
             let text = self.text(span);
-            match place.reads {
+            match context.reads {
                 Reads::Nothing(what) => {
                     return self.fail(values::result_before_the_run(text, span, what, head));
                 }
-                Reads::Before(procedure) | Reads::Blow(procedure)
+                Reads::Before(procedure) | Reads::Impact(procedure)
                     if reference.procedure == procedure =>
                 {
                     return self.fail(values::own_result(text, span, head));
                 }
-                Reads::Before(procedure) | Reads::Blow(procedure)
+                Reads::Before(procedure) | Reads::Impact(procedure)
                     if reference.procedure > procedure =>
                 {
                     return self.fail(values::result_of_later_procedure(text, span, head));
                 }
-                Reads::Before(_) | Reads::Blow(_) | Reads::All => {}
+                Reads::Before(_) | Reads::Impact(_) | Reads::All => {}
             }
         }
         Some(typed)
@@ -358,23 +367,23 @@ impl<'a> Checker<'a> {
         self.scope.procedure(id)
     }
 
-    /// The value of an entry of a block, as its field wants it.
-    pub fn entry(&mut self, block: usize, entry: usize, asked_at: Span) -> Option<Typed> {
-        self.once(Node::Entry { block, entry }, asked_at, |checker| {
+    /// The value of an entry of a block, checked against its field.
+    pub fn entry(&mut self, block: usize, entry: usize, requested_at: Span) -> Option<Typed> {
+        self.once(Node::Entry { block, entry }, requested_at, |checker| {
             checker.entry_value(block, entry)
         })
     }
 
     /// The value of a `let` or `param`.
-    pub fn declared_value(&mut self, index: usize, asked_at: Span) -> Option<Typed> {
+    pub fn declared_value(&mut self, index: usize, requested_at: Span) -> Option<Typed> {
         self.used.insert(index);
-        self.once(Node::Value(index), asked_at, |checker| {
+        self.once(Node::Value(index), requested_at, |checker| {
             checker.value_of_declaration(index)
         })
     }
 }
 
-/// A name and all that a minus sign joins to it, with blanks or without: how long that is, bytes, and the name that it would be.
+/// A name with everything that minus signs join to it, with or without spaces: the length in bytes, and the name with underscores.
 fn with_minus_signs(text: &str) -> (usize, String) {
     let word = |from: usize| {
         let rest = &text[from..];

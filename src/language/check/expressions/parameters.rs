@@ -1,33 +1,25 @@
-//! `let` and `param`: their values, and what `--set` makes of a parameter.
+//! `let` and `param`: their values. A value given from outside the plan, by `--set` or by binding, takes the context of a parameter's own.
 
 use std::collections::BTreeMap;
 
-use crate::language::check::checker::{Checker, Place, Reads, Shape, Typed};
+use crate::language::check::checker::{Checker, Context, Reads, Shape, Typed};
 use crate::language::check::messages::{names, types, values};
+use crate::language::check::scope::{DeclaredValue, Setting};
 use crate::language::syntax;
 use crate::language::syntax::ast::{Ast, Expr, ItemKind};
+use crate::plan::formula::Formula;
 use crate::plan::{Interval, Parameter};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::Sources;
 
-/// Reads the values of `--set`, each as a file of its own, so that a fault in it can be shown. Later ones win.
+/// Parses the values of `--set`, each as a source file of its own, so that an error in it can be shown. Later ones win.
 pub fn read_settings(
     sources: &mut Sources,
-    asts: &[Ast],
+    trees: &[Ast],
     settings: &[(String, String)],
-    faults: &mut Vec<Diagnostic>,
-) -> BTreeMap<String, Expr> {
-    let known: Vec<&str> = asts
-        .iter()
-        .flat_map(|ast| &ast.items)
-        .filter_map(|item| {
-            if let ItemKind::Param { name, .. } = &item.kind {
-                Some(name.node.as_str())
-            } else {
-                None
-            }
-        })
-        .collect();
+    errors: &mut Vec<Diagnostic>,
+) -> BTreeMap<String, Setting> {
+    let known = names_of_parameters(trees);
     let last: BTreeMap<&str, &str> = settings
         .iter()
         .map(|(name, value)| (name.as_str(), value.as_str()))
@@ -35,23 +27,23 @@ pub fn read_settings(
     let mut read = BTreeMap::new();
     for (name, value) in last {
         if !known.contains(&name) {
-            faults.push(names::unknown_parameter(name, &known));
+            errors.push(names::unknown_parameter(name, &known));
             continue;
         }
         let file = sources.add(format!("--set {name}"), format!("param {name} = {value}"));
-        let (ast, found) = syntax::parse(sources, file);
+        let (tree, found) = syntax::parse(sources, file);
         let broken = !found.is_empty();
-        faults.extend(found);
-        match ast.items.into_iter().next().map(|item| item.kind) {
+        errors.extend(found);
+        match tree.items.into_iter().next().map(|item| item.kind) {
             Some(ItemKind::Param {
                 value,
                 bounds: None,
                 ..
             }) if is_one_line(&sources.file(file).text) => {
-                read.insert(name.to_owned(), value);
+                read.insert(name.to_owned(), Setting::Written(value));
             }
             _ if broken => {}
-            _ => faults.push(names::setting_is_no_value(
+            _ => errors.push(names::setting_is_no_value(
                 name,
                 file,
                 sources.file(file).text.len(),
@@ -61,32 +53,43 @@ pub fn read_settings(
     read
 }
 
-/// A value is one line.
+/// The names of every `param`, in the order of the files.
+pub fn names_of_parameters(trees: &[Ast]) -> Vec<&str> {
+    let items = trees.iter().flat_map(|tree| &tree.items);
+    items
+        .filter_map(|item| match &item.kind {
+            ItemKind::Param { name, .. } => Some(name.node.as_str()),
+            _ => None,
+        })
+        .collect()
+}
+
+/// A value must be on one line.
 fn is_one_line(text: &str) -> bool {
     !text.contains(['\n', '\r'])
 }
 
 impl<'a> Checker<'a> {
-    /// The value of a declaration; of a parameter, the one that was set.
+    /// The value of a declaration; for a parameter that is set, the value given.
     pub fn value_of_declaration(&mut self, index: usize) -> Option<Typed> {
         let declared = &self.scope.values[index];
         if declared.keyword == "let" {
-            let place = Place {
+            let context = Context {
                 entry: None,
                 reads: Reads::All,
                 critical: false,
             };
-            return self.value(declared.value, place);
+            return self.value(declared.value, context);
         }
-        let place = Place {
+        let context = Context {
             entry: None,
             reads: Reads::Nothing("a parameter"),
             critical: false,
         };
-        let own = self.single(declared.value, place);
+        let own = self.single(declared.value, context);
         let bounds = declared
             .bounds
-            .map(|bounds| self.bounds_of_parameter(bounds, place, own.as_ref()));
+            .map(|bounds| self.bounds_of_parameter(bounds, context, own.as_ref()));
         let own = own?;
         let bounds = match bounds {
             Some(bounds) => bounds?,
@@ -103,20 +106,57 @@ impl<'a> Checker<'a> {
                 own.dimension,
             ));
         }
-        let Some(written) = declared.setting else {
-            return Some(own);
+        match declared.setting {
+            None => Some(own),
+            Some(setting) => self.value_of_setting(declared, setting, context, &own, bounds),
+        }
+    }
+
+    /// The value given from outside the plan, if it has the dimension of the parameter's own and is within its bounds.
+    fn value_of_setting(
+        &mut self,
+        declared: &'a DeclaredValue<'a>,
+        setting: &'a Setting,
+        context: Context,
+        own: &Typed,
+        bounds: Interval,
+    ) -> Option<Typed> {
+        let name = &declared.name.node;
+        let set = match setting {
+            Setting::Written(written) => {
+                let set = self.single(written, context)?;
+                self.expect(set, own.dimension, name, written)?
+            }
+            Setting::Bound(quantity) => {
+                let span = declared.value.span;
+                if quantity.dimension != own.dimension {
+                    return self.fail(types::wrong_dimension_of_quantity(
+                        *quantity,
+                        own.dimension,
+                        name,
+                        span,
+                    ));
+                }
+                if !quantity.value.is_finite() {
+                    return self.fail(values::not_finite(span));
+                }
+                let formula = Formula::Constant(quantity.value);
+                Typed::number(formula, quantity.dimension, span)
+            }
         };
-        let set = self.single(written, place)?;
-        let set = self.expect(set, own.dimension, &declared.name.node, written)?;
         let value = set.constant()?;
         if !bounds.contains(value) {
+            let text = match setting {
+                Setting::Written(_) => self.text(set.span).to_owned(),
+                Setting::Bound(quantity) => quantity.in_plan_syntax(),
+            };
             let at = declared
                 .bounds
                 .map_or(declared.value.span, |bounds| bounds.span);
             return self.fail(values::setting_out_of_range(
-                &declared.name.node,
-                self.text(written.span),
-                written.span,
+                name,
+                &text,
+                set.span,
                 bounds,
                 own.dimension,
                 at,
@@ -128,10 +168,10 @@ impl<'a> Checker<'a> {
     fn bounds_of_parameter(
         &mut self,
         written: &'a Expr,
-        place: Place,
+        context: Context,
         own: Option<&Typed>,
     ) -> Option<Interval> {
-        let (interval, dimension) = self.interval(written, place)?;
+        let (interval, dimension) = self.interval(written, context)?;
         if let Some(own) = own
             && own.dimension != dimension
         {
@@ -144,7 +184,7 @@ impl<'a> Checker<'a> {
         Some(interval)
     }
 
-    /// The parameters of the run, in the order declared.
+    /// The parameters of the run, in the order of declaration.
     pub fn parameters(&mut self) -> Vec<Parameter> {
         let mut parameters = Vec::new();
         for index in 0..self.scope.values.len() {

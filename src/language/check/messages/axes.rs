@@ -1,4 +1,4 @@
-//! Faults of the axes of a real rig: E615, E616, E626, E636, E637. In: what was found and where. Out: diagnostics.
+//! Errors of the axes of a real rig: E615, E616, E626, E636, E637. In: names, numbers and spans. Out: diagnostics.
 
 use crate::plan::Dialect;
 use crate::text::diagnostic::{Code, Diagnostic};

@@ -1,7 +1,7 @@
-//! Faults of cycles and of sequences of blows.
+//! Errors of cycles and of impact series.
 
 use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use crate::text::source::{Span, Spanned};
 
 pub fn amplitudes_twice(span: Span, first: Span) -> Diagnostic {
     Diagnostic::new(
@@ -33,18 +33,22 @@ pub fn no_use_with_rate(field: &str, span: Span, rate: Span) -> Diagnostic {
     .help(format!("leave out `{field}`, or `rate`"))
 }
 
-/// `what` begins where `before` ended.
-pub fn blow_on_blow(
-    (what, head): (&str, Span),
-    (before, before_at, ends): (&str, Span, &str),
+/// `what` begins at the state in which `before` ended.
+pub fn impact_on_moving_specimen(
+    what: Spanned<&str>,
+    before: Spanned<&str>,
+    ends: &str,
     help: &str,
 ) -> Diagnostic {
     Diagnostic::new(
         Code::BlowOnBlow,
-        format!("this {what} begins where `{before}` ended: under load, and at rest"),
+        format!(
+            "this {} begins where `{}` ended: under load, and at rest",
+            what.node, before.node
+        ),
     )
-    .at(head, "begins there")
-    .at(before_at, ends.to_owned())
+    .at(what.span, "begins there")
+    .at(before.span, ends.to_owned())
     .help(help)
 }
 
@@ -67,7 +71,7 @@ pub fn levels_do_not_rise(field: &str, span: Span) -> Diagnostic {
     .help("put them in order, so that the first that fails is the least that does")
 }
 
-pub fn condition_without_blow(text: &str, span: Span) -> Diagnostic {
+pub fn condition_without_result(text: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::ConditionWithoutBlow,
         format!("`{text}` reads no result of a blow: it is the same after every one"),

@@ -1,4 +1,4 @@
-//! Faults of used files and of data files: E5xx.
+//! Errors of used files and of data files: E5xx.
 
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
@@ -25,7 +25,7 @@ pub fn refused(path: &str, reason: &str, span: Span) -> Diagnostic {
 }
 
 pub fn use_cycle(chain: &[String], path: &str, span: Span) -> Diagnostic {
-    let ring = chain
+    let cycle = chain
         .iter()
         .map(String::as_str)
         .chain([path])
@@ -33,7 +33,7 @@ pub fn use_cycle(chain: &[String], path: &str, span: Span) -> Diagnostic {
         .join(" → ");
     Diagnostic::new(
         Code::UseCycle,
-        format!("files use each other in a ring: {ring}"),
+        format!("files use each other in a ring: {cycle}"),
     )
     .at(span, "closes the ring")
     .help("move what both need into a third file")

@@ -1,9 +1,9 @@
-//! Faults and warnings of frames and of the ground under them: E62x, W712 and W713.
+//! Errors and warnings of frames and of their ground motion: E62x, W712 and W713.
 
 use super::shown;
 use crate::language::syntax::ast::Ident;
 use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use crate::text::source::{Span, Spanned};
 use crate::units::Dimension;
 use crate::units::display::significant;
 
@@ -61,19 +61,21 @@ pub fn storey_stiffness_twice(number: usize, span: Span) -> Diagnostic {
     .help("keep `stiffness`, of the whole storey, or `column_stiffness`, of one of its two columns")
 }
 
-/// A stiffness (N/m, by the name of its field) beside a behaviour that begins with another (N/m).
+/// A stiffness \[N/m\], by the name of its field, beside a model with a different initial stiffness \[N/m\].
 pub fn storey_bends_otherwise(
     number: usize,
-    (field, stated, said): (&str, f64, Span),
-    (initial, bends): (f64, Span),
+    field: &str,
+    stated: Spanned<f64>,
+    model: Spanned<f64>,
 ) -> Diagnostic {
+    let (stated_at, model_at) = (stated.span, model.span);
     let (stated, initial) = (
-        shown(stated, Dimension::STIFFNESS),
-        shown(initial, Dimension::STIFFNESS),
+        shown(stated.node, Dimension::STIFFNESS),
+        shown(model.node, Dimension::STIFFNESS),
     );
     Diagnostic::new(Code::StoreyBendsOtherwise, format!("storey {number} is said to have {stated}, and its behaviour begins with {initial}"))
-        .at(said, format!("the run integrates with {stated}"))
-        .at(bends, format!("and a virtual rig bends {initial}"))
+        .at(stated_at, format!("the run integrates with {stated}"))
+        .at(model_at, format!("and a virtual rig bends {initial}"))
         .help(format!(
             "remove `{field}`, so that the behaviour says it; or state how well it is known: `stiffness_uncertainty` of a third of what they are apart by, or more"
         ))
@@ -135,19 +137,19 @@ pub fn one_degree_of_freedom(
     span: Span,
     declared: Option<Span>,
 ) -> Diagnostic {
-    let fault = Diagnostic::new(
+    let diagnostic = Diagnostic::new(
         Code::OneDegreeOfFreedom,
         format!("`{keyword}` drives one actuator, and the frame `{specimen}` has {axes}"),
     )
     .at(span, "one degree of freedom");
-    let fault = match declared {
-        Some(declared) => fault.at(declared, format!("{axes} storeys")),
-        None => fault,
+    let diagnostic = match declared {
+        Some(declared) => diagnostic.at(declared, format!("{axes} storeys")),
+        None => diagnostic,
     };
-    fault.help("test the storeys by `shake`, `impact`, `escalate` or `unload`, or a specimen of one degree of freedom in a plan of its own")
+    diagnostic.help("test the storeys by `shake`, `impact`, `escalate` or `unload`, or a specimen of one degree of freedom in a plan of its own")
 }
 
-/// A frame, and no word of which floor the striker hits.
+/// A frame without the floor that the striker hits.
 pub fn which_storey(specimen: &str, storeys: usize, at: Span, declared: Span) -> Diagnostic {
     Diagnostic::new(
         Code::WhichStorey,
@@ -233,7 +235,7 @@ pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {
     .help("give one ratio for each mode, the longest period first, or one number: Rayleigh damping")
 }
 
-/// A ratio that would be below 0.
+/// A damping ratio below 0 within its uncertainty.
 pub fn damping_too_uncertain(uncertainty: f64, least: f64, span: Span) -> Diagnostic {
     let percent = |number: f64| format!("{} %", significant(100.0 * number, 2));
     let of = format!("the damping ratio of {} would be below 0", percent(least));

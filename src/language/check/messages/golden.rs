@@ -1,4 +1,4 @@
-//! Faults of `golden { … }`.
+//! Errors of `golden { … }`.
 
 use super::{shown, suggestion};
 use crate::text::diagnostic::{Code, Diagnostic};

@@ -1,4 +1,4 @@
-//! Faults of how a run is integrated and driven: E64x, W71x and W718.
+//! Errors of integration and control: E64x, W71x and W718.
 
 use super::shown;
 use crate::plan::Integrator;
@@ -41,7 +41,7 @@ pub fn unstable(span: Span, integrator: Integrator, step: f64, limit: f64) -> Di
     .help("write `time_step = critical / 20`; `allow_unstable = true` runs it all the same")
 }
 
-/// α-OS with a `K_I` (N/m) less than the specimen's stiffness, within the limit (s) that this leaves.
+/// α-OS with a `K_I` \[N/m\] below the specimen's stiffness, within the limit \[s\] that follows.
 pub fn stiffer_than_operator(span: Span, specimen: f64, operator: f64, limit: f64) -> Diagnostic {
     let (specimen, operator) = (
         shown(specimen, Dimension::STIFFNESS),
@@ -56,7 +56,7 @@ pub fn stiffer_than_operator(span: Span, specimen: f64, operator: f64, limit: f6
         .help("take the high end of what the ramp finds: a `stiffness` above the specimen's is stable for every step")
 }
 
-/// The tangent form with a bound on its tangent (N/m) below the specimen's stiffness.
+/// The tangent form with a bound on its tangent \[N/m\] below the specimen's stiffness.
 pub fn stiffer_than_tangent(span: Span, specimen: f64, bound: f64) -> Diagnostic {
     let (specimen, bound) = (
         shown(specimen, Dimension::STIFFNESS),
@@ -79,11 +79,11 @@ pub fn continuous_on_a_real_rig(dialect: &str, span: Span) -> Diagnostic {
         .help("write `mode = step_and_pause`; or use a rig that speaks `native`, which has `GLIDE`, or a virtual rig")
 }
 
-pub fn read_apart(sweep: Span, link: Span, told: String) -> Diagnostic {
+pub fn read_apart(sweep: Span, link: Span, label: String) -> Diagnostic {
     let message = "a damping sweep reads on the way, and this rig reads displacement and force one after the other";
     Diagnostic::new(Code::ReadApart, message)
         .at(sweep, "the way between the two would be taken for damping")
-        .at(link, told)
+        .at(link, label)
         .help("give the damping instead, as in `damping = 6 N*s/m`; or use one device that speaks `native`, for both")
 }
 
@@ -99,39 +99,39 @@ pub fn stops_on_the_way(field: &str, span: Span, mode: Span) -> Diagnostic {
     ))
 }
 
-pub fn damping_twice(computed: Span, felt: Span) -> Diagnostic {
+pub fn damping_twice(computed: Span, measured: Span) -> Diagnostic {
     let message = "damping counts twice: in continuous mode the damper of the specimen is in the force that is read";
     Diagnostic::new(Code::DampingTwice, message)
         .at(computed, "computed here")
-        .at(felt, "and felt here, at the speed of the actuator")
+        .at(measured, "and felt here, at the speed of the actuator")
         .help("leave the procedure's damping out, or make it what the specimen's does not show: its damping is felt divided by the time scale")
 }
 
-/// An actuator that is late.
+/// An actuator with a delay.
 pub struct Late<'a> {
     pub name: &'a str,
-    /// That one cycle takes up, over that of the vibration.
+    /// The energy that one cycle absorbs, over that of the vibration.
     pub energy: f64,
-    /// At which a run is held, over the input energy.
+    /// The limit at which a run is held, over the input energy.
     pub bound: f64,
-    /// Of each increment.
+    /// As a fraction of each increment.
     pub short: f64,
-    /// s of rig time
+    /// Laboratory time \[s\].
     pub lag: f64,
-    /// s of virtual time
+    /// Simulated time \[s\].
     pub delay: f64,
-    /// What being late amounts to.
+    /// The effect of the delay.
     pub damping_ratio: f64,
     pub remedy: Remedy,
 }
 
-/// What would keep a run below its bound.
+/// A change that would keep a run below its bound.
 pub enum Remedy {
-    /// A time step of at most this, s.
+    /// A time step of at most this \[s\].
     Shorter(f64),
     /// A time scale of at least this.
     Slower(f64),
-    /// A pause that is longer by this, s.
+    /// A pause that is longer by this \[s\].
     Longer(f64),
 }
 

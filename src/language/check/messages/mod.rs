@@ -1,7 +1,9 @@
 //! The wording of the diagnostics of the check, one file per subject. In: names, values and spans.
-//! Out: diagnostics. They decide nothing.
+//! Out: diagnostics. They make no decision.
 
-use crate::language::syntax::limits::FAULTS;
+use crate::language::syntax::ast::Ident;
+use crate::language::syntax::limits::ERRORS;
+use crate::schema::BlockKind;
 use crate::text::diagnostic::{Code, Diagnostic, Severity};
 use crate::units::{Dimension, display};
 
@@ -18,21 +20,28 @@ pub mod types;
 pub mod values;
 pub mod whole;
 
-/// Leaves the first of many faults, errors before warnings, and counts the others.
-pub fn cap(faults: &mut Vec<Diagnostic>) {
-    let errors = faults.iter().filter(|fault| fault.is_error()).count();
-    let mut left = [FAULTS, FAULTS.saturating_sub(errors)];
+/// Keeps the first diagnostics of many, errors before warnings, and counts the others.
+pub fn cap(diagnostics: &mut Vec<Diagnostic>) {
+    let errors = diagnostics
+        .iter()
+        .filter(|diagnostic| diagnostic.is_error())
+        .count();
+    let mut left = [ERRORS, ERRORS.saturating_sub(errors)];
     let mut out: Vec<Diagnostic> = Vec::new();
-    for fault in std::mem::take(faults) {
-        let left = &mut left[usize::from(!fault.is_error())];
+    for diagnostic in std::mem::take(diagnostics) {
+        let left = &mut left[usize::from(!diagnostic.is_error())];
         if *left > 0 {
             *left -= 1;
-            faults.push(fault);
+            diagnostics.push(diagnostic);
         } else {
-            out.push(fault);
+            out.push(diagnostic);
         }
     }
-    let Some(first) = out.iter().find(|fault| fault.is_error()).or(out.first()) else {
+    let Some(first) = out
+        .iter()
+        .find(|diagnostic| diagnostic.is_error())
+        .or(out.first())
+    else {
         return;
     };
     let one = if first.is_error() {
@@ -41,7 +50,7 @@ pub fn cap(faults: &mut Vec<Diagnostic>) {
         Severity::Warning
     };
     let message = format!(
-        "{} more faults are not listed: a list has at most {FAULTS}",
+        "{} more faults are not listed: a list has at most {ERRORS}",
         out.len()
     );
     let more = Diagnostic {
@@ -52,10 +61,18 @@ pub fn cap(faults: &mut Vec<Diagnostic>) {
         .span()
         .into_iter()
         .fold(more, |more, span| more.at(span, "the first of them"));
-    faults.push(more.help("mend those that are listed first"));
+    diagnostics.push(more.help("mend those that are listed first"));
 }
 
-/// A value as a person writes it: `16 mm`, not `16.00 mm`.
+/// The name of a block in a message: ``specimen `beam` ``.
+pub fn owner(kind: &BlockKind, name: Option<&Ident>) -> String {
+    name.map_or_else(
+        || format!("`{}`", kind.words()),
+        |name| format!("{} `{}`", kind.words(), name.node),
+    )
+}
+
+/// A value as it is usually written: `16 mm`, not `16.00 mm`.
 pub fn shown(value: f64, dimension: Dimension) -> String {
     display::plain(value, dimension, 4)
 }
@@ -70,7 +87,7 @@ pub fn all_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     joined(words, "and")
 }
 
-/// Names of one list, at most: what a plan declares has no bound.
+/// Most names of one list: a plan may declare any number.
 const NAMED: usize = 40;
 
 fn joined<'a>(words: impl IntoIterator<Item = &'a str>, by: &str) -> String {
@@ -91,7 +108,7 @@ fn joined<'a>(words: impl IntoIterator<Item = &'a str>, by: &str) -> String {
     }
 }
 
-/// "did you mean `x`?", or what is known.
+/// "did you mean `x`?", or a list of the known names.
 pub fn suggestion<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
     match crate::text::suggest::nearest(written, known.iter().copied()) {

@@ -1,4 +1,4 @@
-//! Faults and warnings of real rigs: E606 to E614, E619, W707, W708, W711, W727. In: what was found and where. Out: diagnostics.
+//! Errors and warnings of real rigs: E606 to E614, E619, W707, W708, W711, W727. In: names, numbers and spans. Out: diagnostics.
 
 use super::shown;
 use crate::language::syntax::ast::Ident;
@@ -8,7 +8,7 @@ use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
-/// The force of a probe over the noise of a reading, at least.
+/// Least ratio of the force of a probe to the noise of a reading.
 pub const GATE_OVER_NOISE: f64 = 10.0;
 
 /// `a`, `b` and `c`
@@ -62,7 +62,7 @@ pub fn incomplete(
     .help(help.join("\n"))
 }
 
-pub fn nobody_named(rig: Span) -> Diagnostic {
+pub fn no_operator_named(rig: Span) -> Diagnostic {
     Diagnostic::new(Code::NobodyNamed, "a real rig moves for somebody with a name, and nobody is named")
         .at(rig, "moves a real specimen")
         .help("who runs the test is named by `--operator \"A. Tester\"`, or by `operator` in the `plan` block")
@@ -119,8 +119,8 @@ pub fn cannot_move(field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
     .help(help)
 }
 
-/// `own`: a load cell was named; else the device that moves was to weigh too.
-pub fn cannot_weigh(own: bool, field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
+/// `own`: a load cell was named; else the device that moves was to measure the force too.
+pub fn cannot_measure_force(own: bool, field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
     let name = dialect.name();
     let help = match dialect {
         Dialect::Modbus(_) => {
@@ -249,10 +249,10 @@ pub fn not_a_day(day: &str, span: Span) -> Diagnostic {
     .help("write year, month and day, as in `\"2027-03-01\"`")
 }
 
-/// `given`: the watchdog stands at `at`; else the device does whose request waits longest.
+/// `given`: the watchdog is specified at `at`; else the device with the longest request is.
 pub fn watchdog_too_short(watchdog: f64, silence: f64, given: bool, at: Span) -> Diagnostic {
     let time = |value: f64| shown(value, Dimension::TIME);
-    // Down to a whole millisecond, so that seven of it fit in.
+    // Rounded down to a whole millisecond, so that seven of it are within.
     let shorter = (watchdog / 7.0 * 1e3).floor() / 1e3;
     let (watchdog, silence) = (time(watchdog), time(silence));
     let label = if given {
@@ -308,7 +308,7 @@ pub fn not_certifiable(rig: &str, head: Span, reference: bool, due: bool) -> Dia
     .help(format!("add to the rig\n{lines}"))
 }
 
-/// `of`: ` of axis 2`, where it is one axis's own.
+/// `of`: ` of axis 2`, where it belongs to one axis.
 pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::DeviceNotPinned,
@@ -321,7 +321,7 @@ pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> 
     .help("write the serial number that must answer, as in\nserial_number: \"PSD-0001\"")
 }
 
-pub fn nobody_to_free_it(at: Span) -> Diagnostic {
+pub fn no_operator_to_free_it(at: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NobodyToFreeIt,
         "nobody can take the specimen of a virtual rig off its load cell".to_owned(),
@@ -330,18 +330,28 @@ pub fn nobody_to_free_it(at: Span) -> Diagnostic {
     .help("write `after: start`: the rig goes back to where it began, and reads its zero there")
 }
 
-/// `of`: what brings a reading about by itself, how much, and what it may come to (SI).
+/// A source of random changes of a reading.
+#[derive(Clone, Copy)]
+pub struct ReadingScatter {
+    pub name: &'static str,
+    /// In SI units.
+    pub size: f64,
+    /// The largest change that it may cause, in SI units.
+    pub reach: f64,
+}
+
 pub fn drift_within_noise(
     what: &str,
     allowed: f64,
-    (name, size, reach): (&str, f64, f64),
+    scatter: ReadingScatter,
     dimension: Dimension,
     at: Span,
 ) -> Diagnostic {
+    let name = scatter.name;
     let (allowed, size, reach) = (
         shown(allowed, dimension),
-        shown(size, dimension),
-        shown(reach, dimension),
+        shown(scatter.size, dimension),
+        shown(scatter.reach, dimension),
     );
     Diagnostic::new(
         Code::DriftWithinNoise,
@@ -355,9 +365,9 @@ pub fn drift_within_noise(
     ))
 }
 
-/// `probe` m, of which the softest specimen that passes (N/m) makes too little force beside the noise of a reading, N.
+/// A `probe` \[m\] with which the softest acceptable specimen \[N/m\] gives too little force beside the noise of a reading \[N\].
 pub fn gate_within_noise(probe: f64, softest: f64, noise: f64, at: Span) -> Diagnostic {
-    // Two digits, upwards.
+    // Two digits, rounded up.
     let least = GATE_OVER_NOISE * noise / softest;
     let digit = 10f64.powf(least.log10().floor() - 1.0);
     let least = (least / digit * (1.0 - 1e-9)).ceil() * digit;

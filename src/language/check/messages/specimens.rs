@@ -1,4 +1,4 @@
-//! Faults of specimens: E401 of a relaxation, E630 to E634, E649, E650, and W715, W724, W726.
+//! Errors of specimens: E401 of a relaxation, E630 to E634, E649, E650, and W715, W724, W726.
 
 use super::shown;
 use crate::language::syntax::ast::Ident;
@@ -7,7 +7,7 @@ use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
-pub fn corners_of_two_lengths(
+pub fn backbone_lists_differ(
     displacements: Span,
     forces: Span,
     counts: (usize, usize),
@@ -21,8 +21,8 @@ pub fn corners_of_two_lengths(
     .help("give both lists as many entries")
 }
 
-/// `place` counts from 0.
-pub fn corner(place: usize, span: Span, label: &str, help: &str) -> Diagnostic {
+/// `place` is the index from 0.
+pub fn backbone_point(place: usize, span: Span, label: &str, help: &str) -> Diagnostic {
     Diagnostic::new(
         Code::CornersDoNotFit,
         format!("corner {} does not follow from the one before", place + 1),
@@ -31,7 +31,7 @@ pub fn corner(place: usize, span: Span, label: &str, help: &str) -> Diagnostic {
     .help(help)
 }
 
-/// A row of a table, its line from 1 and its text; without one: what the file as a whole lacks.
+/// A row of a table, its line number from 1 and its text; without one the error is of the whole file.
 pub fn table_file(
     file: &str,
     row: Option<&(usize, String)>,
@@ -57,7 +57,7 @@ pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
     .help("remove `most`, or remove `breaks` and let the criterion choose")
 }
 
-/// A backbone that falls before it yields.
+/// A backbone that descends before it yields.
 pub fn capped_before_yield(displacement: f64, yielded: f64, span: Span) -> Diagnostic {
     let [displacement, yielded] =
         [displacement, yielded].map(|place| shown(place, Dimension::LENGTH));
@@ -69,7 +69,7 @@ pub fn capped_before_yield(displacement: f64, yielded: f64, span: Span) -> Diagn
     .help(format!("a `capping_displacement` beyond {yielded}"))
 }
 
-/// `lost`: the share of a force that is gone after long.
+/// `lost`: the fraction of a force that is lost after a long time.
 pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnostic {
     let longest = shown(longest, Dimension::TIME);
     let percent = |number: f64| crate::units::display::significant(100.0 * number, 3);
@@ -87,7 +87,7 @@ pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnost
     ))
 }
 
-/// The law ends before it has begun.
+/// The law ends before it begins.
 pub fn relaxes_too_short(longest: f64, reference_time: f64, span: Span) -> Diagnostic {
     let times = [longest, reference_time].map(|time| shown(time, Dimension::TIME));
     Diagnostic::new(
@@ -104,7 +104,7 @@ pub fn relaxes_too_short(longest: f64, reference_time: f64, span: Span) -> Diagn
     ))
 }
 
-/// The readings of a pause span so much of time: last over first.
+/// The readings of a pause cover this range of time, last over first.
 pub fn few_decades(readings: u32, span: Span) -> Diagnostic {
     let spanned = u64::from(readings) * u64::from(readings);
     let message = format!("{readings} readings in a pause tell no law of relaxation from another");
@@ -125,7 +125,7 @@ pub fn relaxation_without_hold(relaxation: Span) -> Diagnostic {
     .help("add `pause = 5 s`, for instance")
 }
 
-/// Two arguments of which one means nothing without the other.
+/// Two arguments, one of which has no meaning without the other.
 pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BehaviourIncomplete,
@@ -135,7 +135,7 @@ pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
     .help(format!("add `{missing}`, or remove `{given}`"))
 }
 
-/// One of two ways to say a thing must stand, and not both; `takes` says of what which two, `example` shows one.
+/// Exactly one of two forms is required; `takes` names the owner and both forms, `example` shows one.
 pub fn one_way_only(takes: &str, example: &str, span: Span, given: usize) -> Diagnostic {
     let (label, help) = if given == 0 {
         ("neither is given", format!("add `{example}`, for instance"))
@@ -161,7 +161,7 @@ pub fn portal_without_mass(name: Option<&Ident>, head: Span) -> Diagnostic {
     .help("say what the frame weighs, such as `mass_per_length: 12 kg/m` in `portal(…)`, or add a line such as `mass = 25 kg`")
 }
 
-/// `half` is q·A·L/2, `elastic` what its own ends give, kg; None where the beam is a part of its behaviour only.
+/// `half` is q·A·L/2, `elastic` the mass from its own ends \[kg\]; None where the beam is only a part of its model.
 pub fn beam_without_mass(name: &str, head: Span, half: f64, elastic: Option<f64>) -> Diagnostic {
     let kg = |mass| shown(mass, Dimension::MASS);
     let half = format!(
@@ -204,7 +204,7 @@ pub fn too_many_parts(most: usize, what: &str, span: Span) -> Diagnostic {
 }
 
 /// `variant` is `rate` or `maxwell`.
-pub fn felt_inside(variant: &str, span: Span) -> Diagnostic {
+pub fn must_be_outermost(variant: &str, span: Span) -> Diagnostic {
     let message = format!(
         "`{variant}` acts on the load cell, and there is one: it cannot stand inside another behaviour"
     );
@@ -245,7 +245,7 @@ pub fn no_such_property(
     .help("read it of a behaviour that has one, such as `portal` or `bilinear` without hardening")
 }
 
-/// Limits let the specimen go where its table does not reach.
+/// Limits that let the specimen exceed its table.
 pub fn table_too_short(
     file: &str,
     table: Interval,
@@ -269,8 +269,8 @@ pub fn table_too_short(
     .help("narrow the limits to what was measured, or measure further")
 }
 
-/// A contact force (N) may grow beyond the most that a mechanism follows (N).
-pub fn beyond_mechanism(mechanism: Mechanism, (force, most): (f64, f64), span: Span) -> Diagnostic {
+/// A contact force \[N\] that may exceed the largest force of a mechanism \[N\].
+pub fn beyond_mechanism(mechanism: Mechanism, force: f64, most: f64, span: Span) -> Diagnostic {
     let [force, most] = [force, most].map(|force| shown(force, Dimension::FORCE));
     let name = mechanism.name();
     Diagnostic::new(

@@ -1,12 +1,12 @@
-//! Faults of dimension and type: E3xx.
+//! Errors of dimension and type: E3xx.
 
 use super::one_of;
 use crate::language::check::checker::Typed;
 use crate::schema::{BlockKind, Field, Kind, Variant};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
-use crate::units::Dimension;
 use crate::units::unit::{PREFIXES, UNITS};
+use crate::units::{Dimension, Quantity};
 
 /// "a length", "an energy", "a value in kg/m"
 fn article(dimension: Dimension) -> String {
@@ -22,7 +22,7 @@ fn article(dimension: Dimension) -> String {
     format!("{article} {name}")
 }
 
-/// `3 kg`: the number as written in a unit that fits.
+/// `3 kg`: the number as it is written, in a suitable unit.
 fn example(number: Option<&str>, dimension: Dimension) -> String {
     let number = number.unwrap_or("1");
     if dimension == Dimension::NUMBER {
@@ -32,7 +32,7 @@ fn example(number: Option<&str>, dimension: Dimension) -> String {
     }
 }
 
-/// `kN/m` of `kN`, where `N/m` is wanted: what is suggested must not be a thousandth of what was meant.
+/// `kN/m` for `kN`, where `N/m` is required: the suggestion must not be a thousandth of the intended value.
 fn of_the_same_size(written: &str, wanted: &str) -> Option<String> {
     let first = |unit: &str| unit.find(['*', '/', '^']).unwrap_or(unit.len());
     let parts = |name: &str| {
@@ -80,7 +80,7 @@ pub fn missing_unit(
     ))
 }
 
-/// A plain number would be read as radians, where most people think of degrees.
+/// A plain number would be read as radians, where most people mean degrees.
 pub fn angle_without_unit(text: &str, span: Span) -> Diagnostic {
     let plain = text.parse::<f64>().is_ok();
     let help = if plain {
@@ -96,7 +96,7 @@ pub fn angle_without_unit(text: &str, span: Span) -> Diagnostic {
     .help(help)
 }
 
-/// `entries`: a list or range, whose unit stands once, at its end.
+/// `entries`: a list or range, whose unit is written once, at its end.
 pub fn missing_unit_of_entries(
     entries: &str,
     span: Span,
@@ -121,13 +121,26 @@ pub fn missing_unit_of_entries(
     .help(help)
 }
 
+/// An expression as it is written; of a literal its number and its unit.
+pub struct WrittenValue<'t> {
+    pub text: &'t str,
+    pub span: Span,
+    pub number: Option<&'t str>,
+    pub unit: Option<&'t str>,
+}
+
 pub fn wrong_dimension(
-    text: &str,
-    span: Span,
-    (number, unit): (Option<&str>, Option<&str>),
-    (found, wanted): (Dimension, Dimension),
+    written: &WrittenValue<'_>,
+    found: Dimension,
+    wanted: Dimension,
     wanted_by: &str,
 ) -> Diagnostic {
+    let WrittenValue {
+        text,
+        span,
+        number,
+        unit,
+    } = *written;
     let help = match (number, wanted) {
         (Some(number), Dimension::ACCELERATION) if text == format!("{number} g") => {
             format!(
@@ -166,6 +179,29 @@ pub fn wrong_dimension(
     )
     .at(span, format!("this is {}", article(found)))
     .help(help)
+}
+
+/// A parameter is bound to a number of another dimension.
+pub fn wrong_dimension_of_quantity(
+    bound: Quantity,
+    wanted: Dimension,
+    parameter: &str,
+    declared_at: Span,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::WrongDimension,
+        format!(
+            "`{parameter}` wants {}, found {}",
+            article(wanted),
+            article(bound.dimension)
+        ),
+    )
+    .at(declared_at, format!("this is {}", article(wanted)))
+    .help(format!(
+        "bind `{parameter}` to {}, not to {}",
+        article(wanted),
+        bound.in_plan_syntax()
+    ))
 }
 
 pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {

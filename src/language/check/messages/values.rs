@@ -1,4 +1,4 @@
-//! Faults of values: E4xx.
+//! Errors of values: E4xx.
 
 use super::shown;
 use crate::physics::statistics::student_t::coverage;
@@ -53,7 +53,7 @@ pub fn out_of_range(
         || format!("give a value that is {allowed}"),
         |size| format!("write the size, `{size}`"),
     );
-    // A literal is not said twice: "`-10 kg` is -10 kg".
+    // A literal is not repeated: "`-10 kg` is -10 kg".
     let side = if value > field.range.high {
         "too large"
     } else {
@@ -72,7 +72,7 @@ pub fn out_of_range(
     .help(help)
 }
 
-/// `dimension` is that of the value, whose name the field begins with.
+/// `dimension` is that of the value, whose name begins the name of the field.
 pub fn too_uncertain(
     field: &str,
     uncertainty: f64,
@@ -89,7 +89,7 @@ pub fn too_uncertain(
         )
 }
 
-/// A mass whose uncertainty nobody asks for.
+/// A mass whose uncertainty is not used.
 pub fn uncertainty_unused(specimen: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UncertaintyUnused, format!("the uncertainty of the mass of `{specimen}` reaches no result"))
         .at(span, "no impact takes the mass of this specimen")
@@ -167,7 +167,7 @@ pub fn negative_bound(field: &str, span: Span, text: &str, symmetric: bool) -> D
     .help(help)
 }
 
-/// Of `A within TOLERANCE of B`: nothing is nearer than not at all.
+/// For `A within TOLERANCE of B`: a tolerance must be positive.
 pub fn negative_tolerance(span: Span, text: &str) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
@@ -277,7 +277,7 @@ pub fn step_does_not_divide(
     count: f64,
     dimension: Dimension,
 ) -> Diagnostic {
-    // Only sizes that a person can write down in full: a third of 1 mm is none.
+    // Only sizes with few digits: a third of 1 mm is not suggested.
     let size = |steps: &f64| {
         let size = length / steps;
         let short = display::plain(size, dimension, 6);
@@ -315,7 +315,7 @@ pub fn too_many_entries(span: Span, found: f64, most: usize) -> Diagnostic {
 }
 
 pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Diagnostic {
-    // A count that a person can read, and of a larger one its size.
+    // A readable count; for a larger one its order of magnitude.
     let found = if found < 1e12 {
         found.to_string()
     } else {
@@ -329,7 +329,7 @@ pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Di
     .help(help)
 }
 
-/// A limit on the speed that leaves none.
+/// A limit on the speed that allows none.
 pub fn no_speed(span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
@@ -339,7 +339,7 @@ pub fn no_speed(span: Span) -> Diagnostic {
     .help("write the largest speed of the actuator, as in `10 mm/s`")
 }
 
-/// Values that need values, one inside another.
+/// Values that depend on values, too deeply.
 pub fn too_deep(span: Span, most: usize) -> Diagnostic {
     Diagnostic::new(
         Code::TooMany,
@@ -422,7 +422,7 @@ pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Dia
     .help("procedures run in the order written: move that one up")
 }
 
-/// `read` is what some text reads of a ramp, `lacks` why it never has it, `way_out` what would.
+/// `read` is a result that an expression reads of a ramp, `lacks` why it never exists, `way_out` the remedy.
 pub fn never_given(
     read: &str,
     span: Span,
@@ -439,7 +439,7 @@ pub fn never_given(
     .help(way_out.to_owned())
 }
 
-/// `result` is read where the guarded rule decides, and has never an uncertainty.
+/// `result` is read where the guarded rule applies, and never has an uncertainty.
 pub fn nothing_to_guard(result: &str, required: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NothingToGuard,
@@ -449,7 +449,7 @@ pub fn nothing_to_guard(result: &str, required: Span) -> Diagnostic {
     .help("leave room in the limit itself, or require what is measured")
 }
 
-/// `read` is where the last step of a run was; `row`: of a row of blows.
+/// `read` is a position at the last step of a run; `row`: of an impact series.
 pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) -> Diagnostic {
     let or_row = if row {
         ", or write `between = unload`"
@@ -467,13 +467,13 @@ pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) 
     ))
 }
 
-/// `step` and `duration` in s.
+/// `step` and `duration` in \[s\].
 pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f64) -> Diagnostic {
-    let told = |time| display::stated(time, Dimension::TIME);
+    let stated = |time| display::stated(time, Dimension::TIME);
     let message = format!(
         "the time step {} is longer than the run, {}",
-        told(step),
-        told(duration)
+        stated(step),
+        stated(duration)
     );
     Diagnostic::new(Code::OutOfRange, message)
         .at(at, "not one whole step")
@@ -481,7 +481,7 @@ pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f6
         .help("write `time_step = critical / 20`")
 }
 
-/// What is written and can do nothing here: why, and the way out.
+/// An entry that has no effect here: the reason, and the remedy.
 pub fn no_effect(message: String, span: Span, label: &str, help: &str) -> Diagnostic {
     Diagnostic::new(Code::NoEffect, message)
         .at(span, label.to_owned())

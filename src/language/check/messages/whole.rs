@@ -1,4 +1,4 @@
-//! Faults and warnings of the test as a whole: E6xx and W7xx.
+//! Errors and warnings of the test as a whole: E6xx and W7xx.
 
 use super::{one_of, shown, suggestion};
 use crate::plan::Interval;
@@ -6,12 +6,12 @@ use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
-/// Places of what a plan declares several of, at most.
+/// Most spans of repeated declarations that are shown.
 pub const SHOWN: usize = 20;
 
 /// `declared`: the first [`SHOWN`] of `several`.
 pub fn several_specimens(head: Span, declared: &[(String, Span)], several: usize) -> Diagnostic {
-    let fault = Diagnostic::new(
+    let diagnostic = Diagnostic::new(
         Code::AmbiguousSpecimen,
         "several specimens are declared, and this procedure names none",
     )
@@ -31,8 +31,8 @@ pub fn several_specimens(head: Span, declared: &[(String, Span)], several: usize
     );
     declared
         .iter()
-        .fold(fault, |fault, (name, span)| {
-            fault.at(*span, format!("`{name}` is one"))
+        .fold(diagnostic, |diagnostic, (name, span)| {
+            diagnostic.at(*span, format!("`{name}` is one"))
         })
         .help(help)
 }
@@ -63,7 +63,7 @@ pub fn beyond_limits(
     .help("stay inside the limits, or widen them if the rig and the specimen allow it")
 }
 
-/// A run whose limits stop it before it begins.
+/// Limits that stop a run before it begins.
 pub fn start_beyond_limits(
     name: &str,
     limit: Interval,
@@ -86,7 +86,7 @@ pub fn start_beyond_limits(
     ))
 }
 
-/// `gap` and `velocity` as lengths and speeds, `arrives` and `duration` in s.
+/// `gap` and `velocity` as text, `arrives` and `duration` in \[s\].
 pub fn never_arrives(
     striker: &str,
     gap: f64,
@@ -141,12 +141,8 @@ fn time(value: f64) -> String {
     shown(value, Dimension::TIME)
 }
 
-/// Bytes of a record by the end of a procedure and at most; steps of the procedure, and how many would fit.
-pub fn record_too_long(
-    span: Span,
-    (bytes, most): (f64, f64),
-    (steps, fit): (u64, f64),
-) -> Diagnostic {
+/// Bytes of the log by the end of a procedure, and the most; steps of the procedure, and the number that would fit.
+pub fn record_too_long(span: Span, bytes: f64, most: f64, steps: u64, fit: f64) -> Diagnostic {
     let (bytes, most) = (bytes / 1e9, most / 1e9);
     let message = format!(
         "the record of this run may take {bytes:.1} GB, and none of more than {most:.1} GB is read back"
@@ -168,8 +164,8 @@ pub fn step_above_critical(span: Span, step: f64, critical: f64) -> Diagnostic {
     .help("write `time_step = critical / 20`")
 }
 
-/// The step against that of a stiffness which is measured only in the run.
-pub fn step_above_foreseen(span: Span, step: f64, critical: f64) -> Diagnostic {
+/// The step compared with the limit from a stiffness that is measured only in the run.
+pub fn step_above_predicted(span: Span, step: f64, critical: f64) -> Diagnostic {
     let (step, critical) = (time(step), time(critical));
     let message = format!(
         "the time step {step} is above the critical time step, about {critical} by the declared behaviour"
@@ -179,7 +175,7 @@ pub fn step_above_foreseen(span: Span, step: f64, critical: f64) -> Diagnostic {
         .help("write `time_step = critical / 20`")
 }
 
-/// `law`: one without a duration of its own, so that its force is an impulse over a step.
+/// `law`: a law without a duration of its own, whose force is an impulse over one step.
 pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &str) -> Diagnostic {
     let (of, holds) = match law {
         "rigid" => ("the rigid law", "`contact = rigid`"),
@@ -194,7 +190,7 @@ pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &str) -> Diagn
         .help("require the `impulse`, or give a law that converges: `contact = hertz(…)`")
 }
 
-/// `first`: the longest step at which the limit acts at the first blow; `resolved`: at which the displacement is resolved.
+/// `first`: the longest step at which the limit acts at the first impact; `resolved`: at which the displacement is resolved.
 pub fn limit_force_not_resolved(span: Span, step: f64, first: f64, resolved: f64) -> Diagnostic {
     let (now, first_text, resolved_text) = (time(step), time(first), time(resolved));
     let message = if step >= first {
@@ -209,7 +205,7 @@ pub fn limit_force_not_resolved(span: Span, step: f64, first: f64, resolved: f64
         .help(format!("write `time_step = {resolved_text}` or less"))
 }
 
-/// `letters` are the first that no font of the paper has, `printed` what stands for them.
+/// `letters` are the first that no font of the page has, `printed` is their replacement.
 pub fn not_printed(letters: &str, printed: &str, others: usize, span: Span) -> Diagnostic {
     let also = match others {
         0 => String::new(),

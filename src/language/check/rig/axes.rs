@@ -1,36 +1,36 @@
-//! `axes = [axis(…), …]` of a real rig: what each actuator with its load cell says of itself. In: the block of a rig. Out:
-//! an [`AxisPlan`] each. Whether the specimen has as many storeys is held here too; what drives them is `device`'s.
+//! `axes = [axis(…), …]` of a real rig: the entries of each actuator with its load cell. In: the block of a rig. Out:
+//! an [`AxisPlan`] each. It also compares their number with the storeys of the specimen; `device` reads the devices.
 
 use super::device::{Device, device};
 use super::real;
-use super::{CheckedRig, place_of};
-use crate::language::check::checker::{Checker, Place};
+use super::{CheckedRig, context_of};
+use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::calendar;
 use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{axes as fault, rigs, values};
+use crate::language::check::messages::{axes as message, rigs, values};
 use crate::plan::{AxisCalibration, AxisPlan, Specimen};
 use crate::text::source::Span;
 
-/// One axis, and where its own devices were written.
+/// One axis, with the spans of its own devices.
 pub struct CheckedAxis {
     pub plan: AxisPlan,
     pub actuator: Option<Device>,
     pub load_cell: Option<Device>,
 }
 
-/// The axes that a rig lists; none where it says nothing of them.
+/// The axes that a rig lists; empty where it lists none.
 pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
-    let Some((_, written)) = checker.given(block, "axes") else {
+    let Some((_, written)) = checker.field(block, "axes") else {
         return Some(Vec::new());
     };
-    let (at, place) = (written.value.span, place_of(checker, block, "axes")?);
+    let (at, context) = (written.value.span, context_of(checker, block, "axes")?);
     let chosen = checker.choices(block, "axes")?;
     if chosen.is_empty() {
         return checker.fail(values::empty_list(at));
     }
     let axes: Vec<Option<CheckedAxis>> = chosen
         .iter()
-        .map(|chosen| axis(checker, block, chosen, place))
+        .map(|chosen| axis(checker, block, chosen, context))
         .collect();
     axes.into_iter().collect()
 }
@@ -39,7 +39,7 @@ fn axis<'a>(
     checker: &mut Checker<'a>,
     block: usize,
     chosen: &Chosen<'a>,
-    place: Place,
+    context: Context,
 ) -> Option<CheckedAxis> {
     let sign = match chosen.span("sign") {
         Some(_) => checker.chosen_argument(chosen, "sign").map(|word| {
@@ -54,23 +54,23 @@ fn axis<'a>(
     let gate = match chosen.span("gate") {
         Some(_) => checker
             .chosen_argument(chosen, "gate")
-            .and_then(|gate| real::probe(checker, &gate, place))
+            .and_then(|gate| real::probe(checker, &gate, context))
             .map(Some),
         None => Some(None),
     };
     let (displacement, force) = (
-        checker.bounds_argument(chosen, "displacement", place),
-        checker.bounds_argument(chosen, "force", place),
+        checker.bounds_argument(chosen, "displacement", context),
+        checker.bounds_argument(chosen, "force", context),
     );
     let (resolution, noise) = (
-        checker.optional_argument(chosen, "resolution", place),
-        checker.optional_argument(chosen, "noise", place),
+        checker.optional_argument(chosen, "resolution", context),
+        checker.optional_argument(chosen, "noise", context),
     );
-    let force_range = checker.bounds_argument(chosen, "force_range", place);
-    let calibration = calibration(checker, block, chosen, place);
+    let force_range = checker.bounds_argument(chosen, "force_range", context);
+    let calibration = calibration(checker, block, chosen, context);
     let (actuator, load_cell) = (
-        own_device(checker, chosen, "actuator", place),
-        own_device(checker, chosen, "load_cell", place),
+        own_device(checker, chosen, "actuator", context),
+        own_device(checker, chosen, "load_cell", context),
     );
     let (actuator, load_cell) = (actuator?, load_cell?);
     let link = |device: &Option<Device>| device.as_ref().map(|device| device.link.clone());
@@ -93,7 +93,7 @@ fn axis<'a>(
     })
 }
 
-/// A device of its own: `Some(None)` where it has none.
+/// A device of the axis alone: `Some(None)` where it has none.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"
@@ -102,21 +102,21 @@ fn own_device<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
     role: &str,
-    place: Place,
+    context: Context,
 ) -> Option<Option<Device>> {
     let Some(at) = chosen.span(role) else {
         return Some(None);
     };
     let link = checker.chosen_argument(chosen, role)?;
-    device(checker, &link, at, place).map(Some)
+    device(checker, &link, at, context).map(Some)
 }
 
-/// Where the numbers of one axis are traced to.
+/// The calibrations of one axis.
 fn calibration<'a>(
     checker: &mut Checker<'a>,
     block: usize,
     chosen: &Chosen<'a>,
-    place: Place,
+    context: Context,
 ) -> Option<AxisCalibration> {
     let mut day = |name: &str| match checker.text_argument(chosen, name)? {
         Some((day, at)) if !calendar::is_day(&day) => checker.fail(rigs::not_a_day(&day, at)),
@@ -130,14 +130,14 @@ fn calibration<'a>(
     };
     let (reference, displacement) = (text("calibration"), text("displacement_calibration"));
     let (force_class, displacement_class) = (text("force_class"), text("displacement_class"));
-    let mut number = |name: &str| checker.optional_argument(chosen, name, place);
+    let mut number = |name: &str| checker.optional_argument(chosen, name, context);
     let (force, length) = (
         number("force_uncertainty"),
         number("displacement_uncertainty"),
     );
     let zero = number("zero_uncertainty");
     let (newtons_per_count, zero_count) = (number("force_per_count"), number("zero_count"));
-    let mut range = |name: &str| checker.bounds_argument(chosen, name, place);
+    let mut range = |name: &str| checker.bounds_argument(chosen, name, context);
     let (force_calibrated, displacement_calibrated) = (
         range("force_calibration_range"),
         range("displacement_calibration_range"),
@@ -145,7 +145,7 @@ fn calibration<'a>(
     let (displacement, displacement_due) = (displacement?, displacement_due?);
     if let (None, None, Some((_, at))) = (
         &displacement,
-        checker.given(block, "displacement_calibration"),
+        checker.field(block, "displacement_calibration"),
         &displacement_due,
     ) {
         return checker.fail(rigs::day_of_no_calibration(
@@ -171,8 +171,8 @@ fn calibration<'a>(
     })
 }
 
-/// A rig of as many axes as its specimen has storeys: no storey without an actuator, and no actuator without a storey.
-pub fn hold_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen: &Specimen) {
+/// A rig must have as many axes as its specimen has storeys.
+pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen: &Specimen) {
     let Some(CheckedRig {
         plan,
         block: Some(block),
@@ -181,12 +181,12 @@ pub fn hold_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen: 
     else {
         return;
     };
-    let (Some(axes), Some((_, written))) = (plan.axes(), checker.given(*block, "axes")) else {
+    let (Some(axes), Some((_, written))) = (plan.axes(), checker.field(*block, "axes")) else {
         return;
     };
     let storeys = specimen.degrees_of_freedom();
     if axes != storeys {
-        checker.faults.push(fault::another_number(
+        checker.diagnostics.push(message::another_number(
             &plan.name,
             axes,
             &specimen.name,

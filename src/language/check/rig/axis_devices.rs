@@ -1,14 +1,14 @@
-//! Which device is for which axis: the rig's own ones for every axis that has none, and those of the axes. In: devices and axes
-//! as they were written. Out: nothing, or why they do not fit together. It opens no port.
+//! Assignment of devices to axes: the rig's own devices for every axis that has none, and those of the axes. In: devices and axes
+//! as they are written. Out: nothing, or why they do not fit together. It opens no port.
 
 use super::axes::CheckedAxis;
 use super::device::Device;
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::{axes as fault, rigs};
+use crate::language::check::messages::{axes as message, rigs};
 use crate::plan::Dialect;
 
-/// Every axis is moved by one device and weighed by one, no device is without an axis, and none has more than it can have.
-pub fn hold(
+/// Every axis has one device that moves it and one that measures its force, no device is without an axis, and none has more than it supports.
+pub fn check(
     checker: &mut Checker,
     block: usize,
     actuator: &Device,
@@ -37,7 +37,7 @@ pub fn hold(
         ));
     }
     if let Some(device) = unfit(|axis| axis.load_cell.as_ref(), Dialect::weighs) {
-        return checker.fail(rigs::cannot_weigh(
+        return checker.fail(rigs::cannot_measure_force(
             true,
             "load_cell",
             &device.link.dialect,
@@ -48,20 +48,20 @@ pub fn hold(
         .into_iter()
         .find(|(left, device)| *left == 0 && device.is_some());
     if let Some((_, Some(device))) = idle {
-        return checker.fail(fault::no_axis_left(device.at));
+        return checker.fail(message::no_axis_left(device.at));
     }
-    // What one of them refuses none may begin: each is asked before any is told.
+    // If one device refuses a move, none may begin it: each must support a proposal before the command.
     let all =
         std::iter::once(actuator).chain(axes.iter().filter_map(|axis| axis.actuator.as_ref()));
     let rash = all.clone().find(|device| !device.link.dialect.proposes());
     if let (true, Some(device)) = (axes.iter().any(movers), rash) {
-        return checker.fail(fault::not_asked(&device.link.dialect, device.dialect_at));
+        return checker.fail(message::not_asked(&device.link.dialect, device.dialect_at));
     }
     if let Some((_, written)) = checker
-        .given(block, "axes")
+        .field(block, "axes")
         .filter(|_| moved > actuator.link.dialect.most_axes())
     {
-        return checker.fail(fault::too_many(
+        return checker.fail(message::too_many(
             moved,
             actuator.link.dialect.most_axes(),
             &actuator.link.dialect,
@@ -91,17 +91,17 @@ pub fn hold(
     )
 }
 
-/// A control point for every axis, and no axis without one.
+/// Every axis has one control point, and every control point one axis.
 fn points(checker: &mut Checker, axes: usize, device: &Device) -> Option<()> {
     match &device.link.dialect {
-        Dialect::Nees { control_points } if control_points.len() != axes => {
-            checker.fail(fault::control_points(control_points.len(), axes, device.at))
-        }
+        Dialect::Nees { control_points } if control_points.len() != axes => checker.fail(
+            message::control_points(control_points.len(), axes, device.at),
+        ),
         _ => Some(()),
     }
 }
 
-/// A channel for every axis behind it, and none too many. How many `native` has it says itself, when it is asked who it is.
+/// A channel for every axis of the device, and no more. `native` reports the number of its channels itself, when it is identified.
 fn channels(checker: &mut Checker, behind: usize, device: &Device) -> Option<()> {
     let dialect = &device.link.dialect;
     let has = match dialect {
@@ -111,15 +111,15 @@ fn channels(checker: &mut Checker, behind: usize, device: &Device) -> Option<()>
     match dialect {
         Dialect::Nees { .. } => points(checker, behind, device),
         _ if has == behind => Some(()),
-        _ => checker.fail(fault::channels(has, behind, dialect, device.dialect_at)),
+        _ => checker.fail(message::channels(has, behind, dialect, device.dialect_at)),
     }
 }
 
-/// Each device on a port of its own.
+/// Each device has its own port.
 fn ports(checker: &mut Checker, devices: &[&Device]) -> Option<()> {
-    for (place, device) in devices.iter().enumerate() {
+    for (index, device) in devices.iter().enumerate() {
         let same = |other: &&&Device| other.link.port.to_string() == device.link.port.to_string();
-        if let Some(first) = devices[..place].iter().find(same) {
+        if let Some(first) = devices[..index].iter().find(same) {
             return checker.fail(rigs::port_twice(
                 &device.link.port,
                 device.port_at,

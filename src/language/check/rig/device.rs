@@ -1,15 +1,15 @@
 //! One device of a real rig: `serial(…)` or `tcp(…)`, its port and its time-out. In: a field that names one. Out: a
-//! [`Device`]. It opens nothing: whether there is such a port shows when the run opens it.
+//! [`Device`]. It opens nothing: whether the port exists is known when the run opens it.
 
 use super::dialect;
-use crate::language::check::checker::{Checker, Place};
+use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
-use crate::language::check::messages::rigs as fault;
+use crate::language::check::messages::rigs as message;
 use crate::plan::{DeviceLink, PortPlan};
 use crate::text::source::Span;
 
-/// A device, and where its parts were written.
+/// A device, with the spans of its parts.
 pub struct Device {
     pub link: DeviceLink,
     pub port_at: Span,
@@ -23,18 +23,18 @@ pub fn device<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
     at: Span,
-    place: Place,
+    context: Context,
 ) -> Option<Device> {
     let serial = chosen.variant.name == "serial";
     let port = if serial {
-        serial_port(checker, chosen, place)
+        serial_port(checker, chosen, context)
     } else {
         tcp_address(checker, chosen)
     };
     let dialect = checker
         .chosen_argument(chosen, "dialect")
-        .and_then(|chosen| dialect::dialect(checker, &chosen, place));
-    let reply_timeout = checker.constant_argument(chosen, "reply_timeout", place);
+        .and_then(|chosen| dialect::dialect(checker, &chosen, context));
+    let reply_timeout = checker.constant_argument(chosen, "reply_timeout", context);
     let serial_number = line_text(checker, chosen, "serial_number");
     let (port_at, dialect_at) = (
         chosen.span(if serial { "port" } else { "address" })?,
@@ -57,21 +57,21 @@ pub fn device<'a>(
 fn serial_port<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Place,
+    context: Context,
 ) -> Option<PortPlan> {
     let path = checker.text_argument(chosen, "port").flatten();
     let baud = checker
-        .constant_argument(chosen, "baud", place)
+        .constant_argument(chosen, "baud", context)
         .and_then(whole);
     let (path, span) = path?;
-    match fault_of_port(&path) {
-        Some(why) => checker.fail(fault::bad_port(span, why)),
+    match error_of_port(&path) {
+        Some(why) => checker.fail(message::bad_port(span, why)),
         None => Some(PortPlan::Serial { path, baud: baud? }),
     }
 }
 
-/// What is wrong with the name of a port, if something is.
-fn fault_of_port(path: &str) -> Option<&'static str> {
+/// The error of the name of a port, if any.
+fn error_of_port(path: &str) -> Option<&'static str> {
     if path.is_empty() {
         Some("it is empty")
     } else if path.starts_with('-') {
@@ -88,7 +88,7 @@ fn tcp_address<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Por
     if is_host_and_port(&address) {
         return Some(PortPlan::Tcp { address });
     }
-    checker.fail(fault::bad_address(&address, span))
+    checker.fail(message::bad_address(&address, span))
 }
 
 /// `host:port`, or `[::1]:port`; the port is 1 to 65535.
@@ -110,7 +110,7 @@ fn is_host_and_port(address: &str) -> bool {
     host && number
 }
 
-/// A text that stands on a line of a protocol: `Some(None)` where it is left out.
+/// A string that is sent on a line of a protocol: `Some(None)` where it is left out.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"
@@ -124,14 +124,14 @@ pub fn line_text<'a>(
         return Some(None);
     };
     if text.trim().is_empty() || text.chars().any(|c| c.is_control() || !c.is_ascii()) {
-        return checker.fail(fault::bad_line_text(name, span));
+        return checker.fail(message::bad_line_text(name, span));
     }
     Some(Some(text))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{fault_of_port, is_host_and_port};
+    use super::{error_of_port, is_host_and_port};
 
     #[test]
     fn a_port_is_one_word_that_is_no_option() {
@@ -141,7 +141,7 @@ mod tests {
             "COM3",
             "/dev/serial/by-id/usb-1a86_USB2.0-Serial-if00-port0",
         ] {
-            assert_eq!(fault_of_port(good), None, "{good}");
+            assert_eq!(error_of_port(good), None, "{good}");
         }
         for bad in [
             "",
@@ -153,7 +153,7 @@ mod tests {
             "a\0b",
             "a\u{1b}[2J",
         ] {
-            assert!(fault_of_port(bad).is_some(), "{bad:?}");
+            assert!(error_of_port(bad).is_some(), "{bad:?}");
         }
     }
 

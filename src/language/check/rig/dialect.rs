@@ -1,7 +1,7 @@
-//! What a device speaks: `native`, `scpi(1 N)`, `modbus(…)`. In: the chosen variant. Out: a [`Dialect`].
+//! The protocol of a device: `native`, `scpi(1 N)`, `modbus(…)`. In: the chosen variant. Out: a [`Dialect`].
 
 use super::device::line_text;
-use crate::language::check::checker::{Checker, Place};
+use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{names, rigs, values};
 use crate::plan::{Dialect, ModbusMap, ModbusNumber};
@@ -9,14 +9,14 @@ use crate::plan::{Dialect, ModbusMap, ModbusNumber};
 pub fn dialect<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Place,
+    context: Context,
 ) -> Option<Dialect> {
     Some(match chosen.variant.name {
         "grbl" => Dialect::Grbl,
         "hx711" => Dialect::Hx711,
         "indicator" => Dialect::Indicator,
         "scpi" => {
-            let newtons_per_unit = checker.list_argument(chosen, "newtons_per_unit", place)?;
+            let newtons_per_unit = checker.list_argument(chosen, "newtons_per_unit", context)?;
             for newtons in &newtons_per_unit {
                 not_zero(checker, chosen, "newtons_per_unit", *newtons)?;
             }
@@ -25,7 +25,7 @@ pub fn dialect<'a>(
         "instron" => Dialect::Instron,
         "mark10" => Dialect::Mark10,
         "mark10_gauge" => Dialect::Mark10Gauge,
-        "modbus" => Dialect::Modbus(modbus(checker, chosen, place)?),
+        "modbus" => Dialect::Modbus(modbus(checker, chosen, context)?),
         "nees" => Dialect::Nees {
             control_points: control_points(checker, chosen)?,
         },
@@ -33,7 +33,7 @@ pub fn dialect<'a>(
     })
 }
 
-/// Names divided by commas, none of them twice: a reply says which of them it is of.
+/// Names separated by commas, each once: a reply refers to them by name.
 fn control_points<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Vec<String>> {
     let text = line_text(checker, chosen, "control_point")??;
     let names: Vec<String> = text.split(',').map(|name| name.trim().to_owned()).collect();
@@ -58,7 +58,7 @@ fn not_zero(checker: &mut Checker, chosen: &Chosen, name: &str, value: f64) -> O
     }
 }
 
-/// What must stand with what: a register, and what its number means nothing or does nothing without.
+/// Arguments that need one another: a register, and the register or scale without which its number has no meaning or effect.
 const TOGETHER: &[(&str, &str)] = &[
     ("force", "force_unit"),
     ("position", "length_unit"),
@@ -70,15 +70,19 @@ const TOGETHER: &[(&str, &str)] = &[
     ("command", "stop_word"),
 ];
 
-fn modbus<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<ModbusMap> {
+fn modbus<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    context: Context,
+) -> Option<ModbusMap> {
     let number = checker
         .chosen_argument(chosen, "number")
         .and_then(|number| modbus_number(checker, &number));
     let unit = checker
-        .constant_argument(chosen, "unit", place)
+        .constant_argument(chosen, "unit", context)
         .and_then(crate::language::check::expressions::fields::whole);
     let mut register = |name: &str| -> Option<Option<u16>> {
-        let value = checker.optional_argument(chosen, name, place)?;
+        let value = checker.optional_argument(chosen, name, context)?;
         Some(
             value
                 .and_then(crate::language::check::expressions::fields::whole)
@@ -96,9 +100,9 @@ fn modbus<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> O
         register("start_word"),
         register("stop_word"),
     );
-    let length_unit = checker.optional_argument(chosen, "length_unit", place);
-    let speed_unit = checker.optional_argument(chosen, "speed_unit", place);
-    let force_unit = checker.optional_argument(chosen, "force_unit", place);
+    let length_unit = checker.optional_argument(chosen, "length_unit", context);
+    let speed_unit = checker.optional_argument(chosen, "speed_unit", context);
+    let force_unit = checker.optional_argument(chosen, "force_unit", context);
     let lacking = TOGETHER
         .iter()
         .find(|(one, other)| chosen.span(one).is_some() && chosen.span(other).is_none());

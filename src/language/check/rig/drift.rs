@@ -1,17 +1,17 @@
-//! `drift = within(…)` of a rig: how far its zeros may drift in a run, and how they are read. In: the block of a rig. Out: a
+//! `drift = within(…)` of a rig: the allowed zero drift in a run, and how the zero is read. In: the block of a rig. Out: a
 //! [`DriftCheck`]. It reads nothing.
 
-use super::{CheckedRig, place_of};
+use super::{CheckedRig, context_of};
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::rigs as fault;
+use crate::language::check::messages::rigs as message;
 use crate::plan::{DriftCheck, Link, ZeroAfter};
 use crate::schema::RigKind;
 use crate::units::Dimension;
 
-/// Standard deviations of one reading within which chance alone may bring the difference of two, in a long run.
+/// Standard deviations of one reading that the difference of two readings exceeds by chance only rarely, in a long run.
 const CHANCE: f64 = 5.0;
 
-/// What a rig says of its zeros: `Some(None)` where it says nothing, None where that is faulty.
+/// The zero-drift check of a rig: `Some(None)` where it has none, None where it has an error.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"
@@ -21,20 +21,22 @@ pub fn drift(
     block: usize,
     kind: Option<RigKind>,
 ) -> Option<Option<DriftCheck>> {
-    if checker.given(block, "drift").is_none() {
+    if checker.field(block, "drift").is_none() {
         return Some(None);
     }
-    let place = place_of(checker, block, "drift")?;
+    let context = context_of(checker, block, "drift")?;
     let chosen = checker.choice(block, "drift")?;
     let (force, over) = (
-        checker.constant_argument(&chosen, "force", place),
-        checker.constant_argument(&chosen, "over", place),
+        checker.constant_argument(&chosen, "force", context),
+        checker.constant_argument(&chosen, "over", context),
     );
-    let displacement = checker.optional_argument(&chosen, "displacement", place);
+    let displacement = checker.optional_argument(&chosen, "displacement", context);
     let after = match chosen.span("after") {
         None => Some(ZeroAfter::Start),
         Some(at) => match checker.chosen_argument(&chosen, "after")?.variant.name {
-            "free" if kind == Some(RigKind::Virtual) => checker.fail(fault::nobody_to_free_it(at)),
+            "free" if kind == Some(RigKind::Virtual) => {
+                checker.fail(message::no_operator_to_free_it(at))
+            }
             "free" => Some(ZeroAfter::Free),
             "nowhere" => Some(ZeroAfter::Nowhere),
             _ => Some(ZeroAfter::Start),
@@ -48,12 +50,12 @@ pub fn drift(
     }))
 }
 
-/// A tolerance within which noise or quanta alone may bring a reading.
+/// A tolerance that noise or resolution alone may exceed.
 pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     let (Some(check), Some(block)) = (rig.plan.drift, rig.block) else {
         return;
     };
-    let Some((_, entry)) = checker.given(block, "drift") else {
+    let Some((_, entry)) = checker.field(block, "drift") else {
         return;
     };
     let at = entry.value.span;
@@ -66,24 +68,32 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             }),
     };
     if check.force < CHANCE * noise {
-        let fault = fault::drift_within_noise(
+        let diagnostic = message::drift_within_noise(
             "force",
             check.force,
-            ("noise", noise, CHANCE * noise),
+            message::ReadingScatter {
+                name: "noise",
+                size: noise,
+                reach: CHANCE * noise,
+            },
             Dimension::FORCE,
             at,
         );
-        checker.faults.push(fault);
+        checker.diagnostics.push(diagnostic);
     }
     if let Some(displacement) = check
         .displacement
         .filter(|displacement| *displacement < resolution)
     {
-        let of = ("resolution", resolution, resolution);
-        checker.faults.push(fault::drift_within_noise(
+        let scatter = message::ReadingScatter {
+            name: "resolution",
+            size: resolution,
+            reach: resolution,
+        };
+        checker.diagnostics.push(message::drift_within_noise(
             "displacement",
             displacement,
-            of,
+            scatter,
             Dimension::LENGTH,
             at,
         ));

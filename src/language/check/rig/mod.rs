@@ -7,19 +7,20 @@ pub(crate) mod device;
 pub(crate) mod dialect;
 pub(crate) mod drift;
 pub(crate) mod real;
+pub(crate) mod real_warnings;
 
-use super::checker::{Checker, Place};
+use super::checker::{Checker, Context};
 use super::expressions::calendar;
 use super::expressions::choice::Chosen;
 use super::messages::rigs;
-use super::messages::whole as fault;
+use super::messages::whole as message;
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
 use crate::schema::{Kind, RigKind};
 use crate::text::source::{FileId, Span};
 
-/// At once, for as long as it takes up to ten seconds.
-const AT_ONCE: Settle = Settle {
+/// An immediate move, for a settling time of up to ten seconds.
+const IMMEDIATE: Settle = Settle {
     band: 0.0,
     force_rate: 0.0,
     dwell: 0.0,
@@ -30,24 +31,24 @@ const AT_ONCE: Settle = Settle {
 pub struct CheckedRig {
     pub plan: RigPlan,
     pub limits: Option<usize>,
-    /// None for the ideal rig, which nobody declares.
+    /// None for the ideal rig, which is not declared.
     pub block: Option<usize>,
 }
 
-/// The rig of the run, where it is one that moves a specimen: only where `--rig` names it.
-pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> {
+/// The rig of the run, where it moves a real specimen: only where `--rig` names it.
+pub fn real_rig_of_run(checker: &Checker, requested: Option<&str>) -> Option<usize> {
     let named = |name: Option<&crate::language::syntax::ast::Ident>| {
-        name.is_some_and(|name| Some(name.node.as_str()) == asked)
+        name.is_some_and(|name| Some(name.node.as_str()) == requested)
     };
     let block = checker
         .scope
         .of_kind(Kind::Rig)
         .find(|(_, block)| named(block.name))
         .map(|(index, _)| index);
-    // Where its link is missing or cannot be read, what else it says tells what it is.
+    // Where its link is missing or invalid, its other entries determine the kind of the rig.
     let real = |block: usize| {
         kind(checker, block).map_or_else(
-            || says_of_real_rigs(checker, block),
+            || has_fields_of_real_rigs(checker, block),
             |kind| kind == RigKind::Real,
         )
     };
@@ -55,7 +56,7 @@ pub fn real_rig_of_run(checker: &Checker, asked: Option<&str>) -> Option<usize> 
 }
 
 /// Whether a rig's block has a field that only real rigs read.
-pub fn says_of_real_rigs(checker: &Checker, block: usize) -> bool {
+pub fn has_fields_of_real_rigs(checker: &Checker, block: usize) -> bool {
     let declared = &checker.scope.blocks[block];
     let real_only = |key: &str| {
         declared
@@ -70,9 +71,9 @@ pub fn says_of_real_rigs(checker: &Checker, block: usize) -> bool {
         .any(|entry| real_only(&entry.key.node))
 }
 
-/// The fields that say how the rig of the run is reached, where it is one that moves a specimen.
-pub fn links_of_run(checker: &Checker, asked: Option<&str>) -> Vec<Span> {
-    let Some(block) = real_rig_of_run(checker, asked) else {
+/// The fields that connect the rig of the run, where it moves a real specimen.
+pub fn links_of_run(checker: &Checker, requested: Option<&str>) -> Vec<Span> {
+    let Some(block) = real_rig_of_run(checker, requested) else {
         return Vec::new();
     };
     let entries = &checker.scope.blocks[block].block.fields;
@@ -89,8 +90,8 @@ pub fn links_of_run(checker: &Checker, asked: Option<&str>) -> Vec<Span> {
         .collect()
 }
 
-/// Checks every rig; gives the one named by `--rig`, else the first virtual one of the plan itself, else an ideal one.
-pub fn rig_of_run(checker: &mut Checker, asked: Option<&str>) -> Option<CheckedRig> {
+/// Checks every rig; returns the one named by `--rig`, else the first virtual one of the plan itself, else an ideal one.
+pub fn rig_of_run(checker: &mut Checker, requested: Option<&str>) -> Option<CheckedRig> {
     let rigs: Vec<(usize, bool)> = checker
         .scope
         .of_kind(Kind::Rig)
@@ -109,31 +110,31 @@ pub fn rig_of_run(checker: &mut Checker, asked: Option<&str>) -> Option<CheckedR
         .collect();
     let mut checked: Vec<(bool, Option<CheckedRig>)> = rigs
         .into_iter()
-        .map(|(index, unasked)| (unasked, rig(checker, index)))
+        .map(|(index, is_default)| (is_default, rig(checker, index)))
         .collect();
-    if let Some(asked) = asked {
-        let position = names.iter().position(|name| *name == asked);
+    if let Some(requested) = requested {
+        let position = names.iter().position(|name| *name == requested);
         return match position {
             Some(position) => checked.swap_remove(position).1,
-            None if asked == IDEAL => Some(ideal()),
+            None if requested == IDEAL => Some(ideal()),
             None if checker.names_lost => None,
-            None => checker.fail(fault::unknown_rig(asked, &names)),
+            None => checker.fail(message::unknown_rig(requested, &names)),
         };
     }
-    match checked.iter().position(|(unasked, _)| *unasked) {
+    match checked.iter().position(|(is_default, _)| *is_default) {
         Some(first) => checked.swap_remove(first).1,
         None => Some(ideal()),
     }
 }
 
-/// Name of the virtual rig that adds nothing to the specimen.
+/// Name of the virtual rig without any errors of its own.
 const IDEAL: &str = "ideal";
 
 fn ideal() -> CheckedRig {
     let plan = RigPlan {
         name: IDEAL.to_owned(),
         link: Link::Virtual(VirtualLink::default()),
-        settle: AT_ONCE,
+        settle: IMMEDIATE,
         sign: 1.0,
         calibration: Calibration::default(),
         drift: None,
@@ -145,19 +146,19 @@ fn ideal() -> CheckedRig {
     }
 }
 
-/// What a rig moves, by the words it is reached with; None where those cannot be read.
+/// The kind of a rig, by its link; None where that is invalid.
 pub fn kind(checker: &Checker, block: usize) -> Option<RigKind> {
-    if checker.given(block, "actuator").is_some() || checker.given(block, "load_cell").is_some() {
+    if checker.field(block, "actuator").is_some() || checker.field(block, "load_cell").is_some() {
         return Some(RigKind::Real);
     }
-    match word(&checker.given(block, "link")?.1.value)? {
+    match word(&checker.field(block, "link")?.1.value)? {
         "virtual" => Some(RigKind::Virtual),
         "serial" | "tcp" => Some(RigKind::Real),
         _ => None,
     }
 }
 
-/// The word of a choice: `serial` of `serial(…)`.
+/// The word of a variant: `serial` of `serial(…)`.
 fn word(written: &Expr) -> Option<&str> {
     match &written.kind {
         ExprKind::Name(name) => Some(name),
@@ -177,33 +178,33 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
             let chosen = checker.choice(block, "link");
             chosen
                 .and_then(|chosen| {
-                    virtual_link(checker, &chosen, place_of(checker, block, "link")?)
+                    virtual_link(checker, &chosen, context_of(checker, block, "link")?)
                 })
                 .map(Link::Virtual)
         }
-        // Says what is wrong with it.
+        // Reports its error.
         None => checker.choice(block, "link").and(None),
     };
-    let settle = match checker.given(block, "settle") {
+    let settle = match checker.field(block, "settle") {
         Some((entry, _)) => {
-            let place = checker.place(block, entry);
+            let context = checker.context_of(block, entry);
             checker
                 .choice(block, "settle")
-                .and_then(|chosen| settle(checker, &chosen, place, kind))
+                .and_then(|chosen| settle(checker, &chosen, context, kind))
         }
-        None => Some(AT_ONCE),
+        None => Some(IMMEDIATE),
     };
     let sign = checker
         .word(block, "sign", "positive")
         .map(|word| if word == "negative" { -1.0 } else { 1.0 });
-    let limits = match checker.given(block, "limits") {
+    let limits = match checker.field(block, "limits") {
         Some(_) => checker.reference(block, "limits", Kind::Limits).map(Some),
         None => Some(None),
     };
     let drift = drift::drift(checker, block, kind);
     let name = checker.scope.blocks[block].name?.node.clone();
     let (mut calibration, drift) = (calibration?, drift?);
-    // Every drift within the bound is as likely (JCGM 100:2008, 4.3.7).
+    // Rectangular distribution of the zero drift within its bound (JCGM 100:2008, 4.3.7).
     calibration.zero_drift = drift.map_or(0.0, |check| check.force / 3.0_f64.sqrt());
     let plan = RigPlan {
         name,
@@ -220,7 +221,7 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
     })
 }
 
-/// Fields of a real rig do nothing on a virtual one, and are not passed over in silence.
+/// Fields of a real rig have no effect on a virtual one, which is reported.
 fn without_use(checker: &mut Checker, block: usize) {
     let declared = &checker.scope.blocks[block];
     for entry in &declared.block.fields {
@@ -229,24 +230,26 @@ fn without_use(checker: &mut Checker, block: usize) {
             .field(&entry.key.node)
             .is_some_and(|field| field.real_rig_only)
         {
-            checker.faults.push(rigs::field_of_real_rigs(&entry.key));
+            checker
+                .diagnostics
+                .push(rigs::field_of_real_rigs(&entry.key));
         }
     }
 }
 
-/// Where the entry of a field stands.
-pub fn place_of(checker: &Checker, block: usize, field: &str) -> Option<Place> {
+/// The span of the entry of a field.
+pub fn context_of(checker: &Checker, block: usize, field: &str) -> Option<Context> {
     checker
-        .given(block, field)
-        .map(|(entry, _)| checker.place(block, entry))
+        .field(block, field)
+        .map(|(entry, _)| checker.context_of(block, entry))
 }
 
 fn virtual_link<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Place,
+    context: Context,
 ) -> Option<VirtualLink> {
-    let mut number = |name: &str| checker.constant_argument(chosen, name, place);
+    let mut number = |name: &str| checker.constant_argument(chosen, name, context);
     let (noise, resolution, force_resolution) = (
         number("noise"),
         number("resolution"),
@@ -279,10 +282,10 @@ fn virtual_link<'a>(
 fn settle<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Place,
+    context: Context,
     kind: Option<RigKind>,
 ) -> Option<Settle> {
-    let mut number = |name: &str| checker.constant_argument(chosen, name, place);
+    let mut number = |name: &str| checker.constant_argument(chosen, name, context);
     let (band, force_rate, dwell, timeout) = (
         number("displacement"),
         number("force_rate"),
@@ -308,9 +311,9 @@ fn settle<'a>(
     Some(settle)
 }
 
-/// Where the numbers are traced to; what a count is worth is for the real rig's own file to judge.
+/// The calibrations; the scale factor of raw counts is checked with the real rig.
 fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
-    let mut text = |field: &str| match checker.given(block, field) {
+    let mut text = |field: &str| match checker.field(block, field) {
         Some(_) => checker.text_field(block, field).map(Some),
         None => Some(None),
     };
@@ -328,20 +331,20 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         ("calibration_due", &due),
         ("displacement_calibration_due", &own_due),
     ] {
-        if let (Some(Some(day)), Some((_, entry))) = (due, checker.given(block, field))
+        if let (Some(Some(day)), Some((_, entry))) = (due, checker.field(block, field))
             && !calendar::is_day(day)
         {
             return checker.fail(rigs::not_a_day(day, entry.value.span));
         }
     }
-    let newtons_per_count = match checker.given(block, "force_per_count") {
+    let newtons_per_count = match checker.field(block, "force_per_count") {
         Some(_) => checker.constant(block, "force_per_count").map(Some),
         None => Some(None),
     };
     let zero_count = checker.constant(block, "zero_count");
     let (own, own_due) = (own?, own_due?);
     if own.is_none()
-        && let Some((_, entry)) = checker.given(block, "displacement_calibration_due")
+        && let Some((_, entry)) = checker.field(block, "displacement_calibration_due")
     {
         return checker.fail(rigs::day_of_no_calibration(&entry.key.node, entry.key.span));
     }

@@ -1,41 +1,37 @@
-//! A rig that moves a real specimen: its devices fit together, and nothing is missing that keeps a specimen safe. In: the
+//! A rig that moves a real specimen: its devices fit together, and every entry that the safety of the specimen needs is there. In: the
 //! block of a rig, the limits of the run. Out: a [`RealLink`]. It opens no port.
 
 use super::axes::{self, CheckedAxis};
 use super::axis_devices;
 use super::device::{Device, device};
-use super::{CheckedRig, kind, place_of};
-use crate::language::check::checker::{Checker, Place};
+use super::{CheckedRig, context_of, kind};
+use crate::language::check::checker::{Checker, Context};
 use crate::language::check::declarations::limits::CheckedLimits;
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole as whole_number;
-use crate::language::check::messages::rigs as fault;
+use crate::language::check::messages::rigs as message;
 use crate::language::check::messages::{values, whole};
 use crate::language::syntax::ast::{Argument, Expr, ExprKind};
-use crate::plan::{
-    Calibration, Datum, DeviceLink, Dialect, Gate, Interval, Link, ReadingRules, RealLink,
-    SafeState,
-};
+use crate::plan::{Datum, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
 use crate::schema::{Field, Kind, Need, RigKind};
-use crate::text::source::Span;
 use crate::units::Dimension;
 
-/// A request is sent after 0, T, 3T and given up after 7T.
+/// A request is sent after 0, T and 3T, and given up after 7T.
 const PATIENCE: f64 = 7.0;
 
-/// Who runs the test on a real rig has a name: what moves the specimen is somebody's act.
-pub fn attended(checker: &mut Checker, particulars: &[(&'static str, String)]) {
+/// A run on a real rig must name its operator, who is responsible for every move.
+pub fn check_operator(checker: &mut Checker, particulars: &[(&'static str, String)]) {
     let named = particulars
         .iter()
         .any(|(field, name)| *field == "operator" && !name.trim().is_empty());
     if let Some(block) = checker.real_rig.filter(|_| !named) {
         let declared = &checker.scope.blocks[block];
         let at = declared.name.map_or(declared.block.head, |name| name.span);
-        checker.faults.push(fault::nobody_named(at));
+        checker.diagnostics.push(message::no_operator_named(at));
     }
 }
 
-/// What a real rig says; None where something of it is faulty or missing, which [`complete`] says.
+/// The link of a real rig; None where it has an error or is incomplete, which [`complete`] reports.
 pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     let safe_state = checker
         .choice(block, "safe_state")
@@ -53,7 +49,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
             .iter()
             .flatten()
             .flat_map(|axis| [axis.actuator.as_ref(), axis.load_cell.as_ref()]);
-        hold_watchdog(
+        check_watchdog(
             checker,
             block,
             watchdog,
@@ -64,7 +60,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         )?;
     }
     let axes = axes?;
-    axis_devices::hold(checker, block, &actuator, load_cell.as_ref(), &axes)?;
+    axis_devices::check(checker, block, &actuator, load_cell.as_ref(), &axes)?;
     Some(RealLink {
         actuator: actuator.link,
         load_cell: load_cell.map(|device| device.link),
@@ -86,14 +82,14 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     })
 }
 
-/// The device that moves, and the one that weighs where it is another.
+/// The device that moves, and the device that measures the force where it is a separate one.
 fn devices(
     checker: &mut Checker,
     block: usize,
     axes: &[CheckedAxis],
 ) -> Option<(Device, Option<Device>)> {
     let key = |checker: &Checker, field: &str| {
-        checker.given(block, field).map(|(_, entry)| entry.key.span)
+        checker.field(block, field).map(|(_, entry)| entry.key.span)
     };
     let (link, actuator, load_cell) = (
         key(checker, "link"),
@@ -106,12 +102,12 @@ fn devices(
             .map(|at| ("actuator", at))
             .or(load_cell.map(|at| ("load_cell", at))),
     ) {
-        return checker.fail(fault::link_and_device(link, field, other));
+        return checker.fail(message::link_and_device(link, field, other));
     }
     if let (None, Some(at)) = (actuator, load_cell)
         && !checker.misspelt(block, &["actuator"])
     {
-        return checker.fail(fault::load_cell_alone(at));
+        return checker.fail(message::load_cell_alone(at));
     }
     let field = if link.is_some() { "link" } else { "actuator" };
     let moving = device_of(checker, block, field);
@@ -125,13 +121,13 @@ fn devices(
 }
 
 fn device_of(checker: &mut Checker, block: usize, field: &str) -> Option<Device> {
-    let (_, entry) = checker.given(block, field)?;
-    let (at, place) = (entry.value.span, place_of(checker, block, field)?);
+    let (_, entry) = checker.field(block, field)?;
+    let (at, context) = (entry.value.span, context_of(checker, block, field)?);
     let chosen = checker.choice(block, field)?;
-    device(checker, &chosen, at, place)
+    device(checker, &chosen, at, context)
 }
 
-/// One moves, one weighs, and counts have a worth.
+/// One device moves, one measures the force, and raw counts have a scale factor.
 fn fit(
     checker: &mut Checker,
     block: usize,
@@ -141,7 +137,7 @@ fn fit(
     axes: &[CheckedAxis],
 ) -> Option<()> {
     if !moving.link.dialect.moves() {
-        return checker.fail(fault::cannot_move(
+        return checker.fail(message::cannot_move(
             field,
             &moving.link.dialect,
             moving.dialect_at,
@@ -151,14 +147,14 @@ fn fit(
     let all_apart = !axes.is_empty() && axes.iter().all(|axis| axis.load_cell.is_some());
     if !cell.link.dialect.weighs() && !all_apart {
         let own = weighing.is_some();
-        return checker.fail(fault::cannot_weigh(
+        return checker.fail(message::cannot_measure_force(
             own,
             field,
             &cell.link.dialect,
             cell.dialect_at,
         ));
     }
-    let unsaid = axes.iter().find(|axis| {
+    let unstated = axes.iter().find(|axis| {
         let counts = axis
             .load_cell
             .as_ref()
@@ -173,33 +169,33 @@ fn fit(
         .filter_map(|axis| axis.load_cell.as_ref())
         .find(|own| own.link.dialect.counts())
     {
-        // What each axis says of its counts the rig need not say.
-        Some(_) if unsaid.is_none() => Some(()),
+        // Where each axis states its scale factor, the rig need not.
+        Some(_) if unstated.is_none() => Some(()),
         Some(own) => {
-            let own = unsaid
+            let own = unstated
                 .and_then(|axis| axis.load_cell.as_ref())
                 .unwrap_or(own);
             counts(checker, block, &own.link.dialect, own)
         }
-        None if unsaid.is_none() && !axes.is_empty() && cell.link.dialect.counts() => Some(()),
+        None if unstated.is_none() && !axes.is_empty() && cell.link.dialect.counts() => Some(()),
         None => counts(checker, block, &cell.link.dialect, cell),
     }
 }
 
-/// Raw counts need to be told in newtons; a force in newtons is not told twice.
+/// Raw counts need a scale factor; a force in newtons must have none.
 fn counts(checker: &mut Checker, block: usize, dialect: &Dialect, cell: &Device) -> Option<()> {
     if !dialect.counts() {
         let given = ["force_per_count", "zero_count"]
             .into_iter()
-            .find_map(|field| checker.given(block, field));
+            .find_map(|field| checker.field(block, field));
         return match given {
-            Some((_, entry)) => checker.fail(fault::nothing_counts(&entry.key, dialect)),
+            Some((_, entry)) => checker.fail(message::nothing_counts(&entry.key, dialect)),
             None => Some(()),
         };
     }
-    match checker.given(block, "force_per_count") {
+    match checker.field(block, "force_per_count") {
         None if checker.misspelt(block, &["force_per_count"]) => None,
-        None => checker.fail(fault::counts_without_force(dialect, cell.dialect_at)),
+        None => checker.fail(message::counts_without_force(dialect, cell.dialect_at)),
         Some((_, entry)) => match checker.constant(block, "force_per_count")? {
             0.0 => checker.fail(values::zero("force_per_count", entry.value.span)),
             _ => Some(()),
@@ -207,8 +203,8 @@ fn counts(checker: &mut Checker, block: usize, dialect: &Dialect, cell: &Device)
     }
 }
 
-/// A request may go unanswered for 7T before the program gives it up; a rig that lets go before that is of no use.
-fn hold_watchdog<'d>(
+/// A request may remain unanswered for 7T before the program gives it up; the watchdog of the rig must not act earlier.
+fn check_watchdog<'d>(
     checker: &mut Checker,
     block: usize,
     watchdog: f64,
@@ -217,14 +213,14 @@ fn hold_watchdog<'d>(
     let slowest =
         devices.max_by(|one, other| one.link.reply_timeout.total_cmp(&other.link.reply_timeout))?;
     let silence = PATIENCE * slowest.link.reply_timeout;
-    // 7 · 0.4 s is 2.8 s also where the last bit of the product says more.
+    // 7 · 0.4 s is 2.8 s, whatever the last bit of the product is.
     if watchdog >= silence * (1.0 - 4.0 * f64::EPSILON) {
         return Some(());
     }
     let given = checker
-        .given(block, "watchdog")
+        .field(block, "watchdog")
         .map(|(_, entry)| entry.value.span);
-    checker.fail(fault::watchdog_too_short(
+    checker.fail(message::watchdog_too_short(
         watchdog,
         silence,
         given.is_some(),
@@ -232,21 +228,21 @@ fn hold_watchdog<'d>(
     ))
 }
 
-/// The rig's gate; where each axis has its own, the rig needs none.
+/// The pre-test check of the rig; not needed where each axis has its own.
 fn gate(checker: &mut Checker, block: usize, axes: &[CheckedAxis]) -> Option<Gate> {
-    if checker.given(block, "gate").is_none() && axes.iter().all(|axis| axis.plan.gate.is_some()) {
+    if checker.field(block, "gate").is_none() && axes.iter().all(|axis| axis.plan.gate.is_some()) {
         return axes.first()?.plan.gate;
     }
-    let place = place_of(checker, block, "gate")?;
+    let context = context_of(checker, block, "gate")?;
     let chosen = checker.choice(block, "gate")?;
-    probe(checker, &chosen, place)
+    probe(checker, &chosen, context)
 }
 
 /// `probe(…)`, of a rig or of one of its axes.
-pub fn probe<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -> Option<Gate> {
-    let probe = checker.constant_argument(chosen, "displacement", place);
-    let stiffness = checker.interval_argument(chosen, "stiffness", place);
-    let zero = checker.constant_argument(chosen, "zero", place);
+pub fn probe<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, context: Context) -> Option<Gate> {
+    let probe = checker.constant_argument(chosen, "displacement", context);
+    let stiffness = checker.interval_argument(chosen, "stiffness", context);
+    let zero = checker.constant_argument(chosen, "zero", context);
     Some(Gate {
         zero: zero?,
         probe: probe?,
@@ -256,7 +252,7 @@ pub fn probe<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, place: Place) -
 
 fn readings(checker: &mut Checker, block: usize) -> Option<ReadingRules> {
     let samples = checker.count(block, "samples");
-    if let (Some(samples), Some((_, entry))) = (samples, checker.given(block, "samples"))
+    if let (Some(samples), Some((_, entry))) = (samples, checker.field(block, "samples"))
         && samples.is_multiple_of(2)
     {
         return checker.fail(values::even("samples", entry.value.span, samples));
@@ -280,14 +276,14 @@ fn readings(checker: &mut Checker, block: usize) -> Option<ReadingRules> {
     })
 }
 
-/// Says what each real rig lacks; for the rig of the run also whether its limits bound it, and hold its own moves.
+/// Reports the missing entries of each real rig; for the rig of the run also whether it is limited, and allows its own moves.
 pub fn complete(
     checker: &mut Checker,
     rig: Option<&mut CheckedRig>,
     limits: Option<&CheckedLimits>,
 ) {
-    // Limits that the rig names are not known where it is faulty itself.
-    let knows_limits = |block: usize| rig.is_some() || checker.given(block, "limits").is_none();
+    // The limits that the rig names are unknown where it has an error itself.
+    let knows_limits = |block: usize| rig.is_some() || checker.field(block, "limits").is_none();
     let of_run = checker.real_rig.filter(|block| knows_limits(*block));
     let rigs = checker.scope.of_kind(Kind::Rig).map(|(index, _)| index);
     let real: Vec<usize> = rigs
@@ -302,7 +298,7 @@ pub fn complete(
             .filter(|field| matches!(field.need, Need::RequiredOn(RigKind::Real, _)));
         let absent = |field: &&Field| {
             let elsewhere = field.name == "gate" && every_axis_has_a_gate(checker, block);
-            checker.given(block, field.name).is_none()
+            checker.field(block, field.name).is_none()
                 && !elsewhere
                 && !checker.misspelt(block, &[field.name])
         };
@@ -311,7 +307,7 @@ pub fn complete(
             .filter(|_| of_run == Some(block))
             .map_or_else(Vec::new, |limits| unbounded(checker, limits));
         if !missing.is_empty() || !unbounded.is_empty() {
-            checker.faults.push(fault::incomplete(
+            checker.diagnostics.push(message::incomplete(
                 declared.name,
                 declared.block.head,
                 &missing,
@@ -329,18 +325,18 @@ pub fn complete(
     ) = (rig, limits)
         && let Link::Real(link) = &mut plan.link
     {
-        hold_own_moves(checker, *block, link, limits);
+        check_own_moves(checker, *block, link, limits);
     }
 }
 
 fn every_axis_has_a_gate(checker: &Checker, block: usize) -> bool {
-    let Some((_, written)) = checker.given(block, "axes") else {
+    let Some((_, written)) = checker.field(block, "axes") else {
         return false;
     };
     // By its name, or as the second of those without one.
-    let is_gate = |(place, argument): (usize, &Argument)| match &argument.name {
+    let is_gate = |(index, argument): (usize, &Argument)| match &argument.name {
         Some(name) => name.node == "gate",
-        None => place == 1,
+        None => index == 1,
     };
     let has = |axis: &Expr| match &axis.kind {
         ExprKind::Call { arguments, .. } => arguments.iter().enumerate().any(is_gate),
@@ -352,9 +348,9 @@ fn every_axis_has_a_gate(checker: &Checker, block: usize) -> bool {
     }
 }
 
-/// The limits that a real rig must have and that nothing bounds.
+/// The limits that a real rig must have and that are missing.
 fn unbounded(checker: &Checker, limits: &CheckedLimits) -> Vec<&'static str> {
-    let said = |field: &str| {
+    let has_error = |field: &str| {
         let mut blocks = checker.scope.of_kind(Kind::Limits);
         checker.names_lost || blocks.any(|(block, _)| checker.misspelt(block, &[field]))
     };
@@ -365,13 +361,13 @@ fn unbounded(checker: &Checker, limits: &CheckedLimits) -> Vec<&'static str> {
         ("speed", limits.limits.speed),
     ];
     all.into_iter()
-        .filter(|(field, interval)| !finite(*interval) && !said(field))
+        .filter(|(field, interval)| !finite(*interval) && !has_error(field))
         .map(|(field, _)| field)
         .collect()
 }
 
-/// The moves that the rig makes of itself: the probe, and a move for which no speed is said.
-fn hold_own_moves(
+/// The moves of the rig itself: the probe, and moves without a specified speed.
+fn check_own_moves(
     checker: &mut Checker,
     block: usize,
     link: &mut RealLink,
@@ -382,11 +378,11 @@ fn hold_own_moves(
         .map(|axis| link.gate_of(axis).probe)
         .find(|probe| !limits.limits.displacement.contains(*probe));
     let given = checker
-        .given(block, "gate")
-        .or_else(|| checker.given(block, "axes"));
+        .field(block, "gate")
+        .or_else(|| checker.field(block, "axes"));
     if let (Some((_, gate)), Some(at), Some(probe)) = (given, limits.displacement_at, beyond) {
         let interval = limits.limits.displacement;
-        checker.faults.push(whole::beyond_limits(
+        checker.diagnostics.push(whole::beyond_limits(
             "gate",
             probe,
             Dimension::LENGTH,
@@ -396,9 +392,9 @@ fn hold_own_moves(
         ));
     }
     let interval = limits.limits.speed;
-    match (checker.given(block, "speed"), limits.speed_at) {
+    match (checker.field(block, "speed"), limits.speed_at) {
         (Some((_, speed)), Some(at)) if !interval.contains(link.own_speed) => {
-            let fault = whole::beyond_limits(
+            let diagnostic = whole::beyond_limits(
                 "speed",
                 link.own_speed,
                 Dimension::VELOCITY,
@@ -406,132 +402,10 @@ fn hold_own_moves(
                 interval,
                 at,
             );
-            checker.faults.push(fault);
+            checker.diagnostics.push(diagnostic);
         }
-        // The default is no faster than what is allowed.
+        // The default is no faster than the limit.
         (None, _) => link.own_speed = link.own_speed.min(interval.high),
         _ => {}
     }
-}
-
-/// What runs on the real rig of the run but cannot be vouched for.
-pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
-    let (Some(block), Some(link)) = (rig.block, rig.plan.link.as_real()) else {
-        return;
-    };
-    let head = checker.scope.blocks[block].block.head;
-    let axes = 0..rig.plan.axes().unwrap_or(1);
-    let calibrations: Vec<Calibration> = axes
-        .clone()
-        .map(|axis| rig.plan.calibration_of(axis))
-        .collect();
-    let lacks = |of: fn(&Calibration) -> &Option<String>| {
-        calibrations
-            .iter()
-            .any(|calibration| of(calibration).is_none())
-    };
-    let (reference, due) = (
-        lacks(|calibration| &calibration.reference),
-        lacks(|calibration| &calibration.due),
-    );
-    if reference || due {
-        checker
-            .faults
-            .push(fault::not_certifiable(&rig.plan.name, head, reference, due));
-    }
-    let no_day = |calibration: &Calibration| matches!(calibration.displacement, Some((_, None)));
-    let of_rig = checker
-        .given(block, "displacement_calibration")
-        .or_else(|| checker.given(block, "axes"));
-    if let (true, Some((_, entry))) = (calibrations.iter().any(no_day), of_rig) {
-        checker.faults.push(fault::displacement_without_day(
-            &rig.plan.name,
-            entry.value.span,
-        ));
-    }
-    if axes
-        .clone()
-        .any(|axis| link.readings_of(axis).resolution == 0.0)
-    {
-        let at = checker
-            .given(block, "resolution")
-            .map_or(head, |(_, entry)| entry.value.span);
-        checker
-            .faults
-            .push(fault::resolution_unknown(&rig.plan.name, at));
-    }
-    let drowned = axes
-        .clone()
-        .map(|axis| (link.gate_of(axis), link.readings_of(axis).noise))
-        .find(|(gate, noise)| {
-            // What is written as ten times must be ten times.
-            gate.probe.abs() * gate.stiffness.low < fault::GATE_OVER_NOISE * noise * (1.0 - 1e-9)
-        });
-    let given = checker
-        .given(block, "gate")
-        .or_else(|| checker.given(block, "axes"));
-    if let (Some((gate, noise)), Some((_, entry))) = (drowned, given) {
-        checker.faults.push(fault::gate_within_noise(
-            gate.probe.abs(),
-            gate.stiffness.low,
-            noise,
-            entry.value.span,
-        ));
-    }
-    let unpinned =
-        |device: &DeviceLink| device.dialect == Dialect::Native && device.serial_number.is_none();
-    let fields = if checker.given(block, "link").is_some() {
-        ["link", "load_cell"]
-    } else {
-        ["actuator", "load_cell"]
-    };
-    for (field, device) in fields
-        .into_iter()
-        .zip([Some(&link.actuator), link.load_cell.as_ref()])
-    {
-        if let (Some(device), Some((_, entry))) = (device, checker.given(block, field))
-            && unpinned(device)
-        {
-            checker.faults.push(fault::device_not_pinned(
-                field,
-                "",
-                &device.port,
-                entry.value.span,
-            ));
-        }
-    }
-    let Some((_, written)) = checker.given(block, "axes") else {
-        return;
-    };
-    for (axis, own) in link.axes.iter().enumerate() {
-        for (field, device) in [("actuator", &own.actuator), ("load_cell", &own.load_cell)] {
-            if let Some(device) = device.as_ref().filter(|device| unpinned(device)) {
-                let at = own_device_at(&written.value, axis, field);
-                checker.faults.push(fault::device_not_pinned(
-                    field,
-                    &format!(" of axis {}", axis + 1),
-                    &device.port,
-                    at,
-                ));
-            }
-        }
-    }
-}
-
-/// Where an axis names a device of its own; the list of axes, where that cannot be told.
-fn own_device_at(axes: &Expr, axis: usize, field: &str) -> Span {
-    let written = match &axes.kind {
-        ExprKind::List { items, .. } => items.get(axis),
-        _ => Some(axes),
-    };
-    let named = written.and_then(|written| match &written.kind {
-        ExprKind::Call { arguments, .. } => arguments.iter().find(|argument| {
-            argument
-                .name
-                .as_ref()
-                .is_some_and(|name| name.node == field)
-        }),
-        _ => None,
-    });
-    named.map_or(axes.span, |argument| argument.value.span)
 }

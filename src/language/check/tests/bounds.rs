@@ -1,4 +1,4 @@
-//! How deep values may stand one inside another, and how large one may become: what a small file can ask for is bounded.
+//! Bounds on the depth and the size of values: the cost of a small file is limited.
 
 use super::{Files, checked};
 use crate::language::check::{DEEPEST_VALUES, MOST_TERMS};
@@ -32,10 +32,10 @@ fn doubled(doublings: usize) -> String {
 #[test]
 fn a_chain_of_values_is_as_deep_as_the_bound_and_no_deeper() {
     assert_eq!(checked(&from_below(DEEPEST_VALUES), &Files(&[]), &[]).1, "");
-    let (_, said) = checked(&from_below(DEEPEST_VALUES + 1), &Files(&[]), &[]);
-    assert_eq!(said, "E405 a0");
-    let (_, said) = checked(&from_below(30 * DEEPEST_VALUES), &Files(&[]), &[]);
-    assert_eq!(said.lines().count(), 1, "it is said once: {said}");
+    let (_, reported) = checked(&from_below(DEEPEST_VALUES + 1), &Files(&[]), &[]);
+    assert_eq!(reported, "E405 a0");
+    let (_, reported) = checked(&from_below(30 * DEEPEST_VALUES), &Files(&[]), &[]);
+    assert_eq!(reported.lines().count(), 1, "it is said once: {reported}");
 }
 
 #[test]
@@ -43,18 +43,18 @@ fn a_value_that_doubles_stays_small() {
     let most = MOST_TERMS.ilog2() as usize - 1;
     assert_eq!(checked(&doubled(most), &Files(&[]), &[]).1, "");
     for doublings in [most + 1, 60] {
-        let (_, said) = checked(&doubled(doublings), &Files(&[]), &[]);
-        assert_eq!(said, format!("E405 a{most} + a{most}"));
+        let (_, reported) = checked(&doubled(doublings), &Files(&[]), &[]);
+        assert_eq!(reported, format!("E405 a{most} + a{most}"));
     }
 }
 
-/// A plan of many blocks, each with its place in them.
+/// A plan of many blocks, each with its number.
 fn many(count: usize, each: impl Fn(usize) -> String) -> String {
     let striker = "striker hammer {\n  mass     = 10 kg\n  velocity = 1 m/s\n}\n";
     (0..count).fold(striker.to_owned(), |text, index| text + &each(index))
 }
 
-/// What is said grows with the faults and not with their square: every one has so many places and names, and a list so many of them.
+/// The output grows with the number of errors and not with its square: the labels and names of each are bounded, and so is a list of them.
 #[test]
 fn faults_are_counted_and_their_places_are_bounded() {
     let pair = |index: usize| {
@@ -69,7 +69,7 @@ fn faults_are_counted_and_their_places_are_bounded() {
         )
     };
     let unread = |index: usize| format!("let q{index} = 3 $ x\nlet w{index} = other{index} * 2\n");
-    for (text, told) in [
+    for (text, count) in [
         (many(1200, pair), 1200),
         (many(600, unknown), 1801),
         (many(900, unread), 1800),
@@ -77,11 +77,15 @@ fn faults_are_counted_and_their_places_are_bounded() {
         let (checked, _) = checked(&text, &Files(&[]), &[]);
         assert!(checked.plan.is_none());
         let list = &checked.diagnostics;
-        let labels: usize = list.iter().map(|fault| fault.labels.len()).sum();
-        let widest = list.iter().map(|fault| fault.labels.len()).max().unwrap();
+        let labels: usize = list.iter().map(|diagnostic| diagnostic.labels.len()).sum();
+        let widest = list
+            .iter()
+            .map(|diagnostic| diagnostic.labels.len())
+            .max()
+            .unwrap();
         let longest = list
             .iter()
-            .filter_map(|fault| fault.help.as_ref().map(String::len))
+            .filter_map(|diagnostic| diagnostic.help.as_ref().map(String::len))
             .max()
             .unwrap();
         assert!(
@@ -89,12 +93,12 @@ fn faults_are_counted_and_their_places_are_bounded() {
             "{} {widest} {labels} {longest}",
             list.len()
         );
-        let left: usize = told - 1000;
+        let left: usize = count - 1000;
         let last = list
             .iter()
             .rev()
-            .find(|fault| fault.message.contains("not listed"))
-            .map(|fault| fault.message.as_str());
+            .find(|diagnostic| diagnostic.message.contains("not listed"))
+            .map(|diagnostic| diagnostic.message.as_str());
         assert_eq!(
             last,
             Some(format!("{left} more faults are not listed: a list has at most 1000").as_str())
@@ -102,7 +106,7 @@ fn faults_are_counted_and_their_places_are_bounded() {
     }
 }
 
-/// Of many faults the first have a suggestion, for each looks at every name.
+/// Only the first of many errors have a suggestion, because each compares every name.
 #[test]
 fn the_first_of_many_unknown_names_have_a_suggestion() {
     let (checked, _) = checked(
@@ -112,8 +116,8 @@ fn the_first_of_many_unknown_names_have_a_suggestion() {
         &Files(&[]),
         &[],
     );
-    let helped = checked.diagnostics.iter().filter(|fault| {
-        fault
+    let helped = checked.diagnostics.iter().filter(|diagnostic| {
+        diagnostic
             .help
             .as_ref()
             .is_some_and(|help| help.contains("did you mean"))

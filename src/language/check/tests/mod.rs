@@ -1,28 +1,29 @@
 //! Tests of the check on whole plans: the plan that results, and the diagnostics with their
 //! positions.
 
+mod binding;
 mod bounds;
-mod faults;
+mod diagnostics;
 mod plan;
 mod real_rig;
 mod recorded;
 
-use super::{Checked, LoadFault, Loader, Options, check};
+use super::{Checked, LoadError, Loader, Options, check};
 
 /// Files by path.
 struct Files<'f>(&'f [(&'f str, &'f str)]);
 
 impl Loader for Files<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         self.0
             .iter()
             .find(|(name, _)| *name == path)
             .map(|(_, text)| (*text).to_owned())
-            .ok_or(LoadFault::NotFound)
+            .ok_or(LoadError::NotFound)
     }
 }
 
-/// The outcome, and what was said: a line for each diagnostic, its code and the text it points at.
+/// The outcome, and a line for each diagnostic: its code and the text under its first label.
 fn checked(text: &str, files: &Files, settings: &[(&str, &str)]) -> (Checked, String) {
     let settings = settings
         .iter()
@@ -37,18 +38,20 @@ fn checked(text: &str, files: &Files, settings: &[(&str, &str)]) -> (Checked, St
             ..Options::default()
         },
     );
-    let line = |fault: &crate::text::diagnostic::Diagnostic| {
+    let line = |diagnostic: &crate::text::diagnostic::Diagnostic| {
         format!(
             "{} {}",
-            fault.code,
-            fault.span().map_or("", |span| checked.sources.text(span))
+            diagnostic.code,
+            diagnostic
+                .span()
+                .map_or("", |span| checked.sources.text(span))
         )
     };
-    let said = checked
+    let reported = checked
         .diagnostics
         .iter()
         .map(line)
         .collect::<Vec<_>>()
         .join("\n");
-    (checked, said)
+    (checked, reported)
 }

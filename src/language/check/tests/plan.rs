@@ -63,8 +63,8 @@ report {
 
 #[test]
 fn the_whole_plan_of_the_reference_checks_to_si() {
-    let (checked, said) = checked(WHOLE, &Files(&[("lib/instron_frame.psd", FRAME)]), &[]);
-    assert_eq!(said, "");
+    let (checked, reported) = checked(WHOLE, &Files(&[("lib/instron_frame.psd", FRAME)]), &[]);
+    assert_eq!(reported, "");
     let plan = checked.plan.expect("no error stands");
     assert_eq!(plan.title, "Pultruded GFRP beam, midspan impact");
     assert!((plan.specimens[0].mass - 1850.0 * 564e-6 * 0.7).abs() < 1e-12);
@@ -128,12 +128,12 @@ fn the_whole_plan_of_the_reference_checks_to_si() {
 
 #[test]
 fn a_setting_takes_the_place_of_the_parameter() {
-    let (checked, said) = checked(
+    let (checked, reported) = checked(
         WHOLE,
         &Files(&[("lib/instron_frame.psd", FRAME)]),
         &[("impact_speed", "1500 mm/s")],
     );
-    assert_eq!(said, "");
+    assert_eq!(reported, "");
     assert_eq!(
         checked.plan.expect("no error stands").strikers[0].velocity,
         1.5

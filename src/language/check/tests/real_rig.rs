@@ -1,4 +1,4 @@
-//! What a real rig of a plan becomes, and which rig a run is on.
+//! The checked form of a real rig, and the choice of the rig of a run.
 
 use super::{Files, Options, check};
 use crate::plan::{
@@ -8,7 +8,7 @@ use crate::plan::{
 use crate::record::equipment::{Device, Equipment};
 use crate::rig::DeclaredNoise;
 
-/// A specimen without behaviour, a rig with these lines, and limits of both.
+/// A specimen without a model, a rig with these lines, and limits of both.
 fn text(rig: &str) -> String {
     format!(
         "specimen beam {{ mass = 1 kg }}\nlimits frame_limits {{ force = -2 kN .. 10 kN }}\n\
@@ -76,7 +76,7 @@ fn one_device_with_all_defaults() {
         (readings.resolution, readings.noise, readings.force_range),
         (0.0, 0.0, Interval::ALL)
     );
-    // A speed that nobody asked for is no faster than the limits allow.
+    // A default speed is no faster than the limits allow.
     assert_eq!((link.watchdog, link.own_speed), (3.0, 0.5e-3));
 }
 
@@ -134,7 +134,7 @@ fn two_devices_with_everything_said() {
         (link.watchdog, link.own_speed, link.safe_state),
         (4.0, 0.2e-3, SafeState::Hold)
     );
-    // Limits are those of the plan and of the rig together; the specimen needs no behaviour.
+    // The limits are those of the plan and of the rig together; the specimen needs no model.
     assert_eq!(
         (plan.limits.force.high, plan.limits.displacement.high),
         (10e3, 25e-3)
@@ -291,8 +291,8 @@ fn an_axis_states_its_own_certificates_and_uncertainties_and_leaves_the_rest_to_
         (Some("1"), Some("0.5"))
     );
     let identity = crate::rig::virtual_rig(&plan).identity();
-    let told = Equipment::of(&plan, Device::of(&identity, DeclaredNoise::default()));
-    let rows = told.channels.iter().map(|channel| {
+    let equipment = Equipment::of(&plan, Device::of(&identity, DeclaredNoise::default()));
+    let rows = equipment.channels.iter().map(|channel| {
         (
             channel.axis,
             channel.uncertainty,
@@ -308,6 +308,6 @@ fn an_axis_states_its_own_certificates_and_uncertainties_and_leaves_the_rest_to_
     assert!(
         rows.eq(wanted.map(|(axis, uncertainty, text)| (axis, uncertainty, Some(text)))),
         "{:?}",
-        told.channels
+        equipment.channels
     );
 }

@@ -1,4 +1,4 @@
-//! What a recorded plan may say that a new one may not: it was run as the version read it that made the record.
+//! Names that a plan from a run log may use and a new one may not: it is read as the version read it that wrote the log.
 
 use super::{Files, check};
 use crate::language::check::Options;
@@ -40,7 +40,7 @@ fn a_recorded_plan_is_read_as_it_was_run() {
     let codes: Vec<&str> = read(false)
         .diagnostics
         .iter()
-        .map(|fault| fault.code.id())
+        .map(|diagnostic| diagnostic.code.id())
         .collect();
     assert_eq!(codes, ["E209", "E302", "E206"]);
     let plan = read(true).plan.unwrap();

@@ -1,14 +1,14 @@
-//! What the guarded rule cannot guard: a requirement that reads a result which never has an uncertainty (W729). In: procedures,
+//! Requirements to which the guarded rule cannot apply, because they read a result that never has an uncertainty (W729). In: procedures,
 //! requirements, the rule. Out: warnings. It knows no run.
 
 use std::collections::BTreeSet;
 
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::values as fault;
+use crate::language::check::messages::values as message;
 use crate::plan::formula::Part;
 use crate::plan::{DecisionRule, Procedure, Requirement};
 
-/// Not measured, and known to be what it is: what the plan gives, and how well the sum of energies closes.
+/// Results that are exact and not measured: those from the plan, and the closure of the energy balance.
 const EXACT: [&str; 3] = ["time_step", "energy_error", "energy_errors"];
 
 pub fn warn(
@@ -20,7 +20,7 @@ pub fn warn(
     if rule == DecisionRule::Simple {
         return;
     }
-    let mut told = BTreeSet::new();
+    let mut reported = BTreeSet::new();
     for (index, requirement) in requirements.iter().enumerate() {
         let mut references = Vec::new();
         requirement
@@ -36,13 +36,13 @@ pub fn warn(
             };
             let result = checker.scope.blocks[*block].kind.result(reference.name);
             if result.is_some_and(|result| !result.measured && !result.count)
-                && told.insert((*block, reference.name))
+                && reported.insert((*block, reference.name))
             {
                 let required = checker.scope.requirements[index].condition.span;
                 let read = format!("{}.{}", procedure.name, reference.name);
                 checker
-                    .faults
-                    .push(fault::nothing_to_guard(&read, required));
+                    .diagnostics
+                    .push(message::nothing_to_guard(&read, required));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What a run leaves of a specimen: `final_…` where its last step was, `residual_…` where it was unloaded. In: the name that a plan
+//! The state of a specimen after a run: `final_…` at its last step, `residual_…` after unloading. In: the name that a plan
 //! reads, the procedures, the requirements. Out: the result, E206, or a warning (W730). It knows no run.
 
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use crate::plan::formula::{Formula, Part, ResultReference};
 use crate::plan::{Condition, Procedure, Requirement};
 use crate::schema::{self, Kind, ResultKind};
 
-/// What is left where a specimen was unloaded, and the same at the last step.
+/// Results after unloading, and the same at the last step.
 const LEFT: [(&str, &str); 3] = [
     ("residual_displacement", "final_displacement"),
     ("residual_displacements", "final_displacements"),
@@ -18,7 +18,7 @@ const LEFT: [(&str, &str); 3] = [
 ];
 
 impl Checker<'_> {
-    /// What a result is called that a plan names as if the run unloaded, or did not. Recorded plans call it so.
+    /// The right name of a result that a plan reads as if the run unloaded, or did not. Plans of older logs use the other name.
     pub fn left_under_another_name(&self, block: usize, name: &str) -> Option<&'static ResultKind> {
         let unloads = self.unloads(block);
         let other = |(residual, last): &(&'static str, &'static str)| match unloads {
@@ -31,8 +31,8 @@ impl Checker<'_> {
             .and_then(|other| self.scope.blocks[block].kind.result(other))
     }
 
-    /// A result of the blow that is just over, as `while` reads it: its own, and where it rests if it is unloaded.
-    pub fn result_of_blow(&self, block: usize, name: &str) -> Option<&'static ResultKind> {
+    /// A result of the impact that has just ended, as `while` reads it: its own, and the residual one if it is unloaded.
+    pub fn result_of_impact(&self, block: usize, name: &str) -> Option<&'static ResultKind> {
         let of_unload = || {
             schema::block(Kind::Unload)
                 .result(name)
@@ -43,10 +43,10 @@ impl Checker<'_> {
             .or_else(|| of_unload().filter(|_| self.unloads(block)))
     }
 
-    /// Whether a procedure ends where the specimen carries no load.
+    /// Whether a procedure ends with the specimen unloaded.
     fn unloads(&self, block: usize) -> bool {
         let between = || {
-            self.given(block, "between")
+            self.field(block, "between")
                 .map(|(_, entry)| &entry.value.kind)
         };
         match self.scope.blocks[block].kind.kind {
@@ -58,13 +58,13 @@ impl Checker<'_> {
     }
 }
 
-/// Requirements on where the last step of a run was, after which nothing unloads the specimen.
+/// Requirements on the position at the last step of a run, after which the specimen is not unloaded.
 pub fn warn(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
     requirements: &[Requirement],
 ) {
-    let mut told = BTreeSet::new();
+    let mut reported = BTreeSet::new();
     for (index, requirement) in requirements.iter().enumerate() {
         let formulas = requirement.conditions.iter().flat_map(Condition::formulas);
         for reference in formulas.filter_map(compared) {
@@ -79,7 +79,7 @@ pub fn warn(
                 crate::procedures::facts_of(later).unloads
                     && later.specimen() == procedure.kind.specimen()
             });
-            if final_value && !unloaded && told.insert((*block, reference.name)) {
+            if final_value && !unloaded && reported.insert((*block, reference.name)) {
                 let (required, head) = (
                     checker.scope.requirements[index].condition.span,
                     checker.scope.blocks[*block].block.head,
@@ -89,14 +89,14 @@ pub fn warn(
                     .is_some();
                 let read = format!("{}.{}", procedure.name, reference.name);
                 checker
-                    .faults
+                    .diagnostics
                     .push(values::final_is_not_residual(&read, row, required, head));
             }
         }
     }
 }
 
-/// The result that one side of a condition is, or the size of it, or an entry: an energy that is computed of it is none.
+/// The result that one side of a condition is, or its absolute value, or an entry; an energy that is calculated from it is not.
 fn compared(side: &Formula) -> Option<ResultReference> {
     match side {
         Formula::Result(reference) => {

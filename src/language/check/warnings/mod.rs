@@ -7,14 +7,14 @@ pub(crate) mod record_size;
 pub mod tracking;
 
 use super::checker::Checker;
-use super::messages::{cyclic, values, whole as fault};
+use super::messages::{cyclic, values, whole as message};
 use crate::plan::{Condition, Contact, Ground, Procedure, Requirement};
 use crate::procedures::facts::{Leaves, Motion};
 use crate::schema::Kind;
-use crate::text::source::{FileId, Span};
+use crate::text::source::{FileId, Span, Spanned};
 use crate::uncertainty::Source;
 
-/// Warnings of the whole plan; asked for only where no error stands.
+/// Warnings of the whole plan; called only where there is no error.
 pub fn whole_plan(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
@@ -23,19 +23,19 @@ pub fn whole_plan(
     plan: Span,
 ) {
     peak_forces(checker, procedures, requirements);
-    blows_on_blows(checker, procedures, grounds);
+    impacts_on_moving_specimens(checker, procedures, grounds);
     unused_uncertainties(checker, procedures, requirements);
     match procedures.last() {
-        None => checker.faults.push(fault::nothing_runs(plan)),
+        None => checker.diagnostics.push(message::nothing_runs(plan)),
         Some((block, _)) if requirements.is_empty() => {
             let head = checker.scope.blocks[*block].block.head;
-            checker.faults.push(fault::nothing_required(head));
+            checker.diagnostics.push(message::nothing_required(head));
         }
         Some(_) => {}
     }
     for (index, value) in checker.scope.values.iter().enumerate() {
         if value.name.span.file == FileId(0) && !checker.used.contains(&index) {
-            checker.faults.push(fault::unused(
+            checker.diagnostics.push(message::unused(
                 value.keyword,
                 &value.name.node,
                 value.name.span,
@@ -44,9 +44,9 @@ pub fn whole_plan(
     }
 }
 
-/// A run that integrates straight after another starts from where that one ended, under load, which no specimen stays at. A frame that
-/// is damped comes to rest by itself, where its run goes on for long enough.
-fn blows_on_blows(
+/// A run that integrates directly after another starts from the final state of that one, under load, at which no specimen remains. A damped
+/// frame comes to rest without an actuator, if its run continues for long enough.
+fn impacts_on_moving_specimens(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
     grounds: &[Option<Ground>],
@@ -72,18 +72,19 @@ fn blows_on_blows(
         if let Some((first, ended, way_out)) = before {
             let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
             let name = first.name.map_or("", |name| name.node.as_str());
-            let fault = cyclic::blow_on_blow(
-                (what, this.block.head),
-                (name, first.block.head, ended),
+            let diagnostic = cyclic::impact_on_moving_specimen(
+                Spanned::new(what, this.block.head),
+                Spanned::new(name, first.block.head),
+                ended,
                 way_out,
             );
-            checker.faults.push(fault);
+            checker.diagnostics.push(diagnostic);
         }
         before = Some((*block, ends, help)).filter(|_| !rests);
     }
 }
 
-/// A mass is uncertain for whom takes it: a blow on the specimen that has no mass of its own, and the damping ratio of a sweep.
+/// The uncertainty of a mass is used by an impact on the specimen that takes its mass, and by the damping ratio of a sweep.
 fn unused_uncertainties(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
@@ -114,11 +115,11 @@ fn unused_uncertainties(
     for block in specimens
         .into_iter()
         .enumerate()
-        .filter(|(place, _)| !used.contains(place))
+        .filter(|(index, _)| !used.contains(index))
         .map(|(_, block)| block)
     {
         let stated = checker
-            .given(block, "mass_uncertainty")
+            .field(block, "mass_uncertainty")
             .map(|(_, entry)| entry.value.span);
         let some = stated.is_some()
             && checker
@@ -128,7 +129,9 @@ fn unused_uncertainties(
             let name = checker.scope.blocks[block]
                 .name
                 .map_or("", |name| name.node.as_str());
-            checker.faults.push(values::uncertainty_unused(name, span));
+            checker
+                .diagnostics
+                .push(values::uncertainty_unused(name, span));
         }
     }
 }
@@ -156,8 +159,8 @@ fn peak_forces(
             {
                 let head = checker.scope.blocks[*block].block.head;
                 checker
-                    .faults
-                    .push(fault::peak_force_follows_the_step(span, head, law));
+                    .diagnostics
+                    .push(message::peak_force_follows_the_step(span, head, law));
             }
         }
     };
@@ -171,7 +174,7 @@ fn peak_forces(
         {
             let head = checker.scope.blocks[*block].block.head;
             let span = checker
-                .given(*block, "while")
+                .field(*block, "while")
                 .map_or(head, |(_, entry)| entry.value.span);
             read(checker, conditions, span);
         }

@@ -1,12 +1,12 @@
-//! Whether the record of a run can be read back when it is over, as far as the plan tells its steps. In: a checked plan and where
-//! its procedures stand in the text. Out: the first procedure by whose end the record is too long. It asks no disk.
+//! Whether the log of a run can be read back when it is over, as far as the plan determines its steps. In: a checked plan and the
+//! blocks of its procedures. Out: the first procedure by whose end the log is too long. It reads no disk space.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::whole;
 use crate::plan::{Counts, FRAME, MOST_RECORD_BYTES, Plan};
 use crate::procedures;
 
-/// Holds the steps of all procedures that integrate, block by block, against the longest record.
+/// Compares the steps of all procedures that integrate, one after another, with the longest log.
 pub fn fits(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
     #[expect(clippy::cast_precision_loss, reason = "far less than 2^53")]
     let most = MOST_RECORD_BYTES as f64;
@@ -26,11 +26,11 @@ pub fn fits(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
             let fit = ((most - before - bytes(0.0)) / each).max(0.0).floor();
             let head = checker.scope.blocks[block].block.head;
             let at = checker
-                .given(block, "duration")
+                .field(block, "duration")
                 .map_or(head, |(_, entry)| entry.value.span);
             checker
-                .faults
-                .push(whole::record_too_long(at, (after, most), (steps, fit)));
+                .diagnostics
+                .push(whole::record_too_long(at, after, most, steps, fit));
             return;
         }
         before = after;

@@ -1,8 +1,8 @@
-//! The delay of a virtual rig that lags or falls short, to first order, and the warning where it would feed much energy into a test
-//! (W719). In: procedures that integrate, the rig. Out: delays and warnings. It runs nothing: a dry run on the lagging rig shows the rest.
+//! The delay of a virtual rig that lags or falls short, to first order, and the warning where it would add much energy to a test
+//! (W719). In: procedures that integrate, the rig. Out: delays and warnings. It runs nothing: a simulation on the lagging rig shows the rest.
 
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::methods as fault;
+use crate::language::check::messages::methods as message;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::tracking::monitor;
 use crate::plan::formula::NoResults;
@@ -13,31 +13,31 @@ use crate::plan::{
 use crate::procedures;
 use crate::procedures::impact::check::time_step_before_the_run;
 
-/// How late the actuators of a procedure are.
+/// Delay of the actuators of a procedure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Delay {
-    /// D, s of virtual time.
+    /// D, simulated time \[s\].
     late: f64,
-    /// Δt, s
+    /// Δt \[s\]
     time_step: f64,
-    /// Of the specimen, or of the first mode of a frame, rad/s.
+    /// Natural circular frequency of the specimen, or of the first mode of a frame \[rad/s\].
     omega: f64,
 }
 
 impl Delay {
-    /// The damping ratio that a motion at ω shows for being late by D: a force K·d(t − D) is K·d − KD·v, C = −KD and ζ = −ωD/2.
+    /// Apparent damping ratio of a motion at ω with a delay D: a force K·d(t − D) is K·d − KD·v, so that C = −KD and ζ = −ωD/2.
     fn damping_ratio(self) -> f64 {
         -0.5 * self.omega * self.late
     }
 
-    /// The energy that this adds to a vibration in one cycle, over its own: −4πζ.
+    /// Energy that it adds to a vibration in one cycle, over that of the vibration: −4πζ.
     fn energy(self) -> f64 {
         -4.0 * std::f64::consts::PI * self.damping_ratio()
     }
 }
 
-/// How late the actuators of a rig are to first order, s of virtual time: t of each increment is missed, which is Δt·t/(1 − t), and of
-/// a lag τ what a pause leaves of it, or in continuous mode τ over the time scale.
+/// Delay of the actuators of a rig to first order, in simulated time \[s\]: the fraction t of each increment is missed, which is Δt·t/(1 − t), and
+/// of a lag τ the part that remains after a pause, or in continuous mode τ over the time scale.
 #[must_use]
 pub fn late(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
     let Link::Virtual(VirtualLink {
@@ -54,7 +54,7 @@ pub fn late(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
     let of_lag = match stepping.mode {
         _ if lag <= 0.0 => 0.0,
         Mode::Continuous { time_scale } => lag / time_scale,
-        // It settles into its band first.
+        // The rig settles into its band first.
         Mode::StepAndPause if plan.rig.settle.band > 0.0 => 0.0,
         Mode::StepAndPause => {
             let left = (-stepping.pause.constant().unwrap_or(0.0) / lag).exp();
@@ -68,7 +68,7 @@ pub fn late(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
     (short * time_step + of_lag) / (1.0 - short)
 }
 
-/// None where nothing is late, or not enough is known before the run.
+/// None without a delay, or where too little is known before the run.
 fn of_procedure(plan: &Plan, procedure: usize) -> Option<Delay> {
     let found = match &plan.procedures.get(procedure)?.kind {
         ProcedureKind::Impact(impact) => {
@@ -101,7 +101,7 @@ fn of_procedure(plan: &Plan, procedure: usize) -> Option<Delay> {
 
 fn of_impact(plan: &Plan, impact: &Impact, striker: &Striker) -> Option<Delay> {
     let behaviour = plan.specimens.get(impact.specimen)?.behaviour.as_ref()?;
-    // An earlier procedure's stiffness is near the specimen's own.
+    // The stiffness from an earlier procedure is near the specimen's own.
     let stiffness = impact
         .stiffness
         .constant()
@@ -152,14 +152,14 @@ fn of_frame_in_steps(
     })
 }
 
-/// Warns of every procedure in which one cycle takes up as much energy as tracking may in all. `blocks` are those of the plan's
-/// procedures, `rig` that of its rig.
+/// Warns of every procedure in which one cycle absorbs as much energy as the limit on tracking allows. `blocks` are those of the plan's
+/// procedures, `rig` is that of its rig.
 pub fn warn(checker: &mut Checker, plan: &Plan, blocks: &[usize], rig: Option<usize>) {
     let Link::Virtual(link) = &plan.rig.link else {
         return;
     };
     let Some(errs) = rig
-        .and_then(|rig| checker.given(rig, "link"))
+        .and_then(|rig| checker.field(rig, "link"))
         .map(|(_, entry)| entry.value.span)
     else {
         return;
@@ -181,7 +181,7 @@ pub fn warn(checker: &mut Checker, plan: &Plan, blocks: &[usize], rig: Option<us
         else {
             continue;
         };
-        let late = fault::Late {
+        let late = message::Late {
             name: &procedure.name,
             energy: delay.energy(),
             bound,
@@ -193,17 +193,17 @@ pub fn warn(checker: &mut Checker, plan: &Plan, blocks: &[usize], rig: Option<us
         };
         let head = checker.scope.blocks[*block].block.head;
         checker
-            .faults
-            .push(fault::tracking_is_late(&late, head, errs));
+            .diagnostics
+            .push(message::tracking_is_late(&late, head, errs));
     }
 }
 
-/// The change that would bring the delay down to this part of what it is.
-fn remedy(stepping: &Stepping, link: &VirtualLink, delay: Delay, part: f64) -> fault::Remedy {
+/// A change that would reduce the delay to this fraction.
+fn remedy(stepping: &Stepping, link: &VirtualLink, delay: Delay, part: f64) -> message::Remedy {
     match stepping.mode {
-        _ if link.lag == 0.0 => fault::Remedy::Shorter(part * delay.time_step),
-        Mode::Continuous { time_scale } => fault::Remedy::Slower(time_scale / part),
-        // The lag that is left of a step dies away with its time constant.
-        Mode::StepAndPause => fault::Remedy::Longer(-link.lag * part.ln()),
+        _ if link.lag == 0.0 => message::Remedy::Shorter(part * delay.time_step),
+        Mode::Continuous { time_scale } => message::Remedy::Slower(time_scale / part),
+        // The rest of the lag after a step decays with its time constant.
+        Mode::StepAndPause => message::Remedy::Longer(-link.lag * part.ln()),
     }
 }

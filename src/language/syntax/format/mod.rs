@@ -1,22 +1,22 @@
 //! The formatter. In: a file without syntax errors. Out: the same plan in the canonical layout. It
-//! works on tokens, so that no text of the author is lost; `rows` finds the lines, `value` writes a
+//! works on tokens, so that no text of the author is lost; `rows` finds the lines, `value` formats a
 //! value.
 
 mod rows;
 mod value;
 
-use super::{ast::Ast, layout, tokens::Tokens};
+use super::{ast::Ast, layout, lexical::tokens::Tokens};
 use rows::{Kind, Row};
 
-/// Blanks a block's fields are indented by.
+/// Spaces by which the fields of a block are indented.
 const INDENT: usize = 2;
-/// Columns a one-line block may fill.
+/// Most columns of a one-line block.
 const BLOCK_WIDTH: usize = 100;
-/// Columns a value may fill before its list or call is broken.
+/// Most columns of a value before its list or call is broken into lines.
 const WIDTH: usize = 110;
 
-/// The canonical text of `text`, which `ast` was read from without a fault. Formatting twice changes nothing more, and
-/// the plan means what it meant.
+/// The canonical form of `text`, from which `ast` was parsed without an error. Formatting it again changes nothing, and
+/// the meaning of the plan is unchanged.
 #[must_use]
 pub fn format(ast: &Ast, text: &str) -> String {
     let tokens = Tokens::read(text, ast.file);
@@ -36,7 +36,7 @@ pub fn format(ast: &Ast, text: &str) -> String {
     text
 }
 
-/// Where the run that starts at `start` ends: rows of one kind, with comments between them but no blank line.
+/// The end of the run that starts at `start`: rows of one kind, with comments between them but no blank line.
 fn run_end(rows: &[Row], start: usize) -> usize {
     let mut kind = None;
     let mut end = start;
@@ -70,13 +70,13 @@ fn write_run(tokens: &Tokens, run: &[Row], lines: &mut Vec<String>) {
         .iter()
         .map(|row| row_lines(tokens, row, &widths, several))
         .collect();
-    // A value over several lines stays out of the column: its comment follows its last bracket.
+    // A value over several lines is not aligned: its comment follows its last bracket.
     let commented = run
         .iter()
         .zip(&written)
         .filter(|(row, lines)| row.comment.is_some() && lines.len() == 1);
     let widths = commented.map(|(_, lines)| lines[0].chars().count());
-    // A long row pushes nobody's comment out of sight: its own follows it.
+    // A long row does not move the comments of others out of sight: only its own follows it.
     let column = widths.filter(|width| *width <= WIDTH).max().unwrap_or(0);
     for (row, mut row_lines) in run.iter().zip(written) {
         let single = row_lines.len() == 1;
@@ -88,7 +88,7 @@ fn write_run(tokens: &Tokens, run: &[Row], lines: &mut Vec<String>) {
     }
 }
 
-/// The lines of one row, its comment not yet set.
+/// The lines of one row, without its comment.
 fn row_lines(tokens: &Tokens, row: &Row, widths: &[usize], several: bool) -> Vec<String> {
     let indent = " ".repeat(row.indent);
     let lead = |column: usize| row.lead.get(column).map_or("", String::as_str);

@@ -1,15 +1,15 @@
 //! The rows of a formatted file: one for each field, item, brace, comment and blank line, in order. In: tokens and
-//! pieces. Out: [`Row`]s that know their words but not yet their columns.
+//! pieces. Out: [`Row`]s, whose columns are not yet aligned.
 
 use super::{BLOCK_WIDTH, INDENT, value};
 use crate::language::syntax::layout::{Piece, Statement};
-use crate::language::syntax::tokens::{Kind as TokenKind, Tokens};
+use crate::language::syntax::lexical::tokens::{Kind as TokenKind, Tokens};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Blank,
     Comment,
-    /// A whole line as it is: a block on one line, a brace.
+    /// A whole line that is kept: a block on one line, a brace.
     Plain,
     Use,
     Field,
@@ -19,7 +19,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether neighbours of this kind stand in columns.
+    /// Whether neighbours of this kind are aligned in columns.
     pub fn aligns(self) -> bool {
         self != Kind::Plain
     }
@@ -29,7 +29,7 @@ impl Kind {
 pub struct Row {
     pub kind: Kind,
     pub indent: usize,
-    /// What stands before the value, a column each.
+    /// The words before the value, one for each column.
     pub lead: Vec<String>,
     /// The tokens of the value.
     pub value: Option<(usize, usize)>,
@@ -74,7 +74,7 @@ struct Writer<'a> {
     /// Line ends since the last row.
     newlines: usize,
     indent: usize,
-    /// The last row opened a block or is none at all: no blank line after it.
+    /// The last row opened a block, or there is none: no blank line follows.
     opened: bool,
 }
 
@@ -174,13 +174,13 @@ impl Writer<'_> {
         }
         self.until(close);
         self.indent -= INDENT;
-        // No blank line before the brace.
+        // No blank line is written before the brace.
         self.newlines = 0;
         self.row(Kind::Plain, vec!["}".to_owned()], None);
         self.at = close + 1;
     }
 
-    /// `head { key = value }`, where it was written so and is short.
+    /// `head { key = value }`, where it was written on one line and is short.
     fn one_line(
         &self,
         head: &str,
@@ -188,7 +188,7 @@ impl Writer<'_> {
         fields: &[Statement],
         close: usize,
     ) -> Option<String> {
-        let loose = |token: &crate::language::syntax::tokens::Token| {
+        let loose = |token: &crate::language::syntax::lexical::tokens::Token| {
             matches!(token.kind, TokenKind::Newline | TokenKind::Comment)
         };
         if self.tokens.list[open..close].iter().any(loose) {

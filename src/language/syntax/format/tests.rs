@@ -1,4 +1,4 @@
-//! Canonical text: exact for chosen cases; idempotent and of the same meaning for many.
+//! Canonical form: exact for chosen cases; idempotent and with the same meaning for many.
 
 use proptest::prelude::*;
 
@@ -9,8 +9,8 @@ use crate::language::syntax::tests::{IMPACT, QUAKE, outline, read, sound};
 fn formatted(text: &str) -> String {
     let (ast, _) = sound(text);
     let once = format(&ast, text);
-    let (again, faults, _) = read(&once);
-    assert!(faults.is_empty(), "{once}\n{faults:#?}");
+    let (again, errors, _) = read(&once);
+    assert!(errors.is_empty(), "{once}\n{errors:#?}");
     assert_eq!(outline(&again), outline(&ast), "meaning\n{text}\n{once}");
     let comments = |ast: &crate::language::syntax::ast::Ast| -> Vec<String> {
         ast.comments
@@ -23,7 +23,7 @@ fn formatted(text: &str) -> String {
     once
 }
 
-/// A line of 4 kB may stand in a plan; a comment at its end stands there, and no other is pushed after it.
+/// A plan may contain a line of 4 kB; a comment at its end stays there, and no other comment is aligned with it.
 #[test]
 fn a_long_row_pushes_no_comment_out_of_sight() {
     let name = "x".repeat(200);
@@ -126,7 +126,7 @@ fn long_values_are_broken() {
     formatted(&format!("let x = 1{}\n", "+1".repeat(900)));
 }
 
-/// Sound plans with comments and line ends wherever they may stand.
+/// Valid plans with comments and line ends wherever they are allowed.
 fn plan() -> impl Strategy<Value = String> {
     let gap = || {
         prop::sample::select(vec![

@@ -1,12 +1,12 @@
-//! One value in canonical spacing: flat where it fits and was flat, else lists and calls with one element a line.
+//! One value in canonical spacing: on one line where it fits and was on one, else lists and calls with one element on each line.
 //! In: the value's tokens and the text before it. Out: lines.
 
 use super::{INDENT, WIDTH};
-use crate::language::syntax::tokens::{JOINING_WORDS, Kind, Tokens};
+use crate::language::syntax::lexical::tokens::{JOINING_WORDS, Kind, Tokens};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
-    /// A bracket that opens; the atom that closes it, and whether commas part what is in it.
+    /// An opening bracket; the atom that closes it, and whether commas separate its elements.
     Open {
         close: usize,
         elements: bool,
@@ -19,12 +19,12 @@ enum Role {
     Comment,
 }
 
-/// A token and how it is set.
+/// A token and its spacing.
 #[derive(Clone, Copy, Debug)]
 struct Atom<'a> {
     text: &'a str,
     role: Role,
-    /// A blank before it, unless it starts a line.
+    /// A space before it, unless it starts a line.
     blank: bool,
 }
 
@@ -67,7 +67,7 @@ fn is_loose(atoms: &[Atom]) -> bool {
 fn atoms<'a>(tokens: &Tokens<'a>, start: usize, end: usize) -> Vec<Atom<'a>> {
     let mut atoms: Vec<Atom> = Vec::with_capacity(end.saturating_sub(start));
     let mut open: Vec<usize> = Vec::new();
-    // Whether a value has just ended, so that an operator and not a sign or a name comes next.
+    // Whether a value has just ended, so that an operator comes next, and neither a unary minus nor a name.
     let mut after_value = false;
     let mut glued = true;
     for token in tokens.list.get(start..end).unwrap_or_default() {
@@ -134,9 +134,9 @@ fn push_flat(atoms: &[Atom], line: &mut String) {
 
 struct Writer {
     lines: Vec<String>,
-    /// The last line has nothing yet but what stands before a value.
+    /// The last line has only the text before a value so far.
     fresh: bool,
-    /// The last line ends with a comment: nothing more goes there.
+    /// The last line ends with a comment: nothing more can follow on it.
     commented: bool,
 }
 
@@ -161,7 +161,7 @@ impl Writer {
         self.fresh = false;
     }
 
-    /// A comment on the line of what is before it, or on one of its own. What follows starts a line.
+    /// A comment on the line of the token before it, or on a separate one. The next token starts a line.
     fn comment(&mut self, text: &str, own_line: bool, indent: usize) {
         if own_line {
             self.new_line(indent);
@@ -175,7 +175,7 @@ impl Writer {
 
     fn value(&mut self, atoms: &[Atom], start: usize, end: usize, indent: usize) {
         let mut at = start;
-        // A line end or comment has been met: the next word starts a line.
+        // A line end or comment was read: the next token starts a line.
         let mut broken = false;
         let mut own_line = false;
         while at < end {
@@ -207,7 +207,7 @@ impl Writer {
         }
     }
 
-    /// Whether the next operand would go past the width where one line is to hold it.
+    /// Whether the next operand would exceed the width where one line is to contain it.
     fn overflows(&mut self, rest: &[Atom]) -> bool {
         let mut depth = 0_usize;
         let mut length = 0;
@@ -224,7 +224,7 @@ impl Writer {
         width(self.line()) + length > WIDTH
     }
 
-    /// A bracket and what is in it, `atoms[open..=close]`.
+    /// A bracket and its content, `atoms[open..=close]`.
     fn group(&mut self, atoms: &[Atom], open: usize, close: usize, elements: bool, indent: usize) {
         let whole = &atoms[open..=close];
         let mut flat = String::new();
@@ -262,7 +262,7 @@ impl Writer {
         self.push(atoms[close]);
     }
 
-    /// The comments from `at` on; gives the first atom that is none.
+    /// Writes the comments from `at` on; returns the first atom that is not a comment.
     fn comments(&mut self, atoms: &[Atom], mut at: usize, end: usize, indent: usize) -> usize {
         let mut own_line = self.commented;
         while at < end {
@@ -280,7 +280,7 @@ impl Writer {
     }
 }
 
-/// Where the element that starts at `at` ends: its comma, or the closing bracket.
+/// The end of the element that starts at `at`: its comma, or the closing bracket.
 fn element_end(atoms: &[Atom], mut at: usize, close: usize) -> usize {
     while at < close && atoms[at].role != Role::Comma {
         at = match atoms[at].role {

@@ -1,15 +1,15 @@
-//! Hostile and odd files: refused with the right code or accepted, always quickly.
+//! Hostile and odd files: rejected with the right code or accepted, always quickly.
 
 use std::time::Duration;
 
 use proptest::prelude::*;
 use rustix::time::{ClockId, clock_gettime};
 
-use super::{faults, outline, read, sound};
+use super::{errors, outline, read, sound};
 use crate::text::diagnostic::Code;
 use crate::text::diagnostic::Code::*;
 
-/// Time of the processor that this thread has had, s: what else the machine does is not in it.
+/// Processor time of this thread \[s\], independent of the load of the machine.
 fn processor_time() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     Duration::new(
@@ -22,10 +22,10 @@ fn processor_time() -> f64 {
 fn refused(text: &str, code: Code) {
     let start = processor_time();
     let (_, found, _) = read(text);
-    // No measurement: these take well under a second, and for ever where reading is not linear.
+    // Not a measurement: these take well under a second, and would not end if parsing were not linear.
     let taken = processor_time() - start;
     assert!(taken < 60.0, "{taken} s for {} bytes", text.len());
-    let codes: Vec<Code> = found.iter().map(|fault| fault.code).collect();
+    let codes: Vec<Code> = found.iter().map(|error| error.code).collect();
     assert!(codes.contains(&code), "{codes:?}");
 }
 
@@ -81,27 +81,27 @@ fn hostile_files_are_refused_quickly() {
 #[test]
 fn limits_hold_at_the_limit_and_not_past_it() {
     let name = |length: usize| format!("let {} = 1\n", "a".repeat(length));
-    assert_eq!(faults(&name(64)), []);
+    assert_eq!(errors(&name(64)), []);
     refused(&name(65), TooLarge);
     let text = |length: usize| format!("use \"{}\"\n", "a".repeat(length));
-    assert_eq!(faults(&text(1024)), []);
+    assert_eq!(errors(&text(1024)), []);
     refused(&text(1025), TooLarge);
     let line = |length: usize| format!("#{}\n", "a".repeat(length - 1));
-    assert_eq!(faults(&line(4096)), []);
+    assert_eq!(errors(&line(4096)), []);
     refused(&line(4097), TooLarge);
     let deep = |depth: usize| format!("let x = {}1{}\n", "(".repeat(depth), ")".repeat(depth));
-    assert_eq!(faults(&deep(64)), []);
+    assert_eq!(errors(&deep(64)), []);
     refused(&deep(65), NestedTooDeep);
     let file = |length: usize| "#a\n".repeat(length / 3) + &"\n".repeat(length % 3);
     let under_token_limit = "#".to_owned() + &"a".repeat(4000) + "\n";
     let lines = under_token_limit.repeat((1 << 20) / under_token_limit.len());
     let full = lines.clone() + &"\n".repeat((1 << 20) - lines.len());
     assert_eq!(full.len(), 1 << 20);
-    assert_eq!(faults(&full), []);
+    assert_eq!(errors(&full), []);
     refused(&(full + "\n"), TooLarge);
     refused(&file(900_000), TooLarge);
     let sum = |operators: usize| format!("let x = 1{}\n", " +\n1".repeat(operators));
-    assert_eq!(faults(&sum(999)), []);
+    assert_eq!(errors(&sum(999)), []);
     refused(&sum(1000), TooLarge);
 }
 
@@ -173,7 +173,7 @@ pub fn soup() -> impl Strategy<Value = String> {
     prop::collection::vec(pieces, 0..60).prop_map(|pieces| pieces.concat())
 }
 
-/// Each is read as a sign of one byte, with blanks behind it: what stands after the sign begins in the middle of the letter.
+/// Each is read as a sign of one byte, with spaces after it: the next token begins in the middle of the letter.
 #[test]
 fn a_letter_of_several_bytes_that_is_read_as_a_sign_ends_no_text_within_itself() {
     for letter in [
@@ -185,7 +185,7 @@ fn a_letter_of_several_bytes_that_is_read_as_a_sign_ends_no_text_within_itself()
             format!("let a = {letter}"),
             format!("let a = 1 {letter}\nlet b = {letter}{letter}"),
         ] {
-            let _ = faults(&text);
+            let _ = errors(&text);
         }
     }
 }
@@ -195,20 +195,20 @@ proptest! {
 
     #[test]
     fn any_text_is_read_without_panic(text in any::<String>()) {
-        let _ = faults(&text);
+        let _ = errors(&text);
     }
 
     #[test]
     fn any_bytes_made_text_are_read(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        let _ = faults(&String::from_utf8_lossy(&bytes));
+        let _ = errors(&String::from_utf8_lossy(&bytes));
     }
 
     #[test]
-    fn a_soup_of_words_is_read_and_a_faulty_tree_has_a_fault(text in soup()) {
+    fn a_soup_of_words_is_read_and_a_faulty_tree_has_a_error(text in soup()) {
         let (ast, found, sources) = read(&text);
-        for fault in &found {
-            prop_assert!(fault.help.is_some());
-            let _ = sources.text(fault.span().unwrap());
+        for error in &found {
+            prop_assert!(error.help.is_some());
+            let _ = sources.text(error.span().unwrap());
         }
         prop_assert!(!found.is_empty() || !outline(&ast).contains('?'));
     }

@@ -1,11 +1,11 @@
-//! Faulty text: each fault with its code and place, the sound rest in the tree.
+//! Text with errors: each error with its code and span, the valid rest in the tree.
 
-use super::{faults, outline, read};
+use super::{errors, outline, read};
 use crate::text::diagnostic::Code;
 use crate::text::diagnostic::Code::*;
 
 fn one(text: &str, code: Code, place: &str) {
-    assert_eq!(faults(text), [(code, place.to_owned())], "{text}");
+    assert_eq!(errors(text), [(code, place.to_owned())], "{text}");
 }
 
 fn field(value: &str, code: Code, place: &str) {
@@ -13,7 +13,7 @@ fn field(value: &str, code: Code, place: &str) {
 }
 
 #[test]
-fn syntax_faults_say_what_was_found_and_expected() {
+fn syntax_errors_say_what_was_found_and_expected() {
     field("", Syntax, "");
     field("1 kg 2", Syntax, "2");
     field("* 2", Syntax, "*");
@@ -71,7 +71,7 @@ fn an_open_bracket_is_reported_where_it_opens_and_swallows_nothing() {
     }
     let (ast, found, sources) = read("a {\n  x = 1\n\nb {\n  y = 2\n}\nlet c = [1\n");
     assert_eq!(
-        found.iter().map(|fault| fault.code).collect::<Vec<_>>(),
+        found.iter().map(|error| error.code).collect::<Vec<_>>(),
         [UnclosedBracket, UnclosedBracket]
     );
     assert_eq!(sources.position(found[0].span().unwrap()).line, 1);
@@ -79,10 +79,10 @@ fn an_open_bracket_is_reported_where_it_opens_and_swallows_nothing() {
     one("a {", UnclosedBracket, "{");
     let many = format!("a {{\n{}}}\n", "x = f(\n".repeat(100));
     assert!(
-        faults(&many)
+        errors(&many)
             .iter()
             .all(|(code, _)| *code == UnclosedBracket)
-            && faults(&many).len() == 100
+            && errors(&many).len() == 100
     );
     field("f([1, 2)", UnclosedBracket, "[");
 }
@@ -116,17 +116,17 @@ fn numbers_are_decimal_with_digits_on_both_sides() {
         field(&format!("{written} kg"), BadNumber, written);
         let (_, found, _) = read(&format!("let x = f({written} kg)\n"));
         assert_eq!(
-            found.first().and_then(|fault| fault.help.as_deref()),
+            found.first().and_then(|error| error.help.as_deref()),
             Some(help).filter(|_| !written.contains(',')),
             "{written}"
         );
     }
-    // In a list it is a comma that is missing.
+    // In a list a comma is missing.
     field("[100 200]", Syntax, "200");
     let long = "1".repeat(41);
     field(&long, BadNumber, &long);
-    assert_eq!(faults(&format!("let x = {}\n", "1".repeat(40))), []);
-    assert_eq!(faults("let x = [1,5] m\n"), []);
+    assert_eq!(errors(&format!("let x = {}\n", "1".repeat(40))), []);
+    assert_eq!(errors("let x = [1,5] m\n"), []);
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn operators_keep_off_units() {
         );
     }
     assert_eq!(
-        faults("let x = 2 kg*x\nlet y = 1 m/s..3 m/s\nlet z = 2*x\n"),
+        errors("let x = 2 kg*x\nlet y = 1 m/s..3 m/s\nlet z = 2*x\n"),
         []
     );
 }
@@ -165,12 +165,12 @@ fn characters_that_hide_are_refused_and_shown() {
     one("let x = \"abc\n", BadText, "\"");
     one("let x = \"a\\qb\"\n", BadText, "\\q");
     one("let x = 1\rlet y = 2\n", BadText, "\r");
-    assert_eq!(faults("# \u{202e} in a comment\n"), []);
+    assert_eq!(errors("# \u{202e} in a comment\n"), []);
     let (_, found, _) = read("let x = \"a\u{202e}b\"\n");
     assert!(found[0].message.contains("\\u{202e}"));
 }
 
-/// Offsets stay those of the text as it is written, and what is read is what was meant.
+/// Offsets stay those of the written text, and the text that is read is the one that was meant.
 #[test]
 fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
     for (written, meant, place) in [
@@ -210,7 +210,7 @@ fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
         assert_eq!(outline(&ast), meant, "{written}");
         let places: Vec<&str> = found
             .iter()
-            .map(|fault| sources.text(fault.span().unwrap()))
+            .map(|error| sources.text(error.span().unwrap()))
             .collect();
         assert_eq!(places, [place], "{written}: {found:#?}");
     }
@@ -219,7 +219,7 @@ fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
         "let x = \"“a” − /* ; = < ²\"\n",
         "let x = 5 µm\nlet y = 5 μm\n",
     ] {
-        assert_eq!(faults(sound), []);
+        assert_eq!(errors(sound), []);
     }
     let (_, found, _) = read("let a = 1\u{a0}m\nlet b = 2\u{a0}m\nlet c = 3\u{a0}m\n");
     assert_eq!(found.len(), 1, "told once, however often");
@@ -231,10 +231,10 @@ fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
 }
 
 #[test]
-fn all_faults_of_a_file_are_found_at_once() {
+fn all_errors_of_a_file_are_found_at_once() {
     let text = "use lib\n\nspecimen beam {\n  length = 1,4 m\n  mass = elastic(3 kg\n  density = 5 kg\n  q = = 3\n  r = \"ok\"\n}\n\nlet good = 1 m\nrequire \"r\" 1 <\n\nstriker p {\n  mass = 20 kg\n  velocity = 2 m*3\n}\nlet k = (1\n";
     assert_eq!(
-        faults(text)
+        errors(text)
             .iter()
             .map(|(code, place)| (*code, place.as_str()))
             .collect::<Vec<_>>(),
@@ -256,7 +256,7 @@ fn all_faults_of_a_file_are_found_at_once() {
 }
 
 #[test]
-fn a_faulty_list_over_lines_is_one_fault() {
+fn a_faulty_list_over_lines_is_one_error() {
     one(
         "a {\n  x = [\n    f(1, 2),\n    f(; 2),\n    f(3),\n  ]\n  y = 1\n}\n",
         Syntax,
@@ -265,7 +265,7 @@ fn a_faulty_list_over_lines_is_one_fault() {
 }
 
 #[test]
-fn helps_are_written_for_the_fault() {
+fn helps_are_written_for_the_error() {
     let found = |text: &str| {
         let (_, found, _) = read(text);
         format!("{} | {}", found[0].message, found[0].help.clone().unwrap())

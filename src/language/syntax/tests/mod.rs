@@ -14,27 +14,27 @@ use crate::text::source::Sources;
 pub const IMPACT: &str = include_str!("../samples/impact.psd");
 pub const QUAKE: &str = include_str!("../samples/quake.psd");
 
-/// Tree, faults and sources of one text.
+/// Tree, errors and sources of one text.
 pub fn read(text: &str) -> (Ast, Vec<Diagnostic>, Sources) {
     let mut sources = Sources::default();
     let file = sources.add("test.psd", text);
-    let (ast, faults) = parse(&sources, file);
-    (ast, faults, sources)
+    let (ast, errors) = parse(&sources, file);
+    (ast, errors, sources)
 }
 
-/// The tree of a sound text.
+/// The tree of a valid text.
 pub fn sound(text: &str) -> (Ast, Sources) {
-    let (ast, faults, sources) = read(text);
-    assert!(faults.is_empty(), "{text}\n{faults:#?}");
+    let (ast, errors, sources) = read(text);
+    assert!(errors.is_empty(), "{text}\n{errors:#?}");
     (ast, sources)
 }
 
-/// Code and text under the first label of each fault.
-pub fn faults(text: &str) -> Vec<(Code, String)> {
-    let (_, faults, sources) = read(text);
-    faults
+/// Code and text under the first label of each error.
+pub fn errors(text: &str) -> Vec<(Code, String)> {
+    let (_, errors, sources) = read(text);
+    errors
         .iter()
-        .map(|fault| (fault.code, sources.text(fault.span().unwrap()).to_owned()))
+        .map(|error| (error.code, sources.text(error.span().unwrap()).to_owned()))
         .collect()
 }
 
@@ -52,7 +52,7 @@ pub fn block(ast: &Ast, index: usize) -> &Block {
     }
 }
 
-/// An expression as nested lists, to compare structure at a glance.
+/// An expression as nested lists, to compare structure.
 pub fn shape(expr: &Expr) -> String {
     let unit = |unit: &Option<super::ast::UnitToken>| {
         unit.as_ref()
@@ -117,7 +117,7 @@ pub fn shape(expr: &Expr) -> String {
     }
 }
 
-/// The whole tree as text without places.
+/// The whole tree as text without spans.
 pub fn outline(ast: &Ast) -> String {
     let mut text = String::new();
     for item in &ast.items {

@@ -1,4 +1,4 @@
-//! Sound text: exact structure, exact spans.
+//! Valid text: exact structure, exact spans.
 
 use super::{IMPACT, QUAKE, block, expression, outline, shape, sound};
 use crate::language::syntax::ast::{Expr, ExprKind};

@@ -1,8 +1,8 @@
-//! Which characters a plan may hold, and how one that it may not hold is shown. Pure functions of text.
+//! The characters that a plan may contain, and how an invalid one is shown. Pure functions of text.
 
 use std::{fmt::Write as _, ops::Range};
 
-/// Controls are refused everywhere; what hides or reorders text is refused outside comments.
+/// Control characters are invalid everywhere; characters that hide or reorder text are invalid outside comments.
 #[must_use]
 pub fn is_bad(character: char, in_comment: bool) -> bool {
     let control = character.is_control() && !matches!(character, '\t' | '\n');
@@ -12,7 +12,7 @@ pub fn is_bad(character: char, in_comment: bool) -> bool {
     control || (hidden && !in_comment)
 }
 
-/// The runs of bad characters in one line, each as it is to be shown.
+/// The runs of invalid characters in one line, each as it is to be shown.
 #[must_use]
 pub fn bad_runs(line: &str, in_comment: bool) -> Vec<(Range<usize>, String)> {
     let mut runs: Vec<Range<usize>> = Vec::new();
@@ -31,7 +31,7 @@ pub fn bad_runs(line: &str, in_comment: bool) -> Vec<(Range<usize>, String)> {
         .collect()
 }
 
-/// Bytes of the run at the start of `text` of characters of the first one's sort, which have no place outside texts
+/// Length in bytes of the run of equal characters at the start of `text` that are invalid outside strings
 /// and comments.
 #[must_use]
 pub fn stray_run(text: &str) -> usize {

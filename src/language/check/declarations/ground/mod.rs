@@ -1,35 +1,36 @@
 //! `ground NAME { … }`: the motion of the ground, read from its file. In: the block. Out: a [`Ground`] in SI.
 
-use super::ground_record;
+pub mod record;
+
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::frames as fault;
+use crate::language::check::messages::frames as message;
 use crate::plan::Ground;
 
-/// A ground motion whose record is right; None where a fault was reported.
+/// A ground motion with a valid record; None where an error was reported.
 pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
     let name = checker.scope.blocks[block].name;
     let scale = checker.constant(block, "scale");
     let scale_uncertainty = checker.constant(block, "scale_uncertainty");
-    let stated = checker.given(block, "unit").map(|(_, entry)| entry);
+    let stated = checker.field(block, "unit").map(|(_, entry)| entry);
     let unit = match stated {
         Some(_) => checker.constant(block, "unit").map(Some),
         None => Some(None),
     };
-    let (_, written) = checker.given(block, "record")?;
+    let (_, written) = checker.field(block, "record")?;
     let at = written.value.span;
     let record = checker.text_field(block, "record")?;
     let file = checker.data_file(&record, at)?;
-    let record = match ground_record::read(&file.name, &file.text) {
+    let record = match record::read(&file.name, &file.text) {
         Ok(record) => record,
-        Err(reason) => return checker.fail(fault::bad_record(&file.name, &reason, at)),
+        Err(reason) => return checker.fail(message::bad_record(&file.name, &reason, at)),
     };
     let (scale, scale_uncertainty, unit) = (scale?, scale_uncertainty?, unit?);
     let unit = match (record.unit, unit, stated) {
         (Some(_), Some(_), Some(stated)) => {
-            return checker.fail(fault::unit_twice(&file.name, stated.span));
+            return checker.fail(message::unit_twice(&file.name, stated.span));
         }
         (Some(unit), ..) | (None, Some(unit), _) => unit,
-        (None, None, _) => return checker.fail(fault::record_without_unit(&file.name, at)),
+        (None, None, _) => return checker.fail(message::record_without_unit(&file.name, at)),
     };
     let accelerations: Vec<f64> = record
         .values
@@ -44,7 +45,7 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
             "sample {} is no finite acceleration in its unit and scale",
             sample + 1
         );
-        return checker.fail(fault::bad_record(&file.name, &reason, at));
+        return checker.fail(message::bad_record(&file.name, &reason, at));
     }
     Some(Ground {
         name: name?.node.clone(),

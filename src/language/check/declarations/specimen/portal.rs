@@ -1,35 +1,35 @@
-//! `behaviour = portal(…)`: a frame by plastic hinges. In: its arguments, and what the specimen says of its material. Out: a
-//! [`Portal`] in SI. Which mechanism governs and what mass moves with it is reckoned elsewhere.
+//! `behaviour = portal(…)`: a frame with plastic hinges. In: its arguments, and the material data of the specimen. Out: a
+//! [`Portal`] in SI. The governing mechanism and the mass that moves with it are calculated in `physics`.
 
-use crate::language::check::checker::{Checker, Place};
+use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::specimens as fault;
+use crate::language::check::messages::specimens as message;
 use crate::plan::{Behaviour, FrameMasses, Loads, Portal, Sections};
 use crate::text::source::Span;
 
-/// The frame that a plan writes; `mass_per_length` (kg/m) is what the specimen says of its material.
+/// The frame as the plan specifies it; `mass_per_length` \[kg/m\] comes from the material data of the specimen.
 pub fn portal<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Place,
+    context: Context,
     span: Span,
     mass_per_length: Option<f64>,
 ) -> Option<Behaviour> {
-    let mut number = |name: &str| checker.constant_argument(chosen, name, place);
+    let mut number = |name: &str| checker.constant_argument(chosen, name, context);
     let (length, height, plastic_moment) =
         (number("span"), number("height"), number("plastic_moment"));
-    let modulus = checker.optional_argument(chosen, "youngs_modulus", place);
-    let second_moment = checker.optional_argument(chosen, "second_moment", place);
-    let column_moment = checker.optional_argument(chosen, "column_plastic_moment", place);
-    let column_second = checker.optional_argument(chosen, "column_second_moment", place);
-    let stiffness = checker.optional_argument(chosen, "stiffness", place);
-    let masses = masses(checker, chosen, place, mass_per_length);
+    let modulus = checker.optional_argument(chosen, "youngs_modulus", context);
+    let second_moment = checker.optional_argument(chosen, "second_moment", context);
+    let column_moment = checker.optional_argument(chosen, "column_plastic_moment", context);
+    let column_second = checker.optional_argument(chosen, "column_second_moment", context);
+    let stiffness = checker.optional_argument(chosen, "stiffness", context);
+    let masses = masses(checker, chosen, context, mass_per_length);
     let loads = checker.chosen_argument(chosen, "loads")?;
     let loads = match loads.variant.name {
         "sway" => Loads::Sway,
         "beam" => Loads::Beam,
         _ => {
-            let mut number = |name: &str| checker.constant_argument(&loads, name, place);
+            let mut number = |name: &str| checker.constant_argument(&loads, name, context);
             let (beam_load, sway_load) = (number("beam_load"), number("sway_load"));
             Loads::Combined {
                 beam_load: beam_load?,
@@ -44,7 +44,7 @@ pub fn portal<'a>(
     };
     let (second_moment, column_second) = (second_moment?, column_second?);
     if let (Some(_), None) = (column_second, second_moment) {
-        return checker.fail(fault::missing_partner(
+        return checker.fail(message::missing_partner(
             "column_second_moment",
             "second_moment",
             chosen.span("column_second_moment")?,
@@ -68,14 +68,14 @@ pub fn portal<'a>(
             masses: None,
         },
         (Some(_), None, None) => {
-            return checker.fail(fault::missing_partner(
+            return checker.fail(message::missing_partner(
                 "youngs_modulus",
                 "second_moment",
                 chosen.span("youngs_modulus")?,
             ));
         }
         (None, Some(_), None) => {
-            return checker.fail(fault::missing_partner(
+            return checker.fail(message::missing_partner(
                 "second_moment",
                 "youngs_modulus",
                 chosen.span("second_moment")?,
@@ -85,7 +85,7 @@ pub fn portal<'a>(
             let given = usize::from(modulus.is_some() || second_moment.is_some()) * 2;
             let takes =
                 "a `portal` takes `youngs_modulus` with `second_moment`, or its `stiffness`";
-            return checker.fail(fault::one_way_only(
+            return checker.fail(message::one_way_only(
                 takes,
                 "stiffness: 2 kN/mm",
                 span,
@@ -96,7 +96,7 @@ pub fn portal<'a>(
     Some(Behaviour::Portal(portal.weighing(masses?)))
 }
 
-/// What the frame weighs; Some(None) where the plan does not say.
+/// The masses of the frame; Some(None) where the plan does not state them.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"
@@ -104,17 +104,17 @@ pub fn portal<'a>(
 fn masses<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Place,
+    context: Context,
     of_specimen: Option<f64>,
 ) -> Option<Option<FrameMasses>> {
-    let beam = checker.optional_argument(chosen, "mass_per_length", place);
-    let column = checker.optional_argument(chosen, "column_mass_per_length", place);
-    let midspan = checker.constant_argument(chosen, "midspan_mass", place);
-    let corner = checker.constant_argument(chosen, "corner_mass", place);
+    let beam = checker.optional_argument(chosen, "mass_per_length", context);
+    let column = checker.optional_argument(chosen, "column_mass_per_length", context);
+    let midspan = checker.constant_argument(chosen, "midspan_mass", context);
+    let corner = checker.constant_argument(chosen, "corner_mass", context);
     let (beam, column, midspan, corner) = (beam?.or(of_specimen), column?, midspan?, corner?);
     if let (None, Some(_)) = (beam, column) {
         let span = chosen.span("column_mass_per_length")?;
-        return checker.fail(fault::missing_partner(
+        return checker.fail(message::missing_partner(
             "column_mass_per_length",
             "mass_per_length",
             span,

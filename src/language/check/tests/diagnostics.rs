@@ -1,17 +1,18 @@
-//! Each diagnostic of the check on the smallest plan that earns it, and nothing that only follows from it.
+//! Each diagnostic of the check on the smallest plan that causes it, and nothing that only follows from it.
 
 use super::{Files, checked};
 
 const BODY: &str = "specimen beam { mass = 1 kg\n behaviour = elastic(300 kN/m) }\nstriker ball { mass = 10 kg\n velocity = 1 m/s }\n";
 
-/// What is said of a specimen, a striker and `more`; warnings that nothing is required or run are left out.
-fn said(more: &str) -> String {
-    let (_, said) = checked(
+/// The diagnostics of a specimen, a striker and `more`; warnings that nothing is required or run are omitted.
+fn reported(more: &str) -> String {
+    let (_, reported) = checked(
         &format!("{BODY}{more}"),
         &Files(&[("a.psd", "use \"b.psd\""), ("b.psd", "use \"a.psd\"")]),
         &[],
     );
-    said.lines()
+    reported
+        .lines()
         .filter(|line| {
             !line.starts_with("W704") && !line.starts_with("W705") && !line.starts_with("W706")
         })
@@ -103,7 +104,7 @@ fn each_fault_is_said_once_at_its_place() {
     let wrong: Vec<String> = cases
         .iter()
         .filter_map(|(plan, expected)| {
-            let found = said(plan);
+            let found = reported(plan);
             let quoted = expected.replace('"', "");
             (found != *expected && found.replace('"', "") != quoted)
                 .then(|| format!("{plan}\n  expected {expected}\n  found    {found}"))
@@ -138,7 +139,7 @@ fn the_plan_as_a_whole_and_the_command_line() {
     assert_eq!(
         found
             .iter()
-            .map(|fault| fault.code.id())
+            .map(|diagnostic| diagnostic.code.id())
             .collect::<Vec<_>>(),
         ["E603"]
     );
@@ -147,11 +148,11 @@ fn the_plan_as_a_whole_and_the_command_line() {
 #[test]
 fn nothing_is_said_that_only_follows_from_another_fault() {
     assert_eq!(
-        said("let a = 3 kq\nlet b = a + 2 mm\nmove m { to = b }"),
+        reported("let a = 3 kq\nlet b = a + 2 mm\nmove m { to = b }"),
         "E204 kq"
     );
-    assert_eq!(said("study g { runs = 1 }\nlet a = g"), "E211 study");
-    let found = said("let width 3 mm\nmove m { to = width }");
+    assert_eq!(reported("study g { runs = 1 }\nlet a = g"), "E211 study");
+    let found = reported("let width 3 mm\nmove m { to = width }");
     assert!(
         found.starts_with("E101") && found.lines().count() == 1,
         "{found}"

@@ -1,7 +1,7 @@
-//! Letters that are none of a–z: which of them only look like one, and what a name that holds them is read as. In: a word.
-//! Out: a word of a–z, 0–9 and _ that is no longer in bytes, so that it fits the place of the first.
+//! Letters outside a–z: those that look like one, and the name that is read for a word that contains them. In: a word.
+//! Out: a word of a–z, 0–9 and _ whose length in bytes is not larger, so that it fits in the span of the first.
 
-/// Letters of other scripts that cannot be told from one of a–z by eye.
+/// Letters of other scripts that look the same as one of a–z.
 const LOOKALIKES: &[(char, char)] = &[
     ('а', 'a'),
     ('с', 'c'),
@@ -56,7 +56,7 @@ const LOOKALIKES: &[(char, char)] = &[
     ('ı', 'i'),
 ];
 
-/// Latin letters with a mark, by the letter that is left without it.
+/// Latin letters with a diacritic, by the letter without it.
 const MARKED: &[(char, &str)] = &[
     ('a', "àáâãäåāăąæ"),
     ('c', "çćĉċč"),
@@ -79,7 +79,7 @@ const MARKED: &[(char, &str)] = &[
     ('z', "źżž"),
 ];
 
-/// The letter of a–z that this one looks like to the eye.
+/// The letter of a–z that looks the same.
 #[must_use]
 pub fn lookalike(letter: char) -> Option<char> {
     LOOKALIKES
@@ -88,7 +88,7 @@ pub fn lookalike(letter: char) -> Option<char> {
         .map(|(_, latin)| *latin)
 }
 
-/// The letter without its mark: `ä` is `a`.
+/// The letter without its diacritic: `a` for `ä`.
 fn unmarked(letter: char) -> Option<char> {
     let lower = letter.to_lowercase().next()?;
     let (plain, _) = MARKED.iter().find(|(_, marked)| marked.contains(lower))?;
@@ -99,19 +99,19 @@ fn unmarked(letter: char) -> Option<char> {
     })
 }
 
-/// Whether a character belongs to a word, be it of a–z or not.
+/// Whether a character belongs to a word, within a–z or not.
 #[must_use]
 pub fn in_word(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_' || is_foreign(c) || matches!(c, '\u{300}'..='\u{36f}')
 }
 
-/// A letter that no name can hold. The sign of a millionth stands in units.
+/// A letter that no name can contain. The micro sign is allowed in units.
 #[must_use]
 pub fn is_foreign(c: char) -> bool {
     !c.is_ascii() && c.is_alphabetic() && !matches!(c, 'µ' | 'μ' | 'º' | 'ª')
 }
 
-/// The word in a–z that a person would write for it, where there is one.
+/// The word in a–z that is usually written for it, if there is one.
 #[must_use]
 pub fn written_plainly(word: &str) -> Option<String> {
     let plain = |c: char| {
@@ -127,7 +127,7 @@ pub fn written_plainly(word: &str) -> Option<String> {
         .collect()
 }
 
-/// A name for the word that no other word has, for one that cannot be written in a–z: two letters a character.
+/// A unique name for a word that cannot be written in a–z: two letters for each character.
 #[must_use]
 pub fn stand_in(word: &str) -> String {
     let mut name = String::with_capacity(word.len());

@@ -1,16 +1,16 @@
-//! What is wrong with a number, and how it should have been written. In: the text of one number, good or bad.
+//! Errors of numbers, and their corrections. In: the text of one number, valid or not.
 
-use super::limits;
+use crate::language::syntax::limits;
 
-/// Why a number is refused, and what to write instead.
+/// Why a number is invalid, and its corrections.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct NumberError {
     pub why: &'static str,
-    /// The ways to write it, the likeliest first.
+    /// The corrections, the most probable first.
     pub write: Vec<String>,
 }
 
-/// A power of ten as it is written by hand.
+/// A power of ten in handwriting.
 const TIMES_TEN: &str = "x10^";
 
 fn digits(text: &str) -> usize {
@@ -20,8 +20,8 @@ fn digits(text: &str) -> usize {
             .len()
 }
 
-/// Bytes of the number at the start of `text`, taking in what was meant as part of it: `1_000`, `0x10`, `1,5`, `5.`,
-/// `1.2.3`, `1 000`. A comma counts only where no bracket is open, a blank where no list is.
+/// Length in bytes of the number at the start of `text`, with everything that was meant as part of it: `1_000`, `0x10`, `1,5`, `5.`,
+/// `1.2.3`, `1 000`. A comma counts only outside brackets, a space only outside lists.
 #[must_use]
 pub fn extent(text: &str, comma: bool, blank: bool) -> usize {
     let hexadecimal = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
@@ -82,11 +82,11 @@ pub fn extent(text: &str, comma: bool, blank: bool) -> usize {
     end
 }
 
-/// Bytes of a mark that groups digits and the three digits behind it: ` 000`, `'000`.
+/// Length in bytes of a digit separator and the three digits after it: ` 000`, `'000`.
 fn grouped(text: &str, blank: bool) -> Option<usize> {
     let mark = match text.chars().next()? {
         mark @ ('\'' | '’') => mark.len_utf8(),
-        // A blank of another sort was up to three bytes long.
+        // A space of another sort was up to three bytes long.
         ' ' if blank => (text.len() - text.trim_start_matches(' ').len()).min(4),
         _ => return None,
     };
@@ -99,8 +99,8 @@ fn grouped(text: &str, blank: bool) -> Option<usize> {
     (mark < 4 && digits(after) == 3 && ends).then_some(mark + 3)
 }
 
-/// What is wrong with a number that holds commas.
-fn commas(written: &str) -> Fault {
+/// The error of a number with commas.
+fn commas(written: &str) -> NumberError {
     let none = written.replace(',', "");
     let point = written.replace('.', "").replace(',', ".");
     let (whole, rest) = written.split_once(',').unwrap_or((written, ""));
@@ -119,45 +119,45 @@ fn commas(written: &str) -> Fault {
         ),
         _ => ("the decimal sign is a point", vec![point]),
     };
-    Fault {
+    NumberError {
         why,
         write: write
             .into_iter()
-            .filter(|text| fault(text).is_none())
+            .filter(|text| error_of(text).is_none())
             .collect(),
     }
 }
 
-/// What is wrong with the number `written`, if anything.
+/// The error of the number `written`, if any.
 #[must_use]
-pub fn fault(written: &str) -> Option<Fault> {
-    let fault = |why, write: Option<String>| {
-        Some(Fault {
+pub fn error_of(written: &str) -> Option<NumberError> {
+    let error = |why, write: Option<String>| {
+        Some(NumberError {
             why,
             write: write
-                .filter(|text| self::fault(text).is_none())
+                .filter(|text| error_of(text).is_none())
                 .into_iter()
                 .collect(),
         })
     };
     if written.len() > limits::NUMBER_CHARS {
-        return fault("a number has at most 40 characters", None);
+        return error("a number has at most 40 characters", None);
     }
     if let Some(body) = written
         .strip_prefix("0x")
         .or_else(|| written.strip_prefix("0X"))
     {
         let value = u64::from_str_radix(&body.replace('_', ""), 16).ok();
-        return fault("numbers are decimal", value.map(|value| value.to_string()));
+        return error("numbers are decimal", value.map(|value| value.to_string()));
     }
     if let Some((mantissa, power)) = written.split_once(TIMES_TEN) {
-        return fault(
+        return error(
             "a power of ten is written with `e`",
             Some(format!("{mantissa}e{power}")),
         );
     }
     if written.contains(['_', ' ', '\'', '’']) {
-        return fault(
+        return error(
             "digits are not grouped",
             Some(written.replace(['_', ' ', '\'', '’'], "")),
         );
@@ -176,34 +176,34 @@ pub fn fault(written: &str) -> Option<Fault> {
         )
     };
     if mantissa.starts_with('.') {
-        return fault(
+        return error(
             "a digit stands before the point",
             Some(scaled(&format!("0{mantissa}"))),
         );
     }
     if mantissa.ends_with('.') {
-        return fault(
+        return error(
             "a digit stands after the point",
             Some(scaled(mantissa.trim_end_matches('.'))),
         );
     }
     if mantissa.matches('.').count() > 1 {
-        return fault("a number has one point", None);
+        return error("a number has one point", None);
     }
     if power.is_some_and(|power| digits(power.trim_start_matches(['+', '-'])) == 0) {
-        return fault("the exponent has no digits", Some(mantissa.to_owned()));
+        return error("the exponent has no digits", Some(mantissa.to_owned()));
     }
     match written.parse::<f64>() {
         Ok(value) if !value.is_finite() => {
-            fault("this is beyond the largest number, 1.8e308", None)
+            error("this is beyond the largest number, 1.8e308", None)
         }
         Ok(value) if value == 0.0 && mantissa.contains(|digit| matches!(digit, '1'..='9')) => {
-            fault(
+            error(
                 "this is too small to be told from zero",
                 Some("0".to_owned()),
             )
         }
         Ok(_) => None,
-        Err(_) => fault("this is not a number", None),
+        Err(_) => error("this is not a number", None),
     }
 }

@@ -1,33 +1,33 @@
 //! The frame of a specimen: `storeys = [storey(…), …]`, or the files of its matrices. In: a `specimen` block. Out: a
-//! [`Frame`], worked out once.
+//! [`Frame`], evaluated once.
 
 use std::rc::Rc;
 
 use super::behaviour::{self, Material, Written};
 use super::matrix;
-use super::striker::MOST_UNCERTAIN;
-use crate::language::check::checker::{Checker, Place};
+use crate::language::check::checker::{Checker, Context};
+use crate::language::check::declarations::striker::MOST_UNCERTAIN;
 use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{frames as fault, values};
+use crate::language::check::messages::{frames as message, values};
 use crate::language::syntax::ast::ExprKind;
 use crate::plan::{Behaviour, Frame, MOST_STOREYS, Storey};
 use crate::schema::{Field, FieldType};
-use crate::text::source::Span;
+use crate::text::source::{Span, Spanned};
 use crate::units::Dimension;
 
 /// Fields that make a specimen a frame.
 pub const FIELDS: [&str; 3] = ["storeys", "mass_matrix", "stiffness_matrix"];
 
-/// A stiffness is that of its behaviour to so much of it: the last digits of a sum or a quotient.
+/// Relative difference within which a stiffness equals that of its model: the last digits of a sum or a quotient.
 const SAME: f64 = 1e-9;
 
-/// And may be off by so many of its standard uncertainties, where the plan states one.
+/// Standard uncertainties within which they agree, where the plan states one.
 const WITHIN: f64 = 3.0;
 
-/// Uncertainties of the matrices, and what they are of.
+/// Uncertainties of the matrices, with the field that each belongs to.
 const MATRIX_UNCERTAINTIES: [&str; 2] = ["mass_matrix_uncertainty", "stiffness_matrix_uncertainty"];
 
-/// Fields of a specimen of one degree of freedom, which a frame has none of.
+/// Fields of a specimen of one degree of freedom, which a frame does not have.
 const OF_ONE: [&str; 8] = [
     "mass",
     "mass_uncertainty",
@@ -42,17 +42,17 @@ const OF_ONE: [&str; 8] = [
 pub fn is_frame(checker: &Checker, block: usize) -> bool {
     FIELDS
         .iter()
-        .any(|field| checker.given(block, field).is_some())
+        .any(|field| checker.field(block, field).is_some())
 }
 
-/// The frame; a fault in it is reported once, however often it is asked for.
+/// The frame; an error in it is reported once, however often it is requested.
 pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
     if let Some(known) = checker.frames.get(&block) {
         return known.clone();
     }
-    // Until it is known it is none: a storey that reads its own frame's mass gets nothing.
+    // Until it is known there is none: a storey that reads the mass of its own frame gets no value.
     checker.frames.insert(block, None);
-    let frame = said_once(checker, block).and_then(|()| match checker.given(block, "storeys") {
+    let frame = report_once(checker, block).and_then(|()| match checker.field(block, "storeys") {
         Some(_) => storeys(checker, block).map(Frame::of_storeys),
         None => matrices(checker, block),
     });
@@ -61,12 +61,12 @@ pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
     frame
 }
 
-/// A specimen is one thing: storeys, two matrices, or one degree of freedom.
-fn said_once(checker: &mut Checker, block: usize) -> Option<()> {
-    let storeys = checker.given(block, "storeys");
-    let matrices = ["mass_matrix", "stiffness_matrix"].map(|field| checker.given(block, field));
+/// A specimen is either storeys, or two matrices, or one degree of freedom.
+fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
+    let storeys = checker.field(block, "storeys");
+    let matrices = ["mass_matrix", "stiffness_matrix"].map(|field| checker.field(block, field));
     let first = storeys.or(matrices[0]).or(matrices[1])?.1;
-    let of_matrices = MATRIX_UNCERTAINTIES.map(|field| checker.given(block, field));
+    let of_matrices = MATRIX_UNCERTAINTIES.map(|field| checker.field(block, field));
     let beside_storeys = matrices
         .into_iter()
         .chain(of_matrices)
@@ -74,48 +74,48 @@ fn said_once(checker: &mut Checker, block: usize) -> Option<()> {
         .filter(|_| storeys.is_some());
     let of_one = OF_ONE
         .iter()
-        .filter_map(|field| checker.given(block, field));
+        .filter_map(|field| checker.field(block, field));
     let other = beside_storeys
         .chain(of_one)
         .map(|(_, entry)| &entry.key)
         .next();
     if let Some(other) = other {
-        return checker.fail(fault::specimen_twice(&first.key, other));
+        return checker.fail(message::specimen_twice(&first.key, other));
     }
     match (storeys, matrices) {
         (None, [Some((_, mass)), None]) => {
-            checker.fail(fault::matrix_alone(&mass.key, "stiffness_matrix"))
+            checker.fail(message::matrix_alone(&mass.key, "stiffness_matrix"))
         }
         (None, [None, Some((_, stiffness))]) => {
-            checker.fail(fault::matrix_alone(&stiffness.key, "mass_matrix"))
+            checker.fail(message::matrix_alone(&stiffness.key, "mass_matrix"))
         }
         _ => Some(()),
     }
 }
 
-/// Of one degree of freedom there are no matrices to be uncertain.
+/// A specimen of one degree of freedom has no matrices that could be uncertain.
 pub fn no_matrix_uncertainties(checker: &mut Checker, block: usize) -> Option<()> {
     for (field, matrix) in MATRIX_UNCERTAINTIES
         .into_iter()
         .zip(["mass_matrix", "stiffness_matrix"])
     {
-        if let Some((_, entry)) = checker.given(block, field) {
-            return checker.fail(fault::matrix_uncertainty_alone(&entry.key, matrix));
+        if let Some((_, entry)) = checker.field(block, field) {
+            return checker.fail(message::matrix_uncertainty_alone(&entry.key, matrix));
         }
     }
     Some(())
 }
 
 fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
-    let (entry, written) = checker.given(block, "storeys")?;
-    let place = checker.place(block, entry);
+    let (entry, written) = checker.field(block, "storeys")?;
+    let context = checker.context_of(block, entry);
     let chosen = checker.choices(block, "storeys")?;
     let span = written.value.span;
     if chosen.is_empty() {
         return checker.fail(values::empty_list(span));
     }
     if chosen.len() > MOST_STOREYS {
-        return checker.fail(fault::too_many_storeys(chosen.len(), MOST_STOREYS, span));
+        return checker.fail(message::too_many_storeys(chosen.len(), MOST_STOREYS, span));
     }
     let at = |index: usize| match &written.value.kind {
         ExprKind::List { items, .. } => items.get(index).map_or(span, |item| item.span),
@@ -124,7 +124,7 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
     let storeys: Vec<Option<Storey>> = chosen
         .iter()
         .enumerate()
-        .map(|(index, chosen)| storey(checker, chosen, index + 1, at(index), place))
+        .map(|(index, chosen)| storey(checker, chosen, index + 1, at(index), context))
         .collect();
     storeys.into_iter().collect()
 }
@@ -134,14 +134,14 @@ fn storey<'a>(
     chosen: &Chosen<'a>,
     number: usize,
     at: Span,
-    place: Place,
+    context: Context,
 ) -> Option<Storey> {
-    let mass = checker.constant_argument(chosen, "mass", place);
-    let mass_uncertainty = checker.constant_argument(chosen, "mass_uncertainty", place);
-    let stiffness_uncertainty = checker.constant_argument(chosen, "stiffness_uncertainty", place);
-    let height = checker.optional_argument(chosen, "height", place);
-    let total = checker.optional_argument(chosen, "stiffness", place);
-    let column = checker.optional_argument(chosen, "column_stiffness", place);
+    let mass = checker.constant_argument(chosen, "mass", context);
+    let mass_uncertainty = checker.constant_argument(chosen, "mass_uncertainty", context);
+    let stiffness_uncertainty = checker.constant_argument(chosen, "stiffness_uncertainty", context);
+    let height = checker.optional_argument(chosen, "height", context);
+    let total = checker.optional_argument(chosen, "stiffness", context);
+    let column = checker.optional_argument(chosen, "column_stiffness", context);
     let behaviour = match chosen.find("behaviour") {
         Some((
             Field {
@@ -154,26 +154,26 @@ fn storey<'a>(
                 field: "behaviour",
                 variants,
                 expr,
-                place,
+                context,
                 material: Material::default(),
             };
             behaviour::behaviour(checker, &written).map(Some)
         }
         _ => Some(None),
     };
-    let damping = checker.constant_argument(chosen, "damping", place);
-    let coulomb = checker.constant_argument(chosen, "coulomb", place);
+    let damping = checker.constant_argument(chosen, "damping", context);
+    let coulomb = checker.constant_argument(chosen, "coulomb", context);
     let (mass, height, behaviour, damping, coulomb) =
         (mass?, height?, behaviour?, damping?, coulomb?);
     let stiffness = match (total?, column?, &behaviour) {
         (Some(_), Some(_), _) => {
             let again = chosen.span("column_stiffness").unwrap_or(at);
-            return checker.fail(fault::storey_stiffness_twice(number, again));
+            return checker.fail(message::storey_stiffness_twice(number, again));
         }
         (Some(stiffness), None, _) => stiffness,
         (None, Some(column), _) => 2.0 * column,
         (None, None, Some(behaviour)) => behaviour.initial_stiffness(),
-        (None, None, None) => return checker.fail(fault::storey_without_stiffness(number, at)),
+        (None, None, None) => return checker.fail(message::storey_without_stiffness(number, at)),
     };
     let (mass_uncertainty, stiffness_uncertainty) = (mass_uncertainty?, stiffness_uncertainty?);
     if let Some(initial) = behaviour.as_ref().map(Behaviour::initial_stiffness)
@@ -185,10 +185,11 @@ fn storey<'a>(
             .find_map(|field| Some((field, chosen.span(field)?)));
         let (field, said) = said.unwrap_or(("stiffness", at));
         let bends = chosen.span("behaviour").unwrap_or(at);
-        return checker.fail(fault::storey_bends_otherwise(
+        return checker.fail(message::storey_bends_otherwise(
             number,
-            (field, stiffness, said),
-            (initial, bends),
+            field,
+            Spanned::new(stiffness, said),
+            Spanned::new(initial, bends),
         ));
     }
     let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
@@ -225,20 +226,20 @@ fn storey<'a>(
     })
 }
 
-/// The frame that the files of its matrices give, with the files.
+/// The frame from the files of its matrices, with the files.
 fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
     let mass = matrix_of(checker, block, "mass_matrix");
     let stiffness = matrix_of(checker, block, "stiffness_matrix");
     let ((mass_file, mass), (stiffness_file, stiffness)) = (mass?, stiffness?);
     if mass.len() != stiffness.len() {
-        let (_, written) = checker.given(block, "stiffness_matrix")?;
-        let fault = fault::matrices_of_two_sizes(
+        let (_, written) = checker.field(block, "stiffness_matrix")?;
+        let diagnostic = message::matrices_of_two_sizes(
             &stiffness_file,
             stiffness.len(),
             mass.len(),
             written.value.span,
         );
-        return checker.fail(fault);
+        return checker.fail(diagnostic);
     }
     let matrix_uncertainty = MATRIX_UNCERTAINTIES.map(|field| checker.constant(block, field));
     let [Some(of_mass), Some(of_stiffness)] = matrix_uncertainty else {
@@ -255,12 +256,12 @@ fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
 }
 
 fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String, Vec<Vec<f64>>)> {
-    let (_, written) = checker.given(block, field)?;
+    let (_, written) = checker.field(block, field)?;
     let span = written.value.span;
     let name = checker.text_field(block, field)?;
     let file = checker.data_file(&name, span)?;
     match matrix::read(&file.text) {
         Ok(matrix) => Some((file.name, matrix)),
-        Err(reason) => checker.fail(fault::bad_matrix(&file.name, &reason, span)),
+        Err(reason) => checker.fail(message::bad_matrix(&file.name, &reason, span)),
     }
 }

@@ -1,7 +1,7 @@
-//! A file of measured points: `displacement_m,force_n`, a row each. In: its text. Out: points in SI through the origin, both
-//! ways; or the row that is wrong, and why.
+//! A file of measured points: `displacement_m,force_n`, one row per point. In: its text. Out: points in SI through the origin, for both
+//! signs; or the row of an error, and the reason.
 
-/// Why a file is no table: line from 1 and its text, where one row is to blame, and the reason with its help.
+/// Why a file is not a table: number of the line from 1 and its text, where one row has the error, and the reason with a suggestion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadTable {
     pub row: Option<(usize, String)>,
@@ -9,13 +9,13 @@ pub struct BadTable {
     pub help: &'static str,
 }
 
-/// Rows of a table, at most.
+/// Most rows of a table.
 const MOST_ROWS: usize = 10_000;
 
 const DISPLACEMENTS: &[(&str, f64)] = &[("displacement_m", 1.0), ("displacement_mm", 1e-3)];
 const FORCES: &[(&str, f64)] = &[("force_n", 1.0), ("force_kn", 1e3)];
 
-/// The points of a table, displacements rising. One-sided points are mirrored; the origin is a point.
+/// The points of a table, in order of increasing displacement. One-sided points are mirrored; the origin is added.
 pub fn points(text: &str) -> Result<Vec<[f64; 2]>, BadTable> {
     let lines = text.lines().enumerate().map(|(index, line)| Row {
         line: index + 1,
@@ -49,7 +49,7 @@ pub fn points(text: &str) -> Result<Vec<[f64; 2]>, BadTable> {
 const HEADER: &str = "begin with the line `displacement_m,force_n`, then a row a point";
 
 struct Row<'t> {
-    /// From 1.
+    /// Line number from 1.
     line: usize,
     text: &'t str,
 }

@@ -1,27 +1,27 @@
-//! Records of ground motion: a table with the header `time_s,acceleration_m_per_s2`, or a file of the PEER database (`.AT2`,
-//! header with NPTS and DT). In: the text. Out: times and numbers as they stand in the file, and what one of them is worth;
-//! or which line is at fault, and why. It knows no plan.
+//! Ground-motion records: a table with the header `time_s,acceleration_m_per_s2`, or a file of the PEER database (`.AT2`,
+//! header with NPTS and DT). In: the text. Out: times and numbers as they are in the file, with the scale factor of the numbers;
+//! or the line of an error, and the reason. It knows no plan.
 
-/// Samples of one record, at most.
+/// Most samples of one record.
 pub const MOST_SAMPLES: usize = 100_000;
 
-/// Standard gravity, m/s².
+/// Standard gravity \[m/s²\].
 const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// Lines at the head of an AT2 file, of which one holds NPTS and DT.
+/// Header lines of an AT2 file, one of which contains NPTS and DT.
 const AT2_HEAD: usize = 6;
 
 /// A record as it was read.
 #[derive(Debug, PartialEq)]
 pub struct GroundRecord {
-    /// s
+    /// \[s\]
     pub times: Vec<f64>,
     pub values: Vec<f64>,
-    /// What one of `values` is worth, m/s², where the header says so.
+    /// Scale factor of `values` \[m/s²\], where the header states it.
     pub unit: Option<f64>,
 }
 
-/// Reads a record by the ending of its name.
+/// Reads a record according to its file extension.
 pub fn read(name: &str, text: &str) -> Result<GroundRecord, String> {
     let ending = name.rsplit('.').next().unwrap_or_default();
     let record = if ending.eq_ignore_ascii_case("at2") {
@@ -35,7 +35,7 @@ pub fn read(name: &str, text: &str) -> Result<GroundRecord, String> {
     }
 }
 
-/// `time_s,acceleration_m_per_s2`, or `time_s,acceleration` whose unit the plan says.
+/// `time_s,acceleration_m_per_s2`, or `time_s,acceleration` with a unit that the plan states.
 fn table(text: &str) -> Result<GroundRecord, String> {
     let mut lines = (1..)
         .zip(text.lines())
@@ -86,7 +86,7 @@ fn table(text: &str) -> Result<GroundRecord, String> {
     })
 }
 
-/// NPTS samples at every DT, several a line; in units of g, as every file of the database says.
+/// NPTS samples at intervals of DT, several on each line; in units of g, as every file of the database states.
 fn peer(text: &str) -> Result<GroundRecord, String> {
     let head = || (1..).zip(text.lines()).take(AT2_HEAD);
     let upper = |line: &str| line.to_ascii_uppercase();
@@ -109,7 +109,7 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
     not_too_long(points)?;
     let unit = head()
         .take_while(|(line, _)| *line <= at)
-        .find_map(|(_, line)| unit_said(&upper(line)));
+        .find_map(|(_, line)| stated_unit(&upper(line)));
     let mut values = Vec::new();
     for (line, row) in (1..).zip(text.lines()).skip(at) {
         for cell in row.split_whitespace() {
@@ -136,8 +136,8 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
     })
 }
 
-/// What one of the numbers is worth (m/s²) by a line that ends `UNITS OF G`, or `… GAL`; None where it says no unit, or another.
-fn unit_said(line: &str) -> Option<f64> {
+/// The scale factor \[m/s²\] from a line that ends `UNITS OF G`, or `… GAL`; None where it states no unit, or a different one.
+fn stated_unit(line: &str) -> Option<f64> {
     let (_, unit) = line.split_once("UNITS OF ")?;
     match unit
         .split([' ', ',', ';', '\t'])
@@ -150,7 +150,7 @@ fn unit_said(line: &str) -> Option<f64> {
     }
 }
 
-/// Whether a line of the head says that the samples are velocities or displacements, as those of `.VT2` and `.DT2` files are.
+/// Whether a header line states that the samples are velocities or displacements, as in `.VT2` and `.DT2` files.
 fn is_no_acceleration(line: &str) -> bool {
     let series =
         line.contains("TIME SERIES") || line.contains("TIME HISTORY") || line.contains("UNITS OF");
@@ -159,7 +159,7 @@ fn is_no_acceleration(line: &str) -> bool {
         && !line.contains("ACCEL")
 }
 
-/// `NPTS=  4000, DT=   .0050 SEC` as it is today, or `4000 .0050 NPTS, DT` as it was.
+/// `NPTS=  4000, DT=   .0050 SEC` in current files, or `4000 .0050 NPTS, DT` in older ones.
 fn counts_of(line: &str) -> Option<(usize, f64)> {
     let after = |word: &str| {
         let rest = line[line.find(word)? + word.len()..]
@@ -261,20 +261,20 @@ mod tests {
             "DISPLACEMENT TIME SERIES IN UNITS OF CM",
         ] {
             let other = head.replace("ACCELERATION TIME SERIES IN UNITS OF G", what);
-            let told = refused(&format!("{other}NPTS= 2, DT= .005\n1 2"));
+            let reason = refused(&format!("{other}NPTS= 2, DT= .005\n1 2"));
             assert_eq!(
-                told,
+                reason,
                 format!("line 3 says `{what}`, and a record of accelerations is wanted")
             );
         }
     }
 
-    /// 1 Gal is 1 cm/s²; what is no unit that is known is for the plan to say.
+    /// 1 Gal is 1 cm/s²; for an unknown unit the plan must state the scale factor.
     #[test]
     fn a_header_in_gal_is_not_one_in_g() {
         let file =
-            |says: &str| format!("PEER\nACCELERATION IN UNITS OF {says}\nNPTS= 2, DT= .005\n1 2\n");
-        let unit = |says: &str| read("a.AT2", &file(says)).unwrap().unit;
+            |unit: &str| format!("PEER\nACCELERATION IN UNITS OF {unit}\nNPTS= 2, DT= .005\n1 2\n");
+        let unit = |unit: &str| read("a.AT2", &file(unit)).unwrap().unit;
         assert_eq!(
             (unit("GAL"), unit("gals"), unit("Gal. ")),
             (Some(0.01), Some(0.01), Some(0.01))

@@ -1,11 +1,17 @@
-//! `specimen NAME { … }`: equivalent mass and behaviour.
+//! `specimen NAME { … }`: equivalent mass and restoring-force model.
 
-use super::behaviour::{self, Material, Written};
-use super::frame;
+mod backbone;
+mod beam;
+pub mod behaviour;
+pub mod frame;
+mod matrix;
+mod portal;
+mod table_file;
+
 use super::limits::CheckedLimits;
 use super::striker::uncertainty;
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::{frames, names as fault, specimens};
+use crate::language::check::messages::{frames, names as message, specimens};
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::physics::structure::portal_limit::mechanism_limit;
 use crate::plan::formula::{Formula, Function, Stated};
@@ -13,8 +19,9 @@ use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
 use crate::schema::{FieldType, Kind};
 use crate::text::source::Span;
 use crate::uncertainty::Source;
+use behaviour::{Material, Written};
 
-/// Standard, of the mass that an impact takes from its specimen, kg.
+/// Standard uncertainty of the mass that an impact takes from its specimen \[kg\].
 pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {
     if frame::is_frame(checker, block) {
         return frame::frame(checker, block).map(|frame| frame.total_mass_uncertainty());
@@ -22,7 +29,7 @@ pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {
     checker.constant(block, "mass_uncertainty")
 }
 
-/// A specimen whose entries are all right; None where a fault was reported.
+/// A specimen whose entries are all valid; None where an error was reported.
 pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     let declared = &checker.scope.blocks[block];
     let (name, head) = (declared.name, declared.block.head);
@@ -39,18 +46,18 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     let no_matrices = frame::no_matrix_uncertainties(checker, block);
     let mass = mass(checker, block);
     if checker.misspelt(block, &["mass", "density", "area", "length"])
-        || faulty_portal(checker, block)
+        || invalid_portal(checker, block)
     {
-        // What is misspelt or wrong is said already.
+        // A misspelt or invalid entry has its own diagnostic.
     } else if mass.is_none()
         && names_portal(checker, block)
-        && checker.given(block, "length").is_none()
+        && checker.field(block, "length").is_none()
     {
         checker
-            .faults
+            .diagnostics
             .push(specimens::portal_without_mass(name, head));
     } else if mass.is_none() && !any_given(checker, block) {
-        checker.faults.push(fault::missing_field(
+        checker.diagnostics.push(message::missing_field(
             declared.kind,
             name,
             head,
@@ -58,22 +65,22 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
             "mass = 0.73 kg",
         ));
     } else if mass.is_none()
-        && checker.given(block, "mass").is_none()
+        && checker.field(block, "mass").is_none()
         && let Some(missing) = ["density", "area", "length"]
             .into_iter()
-            .find(|field| checker.given(block, field).is_none())
+            .find(|field| checker.field(block, field).is_none())
     {
         checker
-            .faults
-            .push(fault::mass_incomplete(name, head, missing));
+            .diagnostics
+            .push(message::mass_incomplete(name, head, missing));
     }
-    beam_says_its_mass(checker, block, mass);
-    // Each number is looked at, also those that the mass does not need, so that all faults are seen at once.
+    beam_has_mass(checker, block, mass);
+    // Every number is evaluated, also those that the mass does not need, so that all errors are reported in one pass.
     for field in ["length", "area", "density"] {
         checker.quantity(block, field);
     }
-    // A real specimen bends as it does; a virtual one without a behaviour is said already.
-    let behaviour = match checker.given(block, "behaviour") {
+    // A real specimen needs no model; that a virtual one lacks it has its own diagnostic.
+    let behaviour = match checker.field(block, "behaviour") {
         None if checker.real_rig.is_some() => Some(None),
         _ => behaviour(checker, block, head).map(Some),
     };
@@ -95,23 +102,23 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     })
 }
 
-/// A `beam` has ends, and q·A·L/2 is made for two supports: which of its masses is meant the plan says. Recorded plans meant that one.
-fn beam_says_its_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
+/// A `beam` has ends, and q·A·L/2 applies to two supports: the plan must state which of its masses is meant. Plans of older logs meant q·A·L/2.
+fn beam_has_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
     let declared = &checker.scope.blocks[block];
     let beam = |written: &Expr| behaviour::names(written, "beam");
     let named = checker
-        .given(block, "behaviour")
+        .field(block, "behaviour")
         .is_some_and(|(_, entry)| beam(&entry.value));
     let (Some(half), Some(name)) = (half.filter(|_| named && !checker.recorded), declared.name)
     else {
         return;
     };
-    if checker.given(block, "mass").is_some() {
+    if checker.field(block, "mass").is_some() {
         return;
     }
     let masses = behaviour(checker, block, declared.block.head)
         .and_then(|behaviour| behaviour.equivalent_masses());
-    checker.faults.push(specimens::beam_without_mass(
+    checker.diagnostics.push(specimens::beam_without_mass(
         &name.node,
         declared.block.head,
         half,
@@ -122,12 +129,12 @@ fn beam_says_its_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
 fn any_given(checker: &Checker, block: usize) -> bool {
     ["mass", "density", "area", "length"]
         .into_iter()
-        .any(|field| checker.given(block, field).is_some())
+        .any(|field| checker.field(block, field).is_some())
 }
 
-/// `mass`, else what a portal's geometry gives, else q·A·L/2, the equivalent mass at midspan (Melo et al. 2006, Fig. 5).
+/// `mass`, else the mass from a portal's geometry, else q·A·L/2, the equivalent mass at midspan (Melo et al. 2006, Fig. 5).
 fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
-    if checker.given(block, "mass").is_some() {
+    if checker.field(block, "mass").is_some() {
         return checker.constant(block, "mass");
     }
     if let Some(elastic) = mass_of_portal(checker, block) {
@@ -141,7 +148,7 @@ fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
     Some(density * area * length / 2.0)
 }
 
-/// By its elastic deflection, kg. One that weighs nothing where its load moves it has none.
+/// Equivalent mass by the elastic deflection \[kg\]. A portal with no mass at the point of its load has none.
 fn mass_of_portal(checker: &mut Checker, block: usize) -> Option<f64> {
     if !names_portal(checker, block) {
         return None;
@@ -151,22 +158,22 @@ fn mass_of_portal(checker: &mut Checker, block: usize) -> Option<f64> {
     Some(masses.elastic).filter(|elastic| *elastic > 0.0)
 }
 
-/// Whether a specimen without a mass of its own is a portal.
+/// Whether a specimen without a stated mass is a portal.
 fn names_portal(checker: &Checker, block: usize) -> bool {
-    checker.given(block, "mass").is_none()
+    checker.field(block, "mass").is_none()
         && checker
-            .given(block, "behaviour")
+            .field(block, "behaviour")
             .is_some_and(|(_, entry)| behaviour::names(&entry.value, "portal"))
 }
 
-fn faulty_portal(checker: &mut Checker, block: usize) -> bool {
+fn invalid_portal(checker: &mut Checker, block: usize) -> bool {
     let at = checker.scope.blocks[block].block.head;
     names_portal(checker, block) && behaviour(checker, block, at).is_none()
 }
 
-/// How the plan comes to the mass: its formula where it writes one, and that of the geometry where it gives no mass.
+/// The expression that gives the mass: as it is written, or that of the geometry where no mass is stated.
 fn mass_from(checker: &mut Checker, block: usize) -> Option<String> {
-    match checker.given(block, "mass") {
+    match checker.field(block, "mass") {
         Some((_, entry)) if matches!(entry.value.kind, ExprKind::Number { .. }) => None,
         Some((_, entry)) => Some(checker.text(entry.value.span).to_owned()),
         None if mass_of_portal(checker, block).is_some() => Some("elastic_mass".to_owned()),
@@ -174,12 +181,12 @@ fn mass_from(checker: &mut Checker, block: usize) -> Option<String> {
     }
 }
 
-/// q·A, kg/m.
+/// q·A \[kg/m\].
 fn mass_per_length(checker: &mut Checker, block: usize) -> Option<f64> {
     Some(checker.constant(block, "density")? * checker.constant(block, "area")?)
 }
 
-/// q·A·L, kg.
+/// q·A·L \[kg\].
 fn own_mass(checker: &mut Checker, block: usize) -> Option<f64> {
     let (density, area, length) = (
         checker.constant(block, "density")?,
@@ -189,15 +196,15 @@ fn own_mass(checker: &mut Checker, block: usize) -> Option<f64> {
     Some(density * area * length)
 }
 
-/// `beam.mass` and its like, with what is uncertain of them.
+/// `beam.mass` and the like, with their uncertainty contributions.
 pub fn exported(
     checker: &mut Checker,
     block: usize,
     name: &str,
-    asked_at: Span,
+    requested_at: Span,
 ) -> Option<Formula> {
-    let value = export(checker, block, name, asked_at)?;
-    let specimen = checker.scope.place_in_kind(block);
+    let value = export(checker, block, name, requested_at)?;
+    let specimen = checker.scope.index_in_kind(block);
     if name != "mass" {
         return Some(Formula::Constant(value));
     }
@@ -245,27 +252,31 @@ pub fn exported(
     )
 }
 
-/// The value of `beam.mass`, `beam.stiffness` or another; None where the specimen has a fault that is reported in its place.
-pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -> Option<f64> {
+/// The value of `beam.mass`, `beam.stiffness` or another; None where the specimen has an error that is reported there.
+pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Span) -> Option<f64> {
     let declared = &checker.scope.blocks[block];
     if frame::is_frame(checker, block) {
         return match name {
             "mass" => frame::frame(checker, block).map(|frame| frame.total_mass()),
-            _ => checker.fail(frames::no_one_of_its_kind(declared.name, name, asked_at)),
+            _ => checker.fail(frames::no_one_of_its_kind(
+                declared.name,
+                name,
+                requested_at,
+            )),
         };
     }
     if name == "mass" {
         return mass(checker, block);
     }
-    // Known only of a behaviour; that a virtual specimen lacks it is said already.
-    if checker.real_rig.is_some() && checker.given(block, "behaviour").is_none() {
-        return checker.fail(fault::property_without_behaviour(
+    // Known only with a model; that a virtual specimen lacks one has its own diagnostic.
+    if checker.real_rig.is_some() && checker.field(block, "behaviour").is_none() {
+        return checker.fail(message::property_without_behaviour(
             declared.name,
             name,
-            asked_at,
+            requested_at,
         ));
     }
-    let behaviour = behaviour(checker, block, asked_at)?;
+    let behaviour = behaviour(checker, block, requested_at)?;
     let (value, reason) = match (name, &behaviour) {
         ("stiffness", _) => (behaviour.initial_stiffness(), ""),
         ("capacity", _) => (behaviour.capacity(), "its force has no bound"),
@@ -306,18 +317,18 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, asked_at: Span) -
             declared.name,
             name,
             reason,
-            asked_at,
+            requested_at,
         ))
     }
 }
 
-/// The behaviour; a fault in it is reported once, however often it is asked for.
-pub fn behaviour(checker: &mut Checker, block: usize, asked_at: Span) -> Option<Behaviour> {
-    let known = checker.faults.len();
+/// The model; an error in it is reported once, however often it is requested.
+pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Option<Behaviour> {
+    let known = checker.diagnostics.len();
     let stated = |checker: &Checker, fields: &[&str]| {
         fields
             .iter()
-            .all(|field| checker.given(block, field).is_some())
+            .all(|field| checker.field(block, field).is_some())
     };
     let own_mass = stated(checker, &["density", "area", "length"])
         .then(|| own_mass(checker, block))
@@ -329,27 +340,33 @@ pub fn behaviour(checker: &mut Checker, block: usize, asked_at: Span) -> Option<
         mass_per_length,
         own_mass,
     };
-    let behaviour = checker.within_entry(block, "behaviour", asked_at, |checker, expr, place| {
-        let FieldType::Choice(variants) = checker.scope.blocks[block].kind.field("behaviour")?.ty
-        else {
-            return None;
-        };
-        behaviour::behaviour(
-            checker,
-            &Written {
-                field: "behaviour",
-                variants,
-                expr,
-                place,
-                material,
-            },
-        )
-    });
+    let behaviour = checker.within_entry(
+        block,
+        "behaviour",
+        requested_at,
+        |checker, expr, context| {
+            let FieldType::Choice(variants) =
+                checker.scope.blocks[block].kind.field("behaviour")?.ty
+            else {
+                return None;
+            };
+            behaviour::behaviour(
+                checker,
+                &Written {
+                    field: "behaviour",
+                    variants,
+                    expr,
+                    context,
+                    material,
+                },
+            )
+        },
+    );
     checker.drop_repeated(known, block);
     behaviour
 }
 
-/// Warns where the limits let a specimen go beyond the points of its table.
+/// Warns where the limits let a specimen exceed the points of its table.
 pub fn warn_of_short_tables(
     checker: &mut Checker,
     specimens: &[Option<Specimen>],
@@ -371,10 +388,10 @@ pub fn warn_of_short_tables(
             continue;
         };
         let mut named = Vec::new();
-        if let Some((_, entry)) = checker.given(block, "behaviour") {
+        if let Some((_, entry)) = checker.field(block, "behaviour") {
             behaviour::tables_named(&entry.value, &mut named);
         }
-        // Behind a spring or beside one the specimen's displacement is not the table's.
+        // In series or in parallel with a spring the displacement of the specimen is not that of the table.
         let table = match behaviour {
             Behaviour::Rate { of, .. }
             | Behaviour::Maxwell { of, .. }
@@ -393,7 +410,7 @@ pub fn warn_of_short_tables(
         };
         let allowed = limits.limits.displacement;
         if allowed.low < reach.low || allowed.high > reach.high {
-            checker.faults.push(specimens::table_too_short(
+            checker.diagnostics.push(specimens::table_too_short(
                 &table.file,
                 reach,
                 allowed,

@@ -1,12 +1,12 @@
-//! `mass_matrix = "m.csv"`: a square table of numbers without header, a row a line. In: the text. Out: a symmetric, positive
-//! definite matrix, or which row and column is at fault, and why. It knows no plan.
+//! `mass_matrix = "m.csv"`: a square table of numbers without a header, one row per line. In: the text. Out: a symmetric, positive
+//! definite matrix, or the row and column of an error, and the reason. It knows no plan.
 
 use crate::plan::MOST_STOREYS;
 
-/// Two entries that mirror each other may differ by so much of the larger: the last digits of whatever wrote the file.
+/// Relative difference within which two mirrored entries are equal: the last digits of the program that wrote the file.
 const SYMMETRIC: f64 = 1e-9;
 
-/// The matrix in `text`; blank lines and lines that begin with `#` count for nothing.
+/// The matrix in `text`; blank lines and lines that begin with `#` are ignored.
 pub fn read(text: &str) -> Result<Vec<Vec<f64>>, String> {
     let written = (1..)
         .zip(text.lines())
@@ -54,7 +54,7 @@ fn square(matrix: &[Vec<f64>]) -> Result<(), String> {
     }
 }
 
-/// Mirrored entries become the same number.
+/// Makes mirrored entries equal.
 fn symmetric(matrix: &mut [Vec<f64>]) -> Result<(), String> {
     let pairs = (0..matrix.len()).flat_map(|row| (0..row).map(move |column| (row, column)));
     for (row, column) in pairs {
@@ -70,7 +70,7 @@ fn symmetric(matrix: &mut [Vec<f64>]) -> Result<(), String> {
     Ok(())
 }
 
-/// Cholesky's factorisation, as far as it goes: the row whose pivot is not above the rounding of what it was made from.
+/// Cholesky factorisation up to the first row whose pivot is not above its rounding error; returns that row.
 fn first_pivot_that_is_not_positive(matrix: &[Vec<f64>]) -> Option<usize> {
     let mut factor = matrix.to_vec();
     for row in 0..matrix.len() {

@@ -1,8 +1,10 @@
-//! The first look at a file: its words, numbers, texts, signs and line ends, and every fault that can be seen without
-//! grammar (bad characters, bad numbers, units glued to expressions, all size limits). In: text. Out: [`Tokens`].
-//! The grammar reads the text itself; tokens serve recovery (`layout`), messages and the formatter.
+//! Lexical analysis: words, numbers, strings, signs and line ends of a file, and every error that needs no
+//! grammar (invalid characters, invalid numbers, units attached to expressions, all size limits). In: text. Out: [`Tokens`].
+//! The grammar parses the text itself; tokens serve recovery (`layout`), messages and the formatter.
 
-use super::{characters, faults, layout::ITEM_WORDS, limits, numbers};
+use super::unit_tokens::{unit_extent, unit_in_parentheses};
+use super::{characters, numbers};
+use crate::language::syntax::{layout::ITEM_WORDS, limits, messages};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{FileId, Span, Spanned};
 
@@ -27,13 +29,13 @@ pub struct Token {
     pub end: usize,
 }
 
-/// What a file is made of. Comments are in `list` too, so that the formatter finds them where they stand.
+/// The tokens of a file. Comments are in `list` too, so that the formatter finds their positions.
 #[derive(Debug)]
 pub struct Tokens<'a> {
     pub text: &'a str,
     pub file: FileId,
     pub list: Vec<Token>,
-    pub faults: Vec<Diagnostic>,
+    pub errors: Vec<Diagnostic>,
     /// The file was too large to be read to its end.
     pub cut_short: bool,
 }
@@ -46,7 +48,7 @@ impl<'a> Tokens<'a> {
                 text,
                 file,
                 list: Vec::new(),
-                faults: Vec::new(),
+                errors: Vec::new(),
                 cut_short: false,
             },
             at: 0,
@@ -93,12 +95,12 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// Signs of two characters; they win over those of one.
+/// Signs of two characters; they have priority over those of one.
 const LONG_SIGNS: [&str; 5] = ["..", "<=", ">=", "==", "!="];
 /// Words that join two values or follow a value, so that none of them is a unit.
 pub const JOINING_WORDS: [&str; 5] = ["and", "within", "of", "step", "between"];
 
-/// Lines over which a text may have been written.
+/// Most lines of a string that is not closed on its first line.
 const LINES_OF_A_TEXT: usize = 20;
 
 struct Reader<'a> {
@@ -113,8 +115,8 @@ impl<'a> Reader<'a> {
         &self.tokens.text[self.at..]
     }
 
-    fn fault(&mut self, fault: Diagnostic) {
-        self.tokens.faults.push(fault);
+    fn error(&mut self, error: Diagnostic) {
+        self.tokens.errors.push(error);
     }
 
     fn push(&mut self, kind: Kind, length: usize) {
@@ -135,7 +137,7 @@ impl<'a> Reader<'a> {
         while let Some(first) = self.rest().chars().next() {
             if self.tokens.list.len() >= limits::TOKENS {
                 self.tokens.cut_short = true;
-                self.fault(faults::too_large(
+                self.error(messages::too_large(
                     self.span(first.len_utf8()),
                     "this file",
                     limits::TOKENS,
@@ -143,12 +145,12 @@ impl<'a> Reader<'a> {
                 ));
                 return;
             }
-            if self.tokens.faults.len() >= limits::FAULTS {
+            if self.tokens.errors.len() >= limits::ERRORS {
                 self.tokens.cut_short = true;
-                self.fault(faults::too_large(
+                self.error(messages::too_large(
                     self.span(first.len_utf8()),
                     "the list of faults",
-                    limits::FAULTS,
+                    limits::ERRORS,
                     "faults",
                 ));
                 return;
@@ -169,7 +171,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A line end. No bracket reaches past a line that starts a field or an item, so an open one is forgotten there.
+    /// A line end. No bracket extends beyond a line that starts a field or an item, so an open one is dropped there.
     fn newline(&mut self, length: usize) {
         self.push(Kind::Newline, length);
         let line = self.rest().trim_start_matches([' ', '\t']);
@@ -193,7 +195,7 @@ impl<'a> Reader<'a> {
                     end += 1;
                 }
                 let span = self.tokens.span(start, end);
-                self.fault(faults::too_large(
+                self.error(messages::too_large(
                     span,
                     "this line",
                     limits::LINE_BYTES,
@@ -209,7 +211,7 @@ impl<'a> Reader<'a> {
         let line = line.strip_suffix('\r').unwrap_or(line);
         for (range, shown) in characters::bad_runs(line, true) {
             let span = self.tokens.span(self.at + range.start, self.at + range.end);
-            self.fault(faults::bad_character(span, &shown));
+            self.error(messages::bad_character(span, &shown));
         }
         self.push(Kind::Comment, line.len());
     }
@@ -227,7 +229,7 @@ impl<'a> Reader<'a> {
                         self.at + offset - 1,
                         self.at + offset + character.len_utf8(),
                     );
-                    self.fault(faults::bad_escape(span, character));
+                    self.error(messages::bad_escape(span, character));
                 }
             } else if character == '\\' {
                 escaped = true;
@@ -239,14 +241,14 @@ impl<'a> Reader<'a> {
         let length = end.unwrap_or(line.len());
         for (range, shown) in characters::bad_runs(&line[..length], false) {
             let span = self.tokens.span(self.at + range.start, self.at + range.end);
-            self.fault(faults::bad_character(span, &shown));
+            self.error(messages::bad_character(span, &shown));
         }
         if end.is_none() {
-            self.fault(faults::unclosed_text(self.span(1)));
-            // What was meant as one text is one, so that its other lines are not read as fields.
+            self.error(messages::unclosed_text(self.span(1)));
+            // A string over several lines is one token, so that its other lines are not read as fields.
             return self.push(Kind::Text, closed_below(self.rest()).unwrap_or(length));
         } else if length - 2 > limits::TEXT_BYTES {
-            self.fault(faults::too_large(
+            self.error(messages::too_large(
                 self.span(1),
                 "this text",
                 limits::TEXT_BYTES,
@@ -263,14 +265,14 @@ impl<'a> Reader<'a> {
             self.open.last() != Some(&'['),
         );
         let written = &self.rest()[..length];
-        if let Some(fault) = numbers::fault(written) {
-            self.fault(faults::bad_number(self.span(length), written, &fault));
+        if let Some(error) = numbers::error_of(written) {
+            self.error(messages::bad_number(self.span(length), written, &error));
         }
         self.push(Kind::Number, length);
         self.unit();
     }
 
-    /// The unit that may follow a number or a `]`, after blanks.
+    /// The unit that may follow a number or a `]`, after spaces.
     fn unit(&mut self) {
         let blanks = self.rest().len() - self.rest().trim_start_matches([' ', '\t']).len();
         let length = unit_extent(&self.rest()[blanks..]);
@@ -283,13 +285,13 @@ impl<'a> Reader<'a> {
         {
             self.at += blanks;
             let number = self.tokens.list.last().map_or(self.at, |token| token.start);
-            let mended = format!(
+            let corrected = format!(
                 "{} {unit}{flat}",
                 self.tokens.text[number..self.at].trim_end()
             );
-            self.fault(faults::unit_in_parentheses(
+            self.error(messages::unit_in_parentheses(
                 self.span(length + more),
-                &mended,
+                &corrected,
             ));
             self.push(Kind::Unit, length + more);
             return;
@@ -303,7 +305,7 @@ impl<'a> Reader<'a> {
         if after.starts_with(['*', '/', '^'])
             || (unit.contains(['*', '/']) && (member || after.starts_with('(')))
         {
-            // The operator in question is the one after the unit, else the last one in it.
+            // The operator that separates is the one after the unit, else the last one in it.
             let operator = if member || after.starts_with('(') {
                 unit.rfind(['*', '/']).unwrap_or(length)
             } else {
@@ -312,7 +314,7 @@ impl<'a> Reader<'a> {
             let glued = after
                 .find([' ', '\t', '\n', '\r', ',', ')', ']', '#'])
                 .unwrap_or(after.len());
-            // A parenthesis that opens there is closed there.
+            // A parenthesis that opens in it is closed in it.
             let closes = after[..glued].contains('(') && after[glued..].starts_with(')');
             let glued = glued + usize::from(closes);
             let span = self.span(length + glued);
@@ -324,13 +326,13 @@ impl<'a> Reader<'a> {
                 .filter(|token| token.kind == Kind::Number)
                 .map_or(self.at, |token| token.start);
             let number = &self.tokens.text[number..self.at];
-            let mended = format!(
+            let corrected = format!(
                 "{number}{} {} {}",
                 &whole[..operator],
                 &whole[operator..=operator],
                 whole[operator + 1..].trim()
             );
-            self.fault(faults::unit_without_blank(span, mended.trim_end()));
+            self.error(messages::unit_without_blank(span, corrected.trim_end()));
         }
         self.push(Kind::Unit, length);
     }
@@ -341,7 +343,7 @@ impl<'a> Reader<'a> {
             .find(|next: char| !(next.is_ascii_alphanumeric() || next == '_'))
             .unwrap_or(rest.len());
         if length > limits::NAME_CHARS {
-            self.fault(faults::too_large(
+            self.error(messages::too_large(
                 self.span(length.min(80)),
                 "this name",
                 limits::NAME_CHARS,
@@ -353,7 +355,7 @@ impl<'a> Reader<'a> {
 
     fn sign(&mut self, first: char) {
         if self.rest().starts_with("+/-") {
-            self.fault(faults::stray(self.span(3), "+/-"));
+            self.error(messages::stray(self.span(3), "+/-"));
             return self.push(Kind::Sign, 3);
         }
         if let Some(sign) = LONG_SIGNS
@@ -366,7 +368,7 @@ impl<'a> Reader<'a> {
             '(' | '[' => {
                 self.open.push(first);
                 if self.open.len() == limits::NESTING + 1 {
-                    self.fault(faults::nested_too_deep(self.span(1)));
+                    self.error(messages::nested_too_deep(self.span(1)));
                 }
                 self.push(Kind::Sign, 1);
             }
@@ -388,21 +390,21 @@ impl<'a> Reader<'a> {
                 let rest = self.rest();
                 let length = characters::stray_run(rest);
                 let shown = characters::shown(&rest[..length]);
-                let fault = if characters::is_bad(first, false) || first == '\r' {
-                    faults::bad_character(self.span(length), &shown)
+                let error = if characters::is_bad(first, false) || first == '\r' {
+                    messages::bad_character(self.span(length), &shown)
                 } else if first.is_alphabetic() {
-                    faults::foreign_letter(self.span(length), &rest[..length], &shown)
+                    messages::foreign_letter(self.span(length), &rest[..length], &shown)
                 } else {
-                    faults::stray(self.span(length), &rest[..length])
+                    messages::stray(self.span(length), &rest[..length])
                 };
-                self.fault(fault);
+                self.error(error);
                 self.push(Kind::Sign, length);
             }
         }
     }
 }
 
-/// Bytes of a text that is closed some lines below the one on which it opens; None where something else begins before that.
+/// Length in bytes of a string that is closed some lines below the one on which it opens; None where another statement begins before that.
 fn closed_below(text: &str) -> Option<usize> {
     let mut end = 0;
     for (index, line) in text.split_inclusive('\n').take(LINES_OF_A_TEXT).enumerate() {
@@ -421,80 +423,4 @@ fn closed_below(text: &str) -> Option<usize> {
         end += line.len();
     }
     None
-}
-
-/// A unit in parentheses at the start of `text`, behind `*` or `/` unless it is `alone`: its bytes, the sign included, and
-/// the same without parentheses. What is no unit is an expression.
-fn unit_in_parentheses(text: &str, alone: bool) -> Option<(usize, String)> {
-    let sign = if alone {
-        ""
-    } else {
-        text.get(..1).filter(|sign| matches!(*sign, "*" | "/"))?
-    };
-    let inside = text[sign.len()..].strip_prefix('(')?;
-    let unit = inside
-        .split([')', '\n'])
-        .next()
-        .filter(|unit| inside[unit.len()..].starts_with(')'))?;
-    let trimmed = unit.trim();
-    if unit_extent(trimmed) != trimmed.len() || crate::units::unit::parse(trimmed).is_err() {
-        return None;
-    }
-    let turned = |c: char| match c {
-        '*' if sign == "/" => '/',
-        '/' if sign == "/" => '*',
-        same => same,
-    };
-    let flat = sign.chars().chain(trimmed.chars().map(turned)).collect();
-    Some((sign.len() + 1 + unit.len() + 1, flat))
-}
-
-/// Bytes of the unit token at the start of `text`: `name[^power]` joined by `*` or `/`. 0 where there is none.
-fn unit_extent(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let mut end = if bytes.starts_with(b"1/") {
-        1
-    } else {
-        unit_factor(text)
-    };
-    while end > 0 && matches!(bytes.get(end), Some(b'*' | b'/')) {
-        let factor = unit_factor(&text[end + 1..]);
-        if factor == 0 {
-            break;
-        }
-        end += 1 + factor;
-    }
-    end
-}
-
-fn unit_factor(text: &str) -> usize {
-    let letter = |next: char| next.is_ascii_alphabetic() || matches!(next, 'µ' | 'μ');
-    let name = if text.starts_with('%') {
-        1
-    } else if text.starts_with(letter) {
-        text.find(|next: char| !(letter(next) || next.is_ascii_digit() || next == '_'))
-            .unwrap_or(text.len())
-    } else {
-        return 0;
-    };
-    let Some(power) = text[name..].strip_prefix('^') else {
-        return name;
-    };
-    let digits = |text: &str| {
-        text.len()
-            - text
-                .trim_start_matches(|next: char| next.is_ascii_digit())
-                .len()
-    };
-    let sign = usize::from(power.starts_with('-'));
-    let whole = digits(&power[sign..]);
-    if whole == 0 {
-        return name;
-    }
-    let mut end = sign + whole;
-    if power[end..].starts_with('.') {
-        let fraction = digits(&power[end + 1..]);
-        end += if fraction == 0 { 0 } else { 1 + fraction };
-    }
-    name + 1 + end
 }

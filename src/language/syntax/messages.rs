@@ -1,17 +1,20 @@
-//! Every fault of the text, as a diagnostic: the code, the sentence, the place and the way out. Found elsewhere, worded
-//! here.
+//! Every syntax error as a diagnostic: the code, the message, the span and the suggestion. Other files find the errors, this one words
+//! them.
 
-use super::{letters, limits, misspelt::Slip, numbers};
+use super::{
+    lexical::{confusables::Confusable, letters, numbers},
+    limits,
+};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 
-/// What to write in place of an `or`.
+/// The replacement for an `or`.
 const EITHER: &str = "all that is required must hold, so there is no `or`: of two values of which one is enough, require the \
     smaller or the larger, as in `min(a, b) < 5 mm`";
 
 const COMPARED: &str = "values are compared by `<=`, `>=`, `==` or `within 5 % of`";
 
-/// `found` and `expected` are in human words, marks included.
+/// `found` and `expected` are phrases, with their backquotes.
 pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("found {found}, expected {expected}"))
         .at(span, format!("expected {expected}"))
@@ -71,7 +74,7 @@ pub fn field_outside(span: Span, key: &str) -> Diagnostic {
     ))
 }
 
-/// A line of words that opens no block.
+/// A line of words that does not open a block.
 pub fn stray_words(span: Span, words: &str) -> Diagnostic {
     let mut short: String = words.chars().take(30).collect();
     if short.len() < words.len() {
@@ -82,14 +85,14 @@ pub fn stray_words(span: Span, words: &str) -> Diagnostic {
         .help("a block opens with `{` on this same line, as in `striker hammer { … }`; a remark stands behind `#`")
 }
 
-/// A line that begins with a word that other languages begin a line with.
+/// A line that begins with a keyword of another language.
 pub fn word_of_another_language(span: Span, word: &str, help: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("`{word}` is no word of the language"))
         .at(span, "begins no item")
         .help(help)
 }
 
-/// A condition or a loop: `whole` is not read.
+/// A condition or a loop: `whole` is skipped.
 pub fn no_control(message: &str, help: &str, begins: Span, whole: Span) -> Diagnostic {
     Diagnostic::new(Code::Syntax, message)
         .at(begins, "begins no item")
@@ -103,7 +106,7 @@ pub fn arguments_in_braces(span: Span, call: &str) -> Diagnostic {
         .help(format!("write `{call}`"))
 }
 
-/// `rest`: what follows `require`.
+/// `rest`: the text after `require`.
 pub fn requirement_without_name(span: Span, rest: &str) -> Diagnostic {
     let short = rest.len() <= 60 && !rest.contains('\n');
     let rest = if short { rest } else { "…" };
@@ -114,7 +117,7 @@ pub fn requirement_without_name(span: Span, rest: &str) -> Diagnostic {
         ))
 }
 
-/// A line that goes on with an expression of the line before.
+/// A line that continues an expression of the line before.
 pub fn operator_begins_line(span: Span, operator: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, format!("this line begins with `{operator}`"))
         .at(span, "belongs to the line before")
@@ -160,13 +163,13 @@ pub fn unclosed(span: Span, open: &str, close: &str) -> Diagnostic {
     .help(format!("write the `{close}` that belongs to it"))
 }
 
-pub fn bad_number(span: Span, written: &str, fault: &numbers::Fault) -> Diagnostic {
+pub fn bad_number(span: Span, written: &str, error: &numbers::NumberError) -> Diagnostic {
     let written = written.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut short: String = written.chars().take(20).collect();
     if short.len() < written.len() {
         short.push('…');
     }
-    let help = match fault.write.as_slice() {
+    let help = match error.write.as_slice() {
         [] => "write a number such as `0.5` or `1.5e6`".to_owned(),
         [one] => format!("write `{one}`"),
         [one, others @ ..] => format!("write `{one}` or `{}`", others.join("` or `")),
@@ -175,23 +178,23 @@ pub fn bad_number(span: Span, written: &str, fault: &numbers::Fault) -> Diagnost
         Code::BadNumber,
         format!("`{short}` is not a number psd reads"),
     )
-    .at(span, fault.why)
+    .at(span, error.why)
     .help(help)
 }
 
-/// `mended`: number and unit without the parentheses.
-pub fn unit_in_parentheses(span: Span, mended: &str) -> Diagnostic {
+/// `corrected`: number and unit without the parentheses.
+pub fn unit_in_parentheses(span: Span, corrected: &str) -> Diagnostic {
     Diagnostic::new(Code::UnitWithoutBlank, "a unit has no parentheses")
         .at(span, "read as one unit")
         .help(format!(
-            "write `{mended}`: a unit is read from left to right, so that `N/m*s` is (N/m)·s"
+            "write `{corrected}`: a unit is read from left to right, so that `N/m*s` is (N/m)·s"
         ))
 }
 
-pub fn unit_without_blank(span: Span, mended: &str) -> Diagnostic {
+pub fn unit_without_blank(span: Span, corrected: &str) -> Diagnostic {
     Diagnostic::new(Code::UnitWithoutBlank, "an operator is glued to a unit")
         .at(span, "read as part of the unit")
-        .help(format!("put blanks around the operator: `{mended}`"))
+        .help(format!("put blanks around the operator: `{corrected}`"))
 }
 
 pub fn nested_too_deep(span: Span) -> Diagnostic {
@@ -281,7 +284,7 @@ pub fn too_many_operators(span: Span, limit: usize) -> Diagnostic {
     .help("name parts of it with `let`, or write `sum([ … ])`")
 }
 
-/// A file whose every line ends with CR, so that for every other program it is one line.
+/// A file whose every line ends with CR: other programs take it for one line.
 pub fn carriage_returns(span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadText,
@@ -291,34 +294,34 @@ pub fn carriage_returns(span: Span) -> Diagnostic {
     .help("save the file with LF or CR LF line ends")
 }
 
-/// What was written for something else, at the first of `places` places.
-pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic {
-    let often = match places {
+/// A confusable character or word, at the first of `count` positions.
+pub fn confusable(found: Confusable, span: Span, count: usize, text: &str) -> Diagnostic {
+    let often = match count {
         1 => String::new(),
         2 => ", here and in one more place".to_owned(),
         more => format!(", here and in {} more places", more - 1),
     };
-    let fault = |code, message: String, label: &str, help: String| {
+    let error = |code, message: String, label: &str, help: String| {
         Diagnostic::new(code, format!("{message}{often}"))
             .at(span, label)
             .help(help)
     };
     let point = |c: char| format!("U+{:04X}", u32::from(c));
-    match slip {
-        Slip::ByteOrderMark => fault(
+    match found {
+        Confusable::ByteOrderMark => error(
             Code::BadText,
             "the file begins with a byte order mark (U+FEFF)".to_owned(),
             "before the first character",
             "save the file as UTF-8 without a byte order mark".to_owned(),
         ),
-        Slip::Blank(blank) => {
+        Confusable::Space(blank) => {
             let name = match blank {
                 '\u{a0}' | '\u{202f}' => "the no-break space ",
                 '\u{2009}' => "the thin space ",
                 '\u{3000}' => "the wide space ",
                 _ => "",
             };
-            fault(
+            error(
                 Code::BadText,
                 format!(
                     "a blank is {name}{}, not the space of the keyboard",
@@ -331,27 +334,27 @@ pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic
                 ),
             )
         }
-        Slip::Sign(written, meant) => {
+        Confusable::Sign(written, meant) => {
             let code = written.chars().next().filter(|first| !first.is_ascii());
             let which = code.map_or_else(String::new, |first| format!(" ({})", point(first)));
-            fault(
+            error(
                 Code::Syntax,
                 format!("`{written}`{which} is no sign of the language"),
                 "this sign",
                 format!("write `{meant}`"),
             )
         }
-        Slip::Superscript(written) => {
+        Confusable::Superscript(written) => {
             let meant = "as in `mm^2` or `1/s`";
             let written: String = written.chars().take(12).collect();
-            fault(
+            error(
                 Code::Syntax,
                 format!("`{written}` is no exponent of the language"),
                 "a raised digit",
                 format!("write the power with `^`, {meant}"),
             )
         }
-        Slip::Quotes(open) => {
+        Confusable::Quotes(open) => {
             let inside = |c: char| {
                 c == open
                     || matches!(
@@ -365,30 +368,30 @@ pub fn misspelt(slip: Slip, span: Span, places: usize, text: &str) -> Diagnostic
             } else {
                 format!("`{open}` ({})", point(open))
             };
-            fault(
+            error(
                 Code::Syntax,
                 format!("{which} is no quote of the language"),
                 "meant as a text",
                 format!("write \"{written}\" with the straight quote U+0022"),
             )
         }
-        Slip::Comment(opens) => fault(
+        Confusable::Comment(opens) => error(
             Code::Syntax,
             format!("`{opens}` begins no comment"),
             "meant as a comment",
             "a comment begins with `#` and ends with its line".to_owned(),
         ),
-        Slip::Semicolon => fault(
+        Confusable::Semicolon => error(
             Code::Syntax,
             "found `;`, which has no meaning in a plan".to_owned(),
             "no meaning here",
             "a field ends with its line: take the `;` away".to_owned(),
         ),
-        Slip::Word(word) => foreign_word(word, span, &often),
+        Confusable::Word(word) => foreign_word(word, span, &often),
     }
 }
 
-/// A name with letters that are none of a–z; the place is the first of them.
+/// A name with letters outside a–z; the span is that of the first.
 fn foreign_word(word: &str, span: Span, often: &str) -> Diagnostic {
     let start = word.find(letters::is_foreign).unwrap_or(0);
     let letter = word[start..].chars().next().unwrap_or_default();

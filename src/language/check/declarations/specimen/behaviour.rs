@@ -1,0 +1,388 @@
+//! `behaviour = series(…)`: the restoring-force model of a specimen. In: its expression. Out: a [`Behaviour`] in SI.
+
+use super::backbone::{capping, deterioration, multilinear, table};
+use super::{beam, portal};
+use crate::language::check::checker::{Checker, Context};
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::messages::{shown, specimens as message, values};
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::physics::relaxation::logarithmic::lost_after_long;
+use crate::plan::{Behaviour, Bolted, Breaks, Pinching};
+use crate::schema::Variant;
+use crate::text::source::Span;
+use crate::units::Dimension;
+
+/// Most springs of one model.
+pub const MOST_PARTS: usize = 16;
+/// Most springs in series: each additional one multiplies the cost of a move by about ten.
+pub const MOST_IN_SERIES: usize = 4;
+
+/// Duration of a relaxation where the plan does not specify it, in reference times.
+const LONGEST_OF_REFERENCE: f64 = 1e6;
+/// Shortest duration of a relaxation, in reference times: a shorter one leaves nothing of the logarithm.
+const LEAST_OF_REFERENCE: f64 = 10.0;
+
+/// A model as it is written, with the variants that it may be.
+pub struct Written<'a> {
+    pub field: &'static str,
+    pub variants: &'static [Variant],
+    pub expr: &'a Expr,
+    pub context: Context,
+    pub material: Material,
+}
+
+/// Material data of the specimen.
+#[derive(Clone, Copy, Default)]
+pub struct Material {
+    /// q·A \[kg/m\], where both are stated.
+    pub mass_per_length: Option<f64>,
+    /// q·A·L \[kg\], where all three are stated.
+    pub own_mass: Option<f64>,
+}
+
+/// The complete model, within its size limit.
+pub fn behaviour<'a>(checker: &mut Checker<'a>, written: &Written<'a>) -> Option<Behaviour> {
+    let found = part(checker, written, written.expr, Position::Outermost)?;
+    if count(&found) > MOST_PARTS {
+        return checker.fail(message::too_many_parts(
+            MOST_PARTS,
+            "springs",
+            written.expr.span,
+        ));
+    }
+    if in_series(&found) > MOST_IN_SERIES {
+        return checker.fail(message::too_many_parts(
+            MOST_IN_SERIES,
+            "springs in series",
+            written.expr.span,
+        ));
+    }
+    Some(found)
+}
+
+fn count(behaviour: &Behaviour) -> usize {
+    behaviour.parts().iter().map(count).sum::<usize>().max(1)
+}
+
+/// Nested solutions of the model, itself included.
+fn in_series(behaviour: &Behaviour) -> usize {
+    let parts = behaviour.parts().iter().map(in_series);
+    if matches!(behaviour, Behaviour::Series(_)) {
+        parts.sum()
+    } else {
+        parts.max().unwrap_or(1)
+    }
+}
+
+/// Position of a model in a composition: rate- and time-dependent models must be the outermost ones.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Position {
+    Outermost,
+    BesideBranch,
+    Inside,
+}
+
+fn part<'a>(
+    checker: &mut Checker<'a>,
+    written: &Written<'a>,
+    expr: &'a Expr,
+    position: Position,
+) -> Option<Behaviour> {
+    let context = written.context;
+    let chosen = checker.chosen(written.field, written.variants, expr)?;
+    let mut number = |name: &str| checker.constant_argument(&chosen, name, context);
+    match chosen.variant.name {
+        "elastic" => Some(Behaviour::Elastic {
+            stiffness: number("stiffness")?,
+        }),
+        "bilinear" => {
+            let (stiffness, yield_force, hardening) = (
+                number("stiffness"),
+                number("yield_force"),
+                number("hardening"),
+            );
+            let (exponent, residual) = (
+                number("deterioration_exponent"),
+                number("residual_strength"),
+            );
+            let (stiffness, yield_force, hardening) = (stiffness?, yield_force?, hardening?);
+            Some(
+                match deterioration(checker, &chosen, context, exponent?, residual?)? {
+                    None => Behaviour::Bilinear {
+                        stiffness,
+                        yield_force,
+                        hardening,
+                    },
+                    Some(deterioration) => Behaviour::WearingBilinear {
+                        stiffness,
+                        yield_force,
+                        hardening,
+                        deterioration,
+                    },
+                },
+            )
+        }
+        "bouc_wen" => {
+            let (stiffness, yield_force, hardening) = (
+                number("stiffness"),
+                number("yield_force"),
+                number("hardening"),
+            );
+            let (sharpness, beta) = (number("n"), number("beta"));
+            let (stiffness, yield_force, hardening) = (stiffness?, yield_force?, hardening?);
+            Some(Behaviour::BoucWen {
+                stiffness,
+                yield_force,
+                hardening,
+                sharpness: sharpness?,
+                beta: beta?,
+            })
+        }
+        "pinching" => {
+            let (stiffness, yield_force, hardening) = (
+                number("stiffness"),
+                number("yield_force"),
+                number("hardening"),
+            );
+            let (force, displacement) = (number("force_factor"), number("displacement_factor"));
+            let exponent = number("unloading_exponent");
+            let (rate, residual) = (
+                number("deterioration_exponent"),
+                number("residual_strength"),
+            );
+            let (rate, residual) = (rate?, residual?);
+            let pinching = Pinching {
+                stiffness: stiffness?,
+                yield_force: yield_force?,
+                hardening: hardening?,
+                force_factor: force?,
+                displacement_factor: displacement?,
+                unloading_exponent: exponent?,
+                capping: None,
+                deterioration: None,
+            };
+            let deterioration = deterioration(checker, &chosen, context, rate, residual)?;
+            let capping = capping(checker, &chosen, context, &pinching, residual)?;
+            Some(Behaviour::Pinching(Pinching {
+                capping,
+                deterioration,
+                ..pinching
+            }))
+        }
+        "degrading" => {
+            let (stiffness, half, residual) = (
+                number("stiffness"),
+                number("half_displacement"),
+                number("residual"),
+            );
+            Some(Behaviour::Degrading {
+                stiffness: stiffness?,
+                half_displacement: half?,
+                residual: residual?,
+            })
+        }
+        "bolted" => {
+            let (stiffness, bearing_force) = (number("stiffness"), number("bearing_force"));
+            let (clearance, slip_force) = (number("clearance"), number("slip_force"));
+            let (stiffness, bearing_force) = (stiffness?, bearing_force?);
+            Some(Behaviour::Bolted(Bolted {
+                stiffness,
+                bearing_force,
+                clearance: clearance?,
+                slip_force: slip_force?,
+            }))
+        }
+        "rate" => {
+            let (reference_velocity, exponent) = (number("reference_velocity"), number("exponent"));
+            if position != Position::Outermost {
+                return checker.fail(message::must_be_outermost("rate", expr.span));
+            }
+            let of = Box::new(inner(checker, written, &chosen)?);
+            Some(Behaviour::Rate {
+                of,
+                reference_velocity: reference_velocity?,
+                exponent: exponent?,
+            })
+        }
+        "maxwell" => {
+            let (stiffness, time_constant) = (number("stiffness"), number("time_constant"));
+            if position == Position::Inside {
+                return checker.fail(message::must_be_outermost("maxwell", expr.span));
+            }
+            let (_, beside) = chosen.find("of")?;
+            let of = Box::new(part(checker, written, beside?, Position::BesideBranch)?);
+            Some(Behaviour::Maxwell {
+                of,
+                stiffness: stiffness?,
+                time_constant: time_constant?,
+            })
+        }
+        "logarithmic" => logarithmic(checker, written, &chosen, expr.span, position),
+        "multilinear" => multilinear(checker, &chosen, context),
+        "table" => table(checker, &chosen),
+        "fracture" => fracture(checker, written, &chosen, expr.span),
+        "series" => series(checker, written, &chosen, expr.span),
+        "parallel" => parts(checker, written, &chosen, expr.span)
+            .map(|parts| Behaviour::Parallel(parts.into_iter().map(|(part, _)| part).collect())),
+        "portal" => portal::portal(
+            checker,
+            &chosen,
+            context,
+            expr.span,
+            written.material.mass_per_length,
+        ),
+        _ => beam::beam(checker, &chosen, context, written.material.own_mass),
+    }
+}
+
+/// The instantaneous force relaxes with the logarithm of time, by no more than the whole of it.
+fn logarithmic<'a>(
+    checker: &mut Checker<'a>,
+    written: &Written<'a>,
+    chosen: &Chosen<'a>,
+    span: Span,
+    position: Position,
+) -> Option<Behaviour> {
+    let (share, time) = (
+        checker.constant_argument(chosen, "share", written.context),
+        checker.constant_argument(chosen, "reference_time", written.context),
+    );
+    let longest = checker.optional_argument(chosen, "longest", written.context)?;
+    if position == Position::Inside {
+        return checker.fail(message::must_be_outermost("logarithmic", span));
+    }
+    let of = Box::new(inner(checker, written, chosen)?);
+    let (share, reference_time) = (share?, time?);
+    let longest = longest.unwrap_or(LONGEST_OF_REFERENCE * reference_time);
+    if longest < LEAST_OF_REFERENCE * reference_time {
+        return checker.fail(message::relaxes_too_short(longest, reference_time, span));
+    }
+    let lost = lost_after_long(share, reference_time, longest);
+    if lost >= 1.0 {
+        return checker.fail(message::relaxes_away(share, lost, longest, span));
+    }
+    Some(Behaviour::Logarithmic {
+        of,
+        share,
+        reference_time,
+        longest,
+    })
+}
+
+fn inner<'a>(
+    checker: &mut Checker<'a>,
+    written: &Written<'a>,
+    chosen: &Chosen<'a>,
+) -> Option<Behaviour> {
+    let (_, expr) = chosen.find("of")?;
+    part(checker, written, expr?, Position::Inside)
+}
+
+/// The models that a variant combines, with the position of each.
+fn parts<'a>(
+    checker: &mut Checker<'a>,
+    written: &Written<'a>,
+    chosen: &Chosen<'a>,
+    span: Span,
+) -> Option<Vec<(Behaviour, Span)>> {
+    let exprs = chosen.several("of");
+    if exprs.len() < 2 {
+        return checker.fail(message::too_few_parts(chosen.variant.name, span));
+    }
+    // The size of a list is checked before its entries, so that its length is bounded.
+    if exprs.len() > MOST_PARTS {
+        return checker.fail(message::too_many_parts(MOST_PARTS, "springs", span));
+    }
+    let found: Vec<_> = exprs
+        .into_iter()
+        .map(|expr| Some((part(checker, written, expr, Position::Inside)?, expr.span)))
+        .collect();
+    found.into_iter().collect()
+}
+
+fn series<'a>(
+    checker: &mut Checker<'a>,
+    written: &Written<'a>,
+    chosen: &Chosen<'a>,
+    span: Span,
+) -> Option<Behaviour> {
+    let found = parts(checker, written, chosen, span)?;
+    if let Some((_, falls)) = found.iter().find(|(part, _)| !part.never_falls()) {
+        return checker.fail(message::falls_in_series(*falls, span));
+    }
+    Some(Behaviour::Series(
+        found.into_iter().map(|(part, _)| part).collect(),
+    ))
+}
+
+fn fracture<'a>(
+    checker: &mut Checker<'a>,
+    written: &Written<'a>,
+    chosen: &Chosen<'a>,
+    span: Span,
+) -> Option<Behaviour> {
+    let of = inner(checker, written, chosen);
+    let displacement = checker.optional_argument(chosen, "displacement", written.context);
+    let force = checker.optional_argument(chosen, "force", written.context);
+    let at = match (displacement?, force?) {
+        (Some(displacement), None) => Breaks::Displacement(displacement),
+        (None, Some(force)) => Breaks::Force(force),
+        (displacement, _) => {
+            let given = if displacement.is_some() { 2 } else { 0 };
+            let takes = "a `fracture` comes at a `displacement` or at a `force`";
+            return checker.fail(message::one_way_only(takes, "force: 5 kN", span, given));
+        }
+    };
+    let of = of?;
+    if let (Breaks::Force(force), Some(span)) = (at, chosen.span("force"))
+        && force > of.capacity()
+    {
+        let (force, most) = (
+            shown(force, Dimension::FORCE),
+            shown(of.capacity(), Dimension::FORCE),
+        );
+        let message = format!(
+            "the fracture at {force} never comes: what is to break carries no more than {most}"
+        );
+        checker.diagnostics.push(values::no_effect(
+            message,
+            span,
+            "is never reached",
+            "let it break at a `displacement`, or at less",
+        ));
+    }
+    Some(Behaviour::Fracture {
+        of: Box::new(of),
+        at,
+    })
+}
+
+/// Whether a model contains this variant.
+pub fn names(expr: &Expr, variant: &str) -> bool {
+    match &expr.kind {
+        ExprKind::Parenthesised(inner) => names(inner, variant),
+        ExprKind::List { items, .. } => items.iter().any(|item| names(item, variant)),
+        ExprKind::Call {
+            name, arguments, ..
+        } => {
+            name.node == variant
+                || arguments
+                    .iter()
+                    .any(|argument| names(&argument.value, variant))
+        }
+        _ => false,
+    }
+}
+
+/// The tables that a model names, with the span of each name.
+pub fn tables_named(expr: &Expr, found: &mut Vec<Span>) {
+    match &expr.kind {
+        ExprKind::Text(_) => found.push(expr.span),
+        ExprKind::Parenthesised(inner) => tables_named(inner, found),
+        ExprKind::List { items, .. } => items.iter().for_each(|item| tables_named(item, found)),
+        ExprKind::Call { arguments, .. } => arguments
+            .iter()
+            .for_each(|argument| tables_named(&argument.value, found)),
+        _ => {}
+    }
+}

@@ -1,0 +1,126 @@
+//! Errors of variants, of functions and of their arguments.
+
+use crate::language::check::messages::{all_of, suggestion};
+use crate::language::syntax::ast::Ident;
+use crate::schema::{FUNCTIONS, Field, FunctionKind, Need, Variant};
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::Span;
+
+pub fn unknown_variant(field: &str, name: &str, span: Span, variants: &[Variant]) -> Diagnostic {
+    let known = variants.iter().map(|variant| variant.name);
+    Diagnostic::new(Code::UnknownVariant, format!("`{field}` knows no `{name}`"))
+        .at(span, "unknown word")
+        .help(suggestion(name, known))
+}
+
+pub fn unknown_function(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnknownFunction,
+        format!("no function is called `{name}`"),
+    )
+    .at(span, "unknown function")
+    .help(suggestion(
+        name,
+        FUNCTIONS.iter().map(|function| function.name),
+    ))
+}
+
+pub fn function_argument_with_name(function: &str, name: &Ident) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadArgument,
+        format!("the arguments of `{function}` have no names"),
+    )
+    .at(name.span, "a name")
+    .help(format!("remove `{}:`", name.node))
+}
+
+pub fn function_arguments(kind: &FunctionKind, found: usize, span: Span) -> Diagnostic {
+    let wanted = if kind.many {
+        "at least one value"
+    } else {
+        "one value"
+    };
+    Diagnostic::new(
+        Code::BadArgument,
+        format!("`{}` takes {wanted}, found {found}", kind.name),
+    )
+    .at(span, format!("{found} values"))
+    .help(format!("write it as in `{}(x)`", kind.name))
+}
+
+pub fn unknown_argument(variant: &Variant, name: Option<&str>, span: Span) -> Diagnostic {
+    let known: Vec<&str> = variant
+        .arguments
+        .iter()
+        .map(|argument| argument.name)
+        .collect();
+    let (message, help) = match name {
+        Some(name) => (
+            format!("`{}` has no argument `{name}`", variant.name),
+            suggestion(name, known),
+        ),
+        None if known.is_empty() => (
+            format!("`{}` takes no arguments", variant.name),
+            format!("write `{}` alone", variant.name),
+        ),
+        None => {
+            let (arguments, they) = if known.len() == 1 {
+                ("one argument".to_owned(), "it is")
+            } else {
+                (format!("{} arguments", known.len()), "they are")
+            };
+            (
+                format!("`{}` takes at most {arguments}", variant.name),
+                format!("{they} {}", all_of(known)),
+            )
+        }
+    };
+    Diagnostic::new(Code::BadArgument, message)
+        .at(span, "not an argument of it")
+        .help(help)
+}
+
+/// The form of a missing argument: the whole call where it is short, `within(displacement: 0.01 mm, force_rate: 5 N/s)`,
+/// else the argument alone.
+fn argument_help(variant: &Variant, missing: &Field) -> String {
+    let required: Vec<&Field> = variant
+        .arguments
+        .iter()
+        .filter(|argument| argument.need == Need::Required)
+        .collect();
+    let written = |argument: &Field| {
+        let named = argument.example.starts_with(&format!("{}:", argument.name));
+        if named || required.len() == 1 {
+            argument.example.to_owned()
+        } else {
+            format!("{}: {}", argument.name, argument.example)
+        }
+    };
+    if required.len() > 2 {
+        return format!("add it between the brackets, as in `{}`", written(missing));
+    }
+    let arguments: Vec<String> = required.iter().map(|argument| written(argument)).collect();
+    format!(
+        "write it as in `{}({})`",
+        variant.name,
+        arguments.join(", ")
+    )
+}
+
+pub fn missing_argument(variant: &Variant, field: &Field, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadArgument,
+        format!("`{}` lacks its argument `{}`", variant.name, field.name),
+    )
+    .at(span, format!("`{}` is missing", field.name))
+    .help(argument_help(variant, field))
+}
+
+pub fn argument_needs(variant: &str, argument: &str, other: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadArgument,
+        format!("`{argument}` of `{variant}` needs `{other}` beside it"),
+    )
+    .at(span, format!("`{other}` is missing"))
+    .help(format!("give `{other}: …` too, or remove `{argument}`"))
+}

@@ -1,0 +1,89 @@
+//! Errors of figures: an unknown one, and procedures that cannot share a chart.
+
+use crate::language::check::messages::{one_of, suggestion};
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::{Span, Spanned};
+
+pub fn unknown_figure(
+    name: &str,
+    span: Span,
+    known: impl IntoIterator<Item = &'static str>,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnknownVariant,
+        format!("no figure is called `{name}`"),
+    )
+    .at(span, "unknown figure")
+    .help(suggestion(name, known))
+}
+
+/// E651 from here on: procedures that cannot share a chart.
+pub fn figure_of_one<'n>(
+    figure: &str,
+    procedure: &str,
+    span: Span,
+    shared: impl Iterator<Item = &'n str>,
+) -> Diagnostic {
+    let shared: Vec<&str> = shared.collect();
+    let message = format!(
+        "`{figure}` draws several curves of one `{procedure}`: it is a figure of one procedure"
+    );
+    let help = if shared.is_empty() {
+        format!("write a figure for each: `{figure}(one), {figure}(other)`")
+    } else {
+        format!(
+            "write a figure for each; on one chart can stand {}",
+            one_of(shared)
+        )
+    };
+    Diagnostic::new(Code::NotTogether, message)
+        .at(span, "a second procedure")
+        .help(help)
+}
+
+pub fn figure_of_two_kinds(figure: &str, first: Spanned<&str>, other: Spanned<&str>) -> Diagnostic {
+    let message = format!(
+        "`{figure}` shows another thing of `{}` than of `{}`",
+        other.node, first.node
+    );
+    Diagnostic::new(Code::NotTogether, message)
+        .at(other.span, format!("`{}`", other.node))
+        .at(first.span, format!("`{}`", first.node))
+        .help("one chart shows procedures of one kind: write a figure for each kind")
+}
+
+pub fn figure_drawn_twice(first: Span, again: Span) -> Diagnostic {
+    Diagnostic::new(Code::NotTogether, "the same procedure twice on one chart")
+        .at(again, "drawn a second time")
+        .at(first, "drawn here already")
+        .help("name each procedure once")
+}
+
+pub fn too_many_together(found: usize, most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::NotTogether,
+        format!("{found} procedures on one chart; more than {most} cannot be told apart"),
+    )
+    .at(span, "one too many")
+    .help("write two figures")
+}
+
+pub fn figure_of_other_procedure<'n>(
+    figure: &str,
+    procedure: &str,
+    span: Span,
+    drawn: impl Iterator<Item = &'n str>,
+) -> Diagnostic {
+    let drawn: Vec<&str> = drawn.collect();
+    let help = if drawn.is_empty() {
+        "remove it; such a procedure has no figures".to_owned()
+    } else {
+        format!("it draws {}", one_of(drawn))
+    };
+    Diagnostic::new(
+        Code::UnknownVariant,
+        format!("a `{procedure}` has no figure `{figure}`"),
+    )
+    .at(span, "not drawn by this procedure")
+    .help(help)
+}

@@ -1,0 +1,105 @@
+//! Errors of results and of other members of a block.
+
+use crate::language::check::messages::{owner, suggestion};
+use crate::language::syntax::ast::Ident;
+use crate::schema::{BlockKind, Kind};
+use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::source::Span;
+
+/// A result without its procedure.
+pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownName, format!("nothing is called `{name}`"))
+        .at(span, "unknown name")
+        .help(format!(
+            "a result is read from its procedure: did you mean `{procedure}.{name}`?"
+        ))
+}
+
+/// A result of a run that does not unload, by the name of one that does, or the reverse.
+pub fn left_under_another_name(kind: &BlockKind, name: &str, now: &str, span: Span) -> Diagnostic {
+    let unloads = now.starts_with("residual");
+    let message = if unloads {
+        "takes the load off"
+    } else {
+        "ends under load"
+    };
+    let help = match (unloads, kind.kind) {
+        (true, _) => format!("read `{now}`"),
+        (false, Kind::Escalate) => format!("read `{now}`, or write `between = unload`"),
+        (false, _) => {
+            format!("read `{now}`, or unload first: `unload rest {{ }}`, then `rest.{name}`")
+        }
+    };
+    Diagnostic::new(
+        Code::UnknownResult,
+        format!(
+            "`{name}` is called `{now}` here, where the `{}` {message}",
+            kind.words()
+        ),
+    )
+    .at(span, format!("the `{}` has `{now}`", kind.words()))
+    .help(help)
+}
+
+pub fn unknown_result(
+    kind: &BlockKind,
+    name: Option<&Ident>,
+    member: &str,
+    span: Span,
+) -> Diagnostic {
+    let known: Vec<&str> = kind
+        .results
+        .iter()
+        .chain(kind.exports)
+        .map(|result| result.name)
+        .collect();
+    let what = if kind.procedure { "result" } else { "value" };
+    Diagnostic::new(
+        Code::UnknownResult,
+        format!("{} has no {what} `{member}`", owner(kind, name)),
+    )
+    .at(span, format!("unknown {what}"))
+    .help(suggestion(member, known))
+}
+
+pub fn minus_in_name(written: &str, meant: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnknownResult,
+        format!("`{written}` is read as a difference: a `-` is a minus sign"),
+    )
+    .at(span, "no name has a `-`")
+    .help(format!("did you mean `{meant}`?"))
+}
+
+pub fn field_not_given(
+    kind: &BlockKind,
+    name: Option<&Ident>,
+    field: &str,
+    span: Span,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnknownResult,
+        format!("{} does not give `{field}`", owner(kind, name)),
+    )
+    .at(span, "not given there")
+    .help(format!("add the field `{field}` to it"))
+}
+
+pub fn property_without_behaviour(name: Option<&Ident>, property: &str, span: Span) -> Diagnostic {
+    let name = name.map_or("", |name| name.node.as_str());
+    Diagnostic::new(Code::UnknownResult, format!("specimen `{name}` has no `{property}`: no `behaviour` gives it"))
+        .at(span, "not known before it is measured")
+        .help("read the result of a `stiffness ramp`, as in `k0.stiffness`, or give the `behaviour` that is expected")
+}
+
+pub fn no_uncertainty(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownResult, format!("`{text}` has no uncertainty"))
+        .at(span, "only a measured result has `.u`")
+        .help("`.u` follows a result that was fitted, such as `k0.stiffness.u`")
+}
+
+pub fn no_member_of_number(member: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::UnknownResult, format!("a number has no `{member}`"))
+        .at(span, "unknown here")
+        .help("only `.u`, the standard uncertainty, may follow a result")
+}

@@ -1,0 +1,176 @@
+//! A plan that is parsed once and checked as often as its parameters take other values. In: the text of the plan and of its files, then
+//! for each check a number for each parameter that changes. Out: checked plans. After the first check it reads no file.
+
+use std::collections::BTreeMap;
+
+use super::checker::Checker;
+use super::driver::{self, Findings, PlanText};
+use super::expressions::data::DataFile;
+use super::expressions::parameters::{names_of_parameters, read_settings};
+use super::messages::{self, names};
+use super::scope::{Scope, Setting};
+use super::{Checked, LoadError, Loader, Options, imports, rig};
+use crate::language::syntax::ast::Ast;
+use crate::plan::{Plan, PlanFile};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::source::{Sources, Span};
+use crate::units::Quantity;
+
+/// The syntax trees of a plan and its files, with everything else that does not change when a parameter does.
+pub struct ParsedPlan {
+    name: String,
+    options: Options,
+    /// Every file that was parsed, and every `--set`.
+    sources: Sources,
+    trees: Vec<Ast>,
+    files: Vec<PlanFile>,
+    settings: BTreeMap<String, Setting>,
+    /// Errors that were found before any check.
+    errors: Vec<Diagnostic>,
+    /// Lines that could not be parsed.
+    unread: Vec<Span>,
+    /// Whether some file could not be read, so that names may be missing.
+    incomplete: bool,
+    /// The data files that the last check with a loader read.
+    data: Vec<DataFile>,
+}
+
+/// The findings of one check.
+struct Outcome {
+    plan: Option<Plan>,
+    diagnostics: Vec<Diagnostic>,
+    rig_links: Vec<Span>,
+    data: Vec<DataFile>,
+}
+
+/// A binding reads no file.
+struct NoLoader;
+
+impl Loader for NoLoader {
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::Refused(
+            "no file is read while parameters are bound".to_owned(),
+        ))
+    }
+}
+
+impl ParsedPlan {
+    /// Parses a plan, the files that it uses, and the values of `--set`.
+    #[must_use]
+    pub fn parse(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> Self {
+        let mut sources = Sources::default();
+        let mut errors = Vec::new();
+        let imports = imports::load(name, text, loader, &mut sources, &mut errors);
+        let unread = driver::unread_lines(&sources, &errors);
+        let files = sources
+            .iter()
+            .map(|(_, file)| PlanFile {
+                name: file.name.clone(),
+                text: file.text.clone(),
+            })
+            .collect();
+        let settings = read_settings(&mut sources, &imports.asts, &options.settings, &mut errors);
+        Self {
+            name: name.to_owned(),
+            options: options.clone(),
+            sources,
+            trees: imports.asts,
+            files,
+            settings,
+            errors,
+            unread,
+            incomplete: imports.incomplete,
+            data: Vec::new(),
+        }
+    }
+
+    /// Checks the plan as it is written, with the values of `--set`. Keeps the data files that the plan names for [`Self::bind`].
+    pub fn check(&mut self, loader: &dyn Loader) -> Checked {
+        let settings = self.written_settings();
+        let mut outcome =
+            self.evaluate(&self.settings, settings, loader, Findings::WarningsToo, &[]);
+        messages::cap(&mut outcome.diagnostics);
+        self.data = outcome.data;
+        Checked {
+            plan: outcome.plan,
+            diagnostics: outcome.diagnostics,
+            sources: self.sources.clone(),
+            rig_links: outcome.rig_links,
+        }
+    }
+
+    /// The plan with other values of its parameters: its expressions are evaluated and checked again, but no text is parsed. A parameter
+    /// without a value here keeps the one of `--set`, or else its own. To be called after [`Self::check`] found no error.
+    ///
+    /// # Errors
+    /// The errors of the plan with these values: an unknown parameter, a value of a wrong dimension or out of its bounds, and whatever
+    /// else is wrong with such a plan.
+    pub fn bind(&self, values: &BTreeMap<String, Quantity>) -> Result<Plan, Vec<Diagnostic>> {
+        let known = names_of_parameters(&self.trees);
+        let unknown: Vec<Diagnostic> = values
+            .keys()
+            .filter(|name| !known.contains(&name.as_str()))
+            .map(|name| names::unknown_parameter(name, &known))
+            .collect();
+        if !unknown.is_empty() {
+            return Err(unknown);
+        }
+        let mut settings = self.settings.clone();
+        let mut written = self.written_settings();
+        for (name, value) in values {
+            settings.insert(name.clone(), Setting::Bound(*value));
+            written.insert(name.clone(), value.in_plan_syntax());
+        }
+        let outcome = self.evaluate(
+            &settings,
+            written,
+            &NoLoader,
+            Findings::ErrorsAlone,
+            &self.data,
+        );
+        outcome.plan.ok_or(outcome.diagnostics)
+    }
+
+    /// The texts of `--set`, by name; of several for one name the last.
+    fn written_settings(&self) -> BTreeMap<String, String> {
+        self.options.settings.iter().cloned().collect()
+    }
+
+    /// Checks the trees with these settings, which `written` has as text, and with these data files at hand.
+    fn evaluate(
+        &self,
+        settings: &BTreeMap<String, Setting>,
+        written: BTreeMap<String, String>,
+        loader: &dyn Loader,
+        findings: Findings,
+        data: &[DataFile],
+    ) -> Outcome {
+        let mut errors = self.errors.clone();
+        let scope = Scope::collect(&self.trees, settings, &mut errors);
+        let mut checker = Checker::new(
+            &self.sources,
+            &scope,
+            loader,
+            errors,
+            self.unread.clone(),
+            self.incomplete,
+        );
+        checker.data = data.to_vec();
+        let text = PlanText {
+            name: &self.name,
+            files: self.files.clone(),
+            settings: written.into_iter().collect(),
+        };
+        let plan = driver::plan(&mut checker, text, &self.options, findings);
+        let rig_links = rig::links_of_run(&checker, self.options.rig.as_deref());
+        let misspelt = self.trees.iter().flat_map(|tree| tree.misspelt.iter());
+        let misspelt: Vec<Span> = misspelt.copied().collect();
+        let diagnostics = driver::reportable(checker.diagnostics, &misspelt, checker.explained);
+        Outcome {
+            plan: plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)),
+            diagnostics,
+            rig_links,
+            data: checker.data,
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Warnings of a real rig whose results would not be reliable: calibrations, resolution, the probe, devices without a serial number. In: the
+//! checked rig of a run. Out: warnings. It opens no port.
+
+use super::CheckedRig;
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::rigs as message;
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::{Calibration, DeviceLink, Dialect};
+use crate::text::source::Span;
+
+/// Warnings for the real rig of a run whose results would not be reliable.
+pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
+    let (Some(block), Some(link)) = (rig.block, rig.plan.link.as_real()) else {
+        return;
+    };
+    let head = checker.scope.blocks[block].block.head;
+    let axes = 0..rig.plan.axes().unwrap_or(1);
+    let calibrations: Vec<Calibration> = axes
+        .clone()
+        .map(|axis| rig.plan.calibration_of(axis))
+        .collect();
+    let lacks = |of: fn(&Calibration) -> &Option<String>| {
+        calibrations
+            .iter()
+            .any(|calibration| of(calibration).is_none())
+    };
+    let (reference, due) = (
+        lacks(|calibration| &calibration.reference),
+        lacks(|calibration| &calibration.due),
+    );
+    if reference || due {
+        checker.diagnostics.push(message::not_certifiable(
+            &rig.plan.name,
+            head,
+            reference,
+            due,
+        ));
+    }
+    let no_day = |calibration: &Calibration| matches!(calibration.displacement, Some((_, None)));
+    let of_rig = checker
+        .field(block, "displacement_calibration")
+        .or_else(|| checker.field(block, "axes"));
+    if let (true, Some((_, entry))) = (calibrations.iter().any(no_day), of_rig) {
+        checker.diagnostics.push(message::displacement_without_day(
+            &rig.plan.name,
+            entry.value.span,
+        ));
+    }
+    if axes
+        .clone()
+        .any(|axis| link.readings_of(axis).resolution == 0.0)
+    {
+        let at = checker
+            .field(block, "resolution")
+            .map_or(head, |(_, entry)| entry.value.span);
+        checker
+            .diagnostics
+            .push(message::resolution_unknown(&rig.plan.name, at));
+    }
+    let drowned = axes
+        .clone()
+        .map(|axis| (link.gate_of(axis), link.readings_of(axis).noise))
+        .find(|(gate, noise)| {
+            // Ten times as written must be ten times here.
+            gate.probe.abs() * gate.stiffness.low < message::GATE_OVER_NOISE * noise * (1.0 - 1e-9)
+        });
+    let given = checker
+        .field(block, "gate")
+        .or_else(|| checker.field(block, "axes"));
+    if let (Some((gate, noise)), Some((_, entry))) = (drowned, given) {
+        checker.diagnostics.push(message::gate_within_noise(
+            gate.probe.abs(),
+            gate.stiffness.low,
+            noise,
+            entry.value.span,
+        ));
+    }
+    let unpinned =
+        |device: &DeviceLink| device.dialect == Dialect::Native && device.serial_number.is_none();
+    let fields = if checker.field(block, "link").is_some() {
+        ["link", "load_cell"]
+    } else {
+        ["actuator", "load_cell"]
+    };
+    for (field, device) in fields
+        .into_iter()
+        .zip([Some(&link.actuator), link.load_cell.as_ref()])
+    {
+        if let (Some(device), Some((_, entry))) = (device, checker.field(block, field))
+            && unpinned(device)
+        {
+            checker.diagnostics.push(message::device_not_pinned(
+                field,
+                "",
+                &device.port,
+                entry.value.span,
+            ));
+        }
+    }
+    let Some((_, written)) = checker.field(block, "axes") else {
+        return;
+    };
+    for (axis, own) in link.axes.iter().enumerate() {
+        for (field, device) in [("actuator", &own.actuator), ("load_cell", &own.load_cell)] {
+            if let Some(device) = device.as_ref().filter(|device| unpinned(device)) {
+                let at = own_device_at(&written.value, axis, field);
+                checker.diagnostics.push(message::device_not_pinned(
+                    field,
+                    &format!(" of axis {}", axis + 1),
+                    &device.port,
+                    at,
+                ));
+            }
+        }
+    }
+}
+
+/// The span of an axis' own device; of the list of axes, where that is unclear.
+fn own_device_at(axes: &Expr, axis: usize, field: &str) -> Span {
+    let written = match &axes.kind {
+        ExprKind::List { items, .. } => items.get(axis),
+        _ => Some(axes),
+    };
+    let named = written.and_then(|written| match &written.kind {
+        ExprKind::Call { arguments, .. } => arguments.iter().find(|argument| {
+            argument
+                .name
+                .as_ref()
+                .is_some_and(|name| name.node == field)
+        }),
+        _ => None,
+    });
+    named.map_or(axes.span, |argument| argument.value.span)
+}

@@ -1,0 +1,8 @@
+//! Lexical analysis: from characters to tokens. In: the text of a file. Out: [`tokens::Tokens`], and the errors that need no grammar.
+
+pub mod characters;
+pub mod confusables;
+pub mod letters;
+pub mod numbers;
+pub mod tokens;
+mod unit_tokens;

@@ -1,0 +1,284 @@
+//! Constructors of the entries of the schema: `Field::quantity(…).above_zero().required(…)`. They read like the sentence of the reference.
+
+use super::types::{Field, FieldType, Kind, Need, Range, ResultKind, RigKind, Variant};
+use crate::units::Dimension;
+
+impl Field {
+    const fn new(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
+        Self {
+            name,
+            ty,
+            need: Need::Optional,
+            range: Range::ANY,
+            example: "",
+            doc,
+            available: true,
+            real_rig_only: false,
+            of_frames: false,
+            angle: false,
+        }
+    }
+
+    pub(super) const fn of_type(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
+        Self::new(name, ty, doc)
+    }
+
+    pub(super) const fn text(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Text, doc)
+    }
+
+    pub(super) const fn texts(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Texts, doc)
+    }
+
+    pub(super) const fn inner(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Inner, doc)
+    }
+
+    pub(super) const fn inners(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Inners, doc)
+    }
+
+    pub(super) const fn quantity(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, FieldType::Quantity(dimension), doc)
+    }
+
+    pub(super) const fn angle(name: &'static str, doc: &'static str) -> Self {
+        Self {
+            angle: true,
+            ..Self::quantity(name, Dimension::NUMBER, doc)
+        }
+    }
+
+    pub(super) const fn quantities(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, FieldType::Quantities(dimension), doc)
+    }
+
+    pub(super) const fn bounds(
+        name: &'static str,
+        dimension: Dimension,
+        symmetric: bool,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(
+            name,
+            FieldType::Bounds {
+                dimension,
+                symmetric,
+            },
+            doc,
+        )
+    }
+
+    pub(super) const fn interval(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, FieldType::Interval(dimension), doc)
+    }
+
+    pub(super) const fn count(name: &'static str, low: f64, high: f64, doc: &'static str) -> Self {
+        let mut field = Self::new(name, FieldType::Count, doc);
+        field.range = Range {
+            low,
+            above: false,
+            high,
+        };
+        field
+    }
+
+    pub(super) const fn choice(
+        name: &'static str,
+        variants: &'static [Variant],
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, FieldType::Choice(variants), doc)
+    }
+
+    pub(super) const fn choices(
+        name: &'static str,
+        variants: &'static [Variant],
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, FieldType::Choices(variants), doc)
+    }
+
+    pub(super) const fn reference(name: &'static str, kind: Kind, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Reference(kind), doc)
+    }
+
+    pub(super) const fn figures(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Figures, doc)
+    }
+
+    pub(super) const fn condition(name: &'static str, doc: &'static str) -> Self {
+        Self::new(name, FieldType::Condition, doc)
+    }
+
+    /// Must stand; the example is a line that is right.
+    pub(super) const fn required(mut self, example: &'static str) -> Self {
+        self.need = Need::Required;
+        self.example = example;
+        self
+    }
+
+    /// Must stand on a rig of this kind; elsewhere the words hold.
+    pub(super) const fn required_on(
+        mut self,
+        rig: RigKind,
+        example: &'static str,
+        otherwise: &'static str,
+    ) -> Self {
+        self.need = Need::RequiredOn(rig, otherwise);
+        self.example = example;
+        self
+    }
+
+    pub(super) const fn of_real_rigs(mut self) -> Self {
+        self.real_rig_only = true;
+        self
+    }
+
+    pub(super) const fn of_frames(mut self) -> Self {
+        self.of_frames = true;
+        self
+    }
+
+    pub(super) const fn or(mut self, number: f64, unit: &'static str) -> Self {
+        self.need = Need::Default { number, unit };
+        self
+    }
+
+    pub(super) const fn or_said(mut self, words: &'static str) -> Self {
+        self.need = Need::Said(words);
+        self
+    }
+
+    pub(super) const fn above_zero(mut self) -> Self {
+        self.range = Range {
+            low: 0.0,
+            above: true,
+            high: f64::INFINITY,
+        };
+        self
+    }
+
+    pub(super) const fn at_least_zero(mut self) -> Self {
+        self.range = Range {
+            low: 0.0,
+            above: false,
+            high: f64::INFINITY,
+        };
+        self
+    }
+
+    /// Above 0 and at most `high`.
+    pub(super) const fn above_zero_up_to(mut self, high: f64) -> Self {
+        self.range = Range {
+            low: 0.0,
+            above: true,
+            high,
+        };
+        self
+    }
+
+    pub(super) const fn within(mut self, low: f64, high: f64) -> Self {
+        self.range = Range {
+            low,
+            above: false,
+            high,
+        };
+        self
+    }
+}
+
+impl Variant {
+    pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
+        Self {
+            name,
+            arguments: &[],
+            doc,
+        }
+    }
+
+    pub(super) const fn with(
+        name: &'static str,
+        arguments: &'static [Field],
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            arguments,
+            doc,
+        }
+    }
+}
+
+impl ResultKind {
+    pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self {
+            name,
+            dimension,
+            measured: false,
+            count: false,
+            list: false,
+            of_storey: false,
+            doc,
+        }
+    }
+
+    /// Of an impact on a storey only.
+    pub(super) const fn of_storey(self) -> Self {
+        Self {
+            of_storey: true,
+            ..self
+        }
+    }
+
+    pub(super) const fn measured(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            measured: true,
+            ..Self::new(name, dimension, doc)
+        }
+    }
+
+    pub(super) const fn count(name: &'static str, doc: &'static str) -> Self {
+        Self {
+            count: true,
+            ..Self::new(name, Dimension::NUMBER, doc)
+        }
+    }
+
+    /// Several numbers of one dimension.
+    pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+        Self {
+            list: true,
+            ..Self::new(name, dimension, doc)
+        }
+    }
+
+    /// The same, each with its uncertainty.
+    pub(super) const fn measured_list(
+        name: &'static str,
+        dimension: Dimension,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            measured: true,
+            ..Self::list(name, dimension, doc)
+        }
+    }
+}
