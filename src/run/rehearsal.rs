@@ -149,13 +149,15 @@ fn curve_of(history: &History) -> Option<Behaviour> {
         .iter()
         .map(|step| step.displacement)
         .fold(0.0, |most, x| {
-            if fit.way * x > fit.way * most {
+            if fit.direction * x > fit.direction * most {
                 x
             } else {
                 most
             }
         });
-    let corners = fit.corners(reach).filter(|corners| corners.len() > 1)?;
+    let corners = fit
+        .backbone_points(reach)
+        .filter(|corners| corners.len() > 1)?;
     Some(Behaviour::Multilinear { corners })
 }
 
