@@ -15,6 +15,9 @@ pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
 /// sign of life at least this often.
 const BREATH: f64 = 0.01;
 
+/// Why a run ends that a person wants to end while nothing moves.
+pub(super) const STOPPED_ON_REQUEST: &str = "stopped on request";
+
 pub(crate) struct Session<'run> {
     pub(crate) guard: Guard<'run>,
     pub(super) observer: &'run mut dyn Observer,
@@ -300,19 +303,21 @@ impl<'run> Session<'run> {
     pub(crate) fn stop_if_requested(&mut self) -> Result<(), Stop> {
         if self.observer.stop_requested() {
             self.guard.hold();
-            return Err(Stop::Person {
-                reason: "stopped on request".to_owned(),
-            });
+            return Err(stopped_on_request());
         }
         Ok(())
     }
 
-    /// A moment of a person's time. A real rig spends it where it is, and is heard from.
+    /// A moment of a person's time. A real rig spends it where it is, and is heard from. A request to hold that comes meanwhile is a
+    /// request to stop: nothing moves.
     pub(super) fn breathe(&mut self) -> Result<(), Stop> {
-        if !self.reckoned {
-            self.guard.pause(BREATH)?;
+        if self.reckoned {
+            return Ok(());
         }
-        Ok(())
+        self.guard.pause(BREATH).map_err(|fault| match fault {
+            RigFault::Interrupted => stopped_on_request(),
+            fault => fault.into(),
+        })
     }
 
     /// [`Self::step_done`] of a procedure that integrates nothing: rig time is its time.
@@ -419,6 +424,12 @@ impl<'run> Session<'run> {
             self.guard.move_to(&target, speed)?;
         }
         Ok(())
+    }
+}
+
+fn stopped_on_request() -> Stop {
+    Stop::Person {
+        reason: STOPPED_ON_REQUEST.to_owned(),
     }
 }
 

@@ -98,7 +98,7 @@ fn the_paper_is_sound_and_reads_back_with_its_id_and_number_on_every_page() {
         ("date = \"2026-05-31\"", "20 mm", "PASS"),
         ("", "2 mm", "ABORTED"),
     ] {
-        let place = tempfile::tempdir().unwrap();
+        let place = crate::stage::folder();
         paper(place.path(), "out", &plan(date, limit), &[]);
         let file = place.path().join("out/certificate.pdf");
         assert!(
@@ -151,7 +151,7 @@ fn the_paper_is_sound_and_reads_back_with_its_id_and_number_on_every_page() {
 #[test]
 fn the_paper_does_not_know_where_and_when_it_is_made() {
     let plan = plan("date = \"2026-05-31\"", "20 mm");
-    let place = tempfile::tempdir().unwrap();
+    let place = crate::stage::folder();
     let here = paper(place.path(), "here", &plan, &[("TZ", "UTC"), ("LANG", "C")]);
     let there = paper(
         place.path(),

@@ -11,7 +11,7 @@ const PLAN: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffn
 
 /// Plans `as` and `moved`, both blessed; the second then gives another number.
 fn two_plans() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = crate::stage::folder();
     std::fs::create_dir(folder.path().join("plans")).unwrap();
     for name in ["as", "moved"] {
         std::fs::write(folder.path().join(format!("plans/{name}.psd")), PLAN).unwrap();

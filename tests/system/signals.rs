@@ -233,8 +233,12 @@ fn while_somebody_is_asked() {
                 terminal.answer(question, "");
                 signal(&terminal.child, sent);
                 // Who sits at the keys still looks at a rig that was released.
-                if question == GO_ON && [Signal::INT, Signal::QUIT].contains(&sent) {
+                if question == GO_ON && sent == Signal::INT {
                     terminal.answer(LEAVE, "x\n");
+                }
+                if question == GO_ON && sent == Signal::QUIT {
+                    terminal.answer(LEAVE, "");
+                    signal(&terminal.child, sent);
                 }
                 let code = code(&mut terminal.child);
                 stage.held_and_sound(&Ended {

@@ -57,7 +57,7 @@ fn who_has_no_psd_proves_the_folder_too() {
     if !needs::minisign() {
         return;
     }
-    let root = tempfile::tempdir().unwrap();
+    let root = crate::stage::folder();
     let (bench, run) = (root.path(), root.path().join("run"));
     fs::write(bench.join("plan.psd"), PLAN).unwrap();
     fs::write(bench.join("password"), "correct horse\n").unwrap();
@@ -134,7 +134,7 @@ fn what_minisign_signs_with_its_own_key_psd_takes() {
     if !needs::minisign() {
         return;
     }
-    let root = tempfile::tempdir().unwrap();
+    let root = crate::stage::folder();
     let bench = root.path();
     fs::write(bench.join("plan.psd"), PLAN).unwrap();
     assert!(accepts(bench, PSD, &["run", "plan.psd", "--out", "run"]));

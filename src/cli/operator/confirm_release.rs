@@ -4,7 +4,7 @@
 use super::watch::Watcher;
 use crate::cli::exit::Failure;
 use crate::plan::{Plan, RealLink};
-use crate::rig::{Reading, Rig, place_and_force};
+use crate::rig::{Reading, Rig, RigFault, place_and_force};
 use crate::run::replay::{Decision, Doubt};
 use crate::run::{Inspection, Motion, Observer as _};
 use crate::units::Dimension;
@@ -26,20 +26,23 @@ pub fn ask(
     let motion = Motion::of(plan, rig.identity(), next(link, found, decision));
     loop {
         match watcher.release(&question, &motion) {
+            Inspection::Stop { reason, .. } => return Err(refused(watcher, reason)),
+            // A request to stop outranks an answer.
+            _ if watcher.stop_requested() => {
+                return Err(refused(watcher, "stopped on request".to_owned()));
+            }
             Inspection::GoOn { note, by } => {
                 let by = by.unwrap_or_else(|| "nobody".to_owned());
                 return Ok(note.map_or_else(|| by.clone(), |note| format!("{by}: {note}")));
             }
-            Inspection::Stop { reason, .. } => return Err(refused(watcher, reason)),
-            Inspection::Wait if watcher.stop_requested() => {
-                return Err(refused(watcher, "stopped on request".to_owned()));
-            }
-            Inspection::Wait => {
-                if let Err(fault) = rig.pause(BREATH) {
+            Inspection::Wait => match rig.pause(BREATH) {
+                // The request to hold stays: the next look refuses.
+                Ok(()) | Err(RigFault::Interrupted) => {}
+                Err(fault) => {
                     watcher.finish();
                     return Err(fault.into());
                 }
-            }
+            },
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a person wants of a run that is under way. In: wishes from signal handlers, keys and other threads. Out: the
 //! wish, for whoever waits on a rig. It knows no rig and does nothing itself.
 
-use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 const NOTHING: u8 = 0;
@@ -14,6 +14,8 @@ const HEEDED: u8 = 3;
 #[derive(Clone, Debug, Default)]
 pub struct Wish {
     what: Arc<AtomicU8>,
+    /// How often a stop or a hold was requested.
+    requests: Arc<AtomicU32>,
     letting_go: Arc<AtomicBool>,
     unasked: Arc<AtomicBool>,
     /// The bits of the longest time, s, that a line was not looked at.
@@ -87,6 +89,7 @@ impl Wish {
 
     /// The run is to end when the step under way is done.
     pub fn stop_after_step(&self) {
+        self.requests.fetch_add(1, Ordering::SeqCst);
         // A stronger wish stays.
         self.what
             .compare_exchange(NOTHING, STOP_AFTER_STEP, Ordering::SeqCst, Ordering::SeqCst)
@@ -95,6 +98,7 @@ impl Wish {
 
     /// The rig is to hold at once: every wait on it ends.
     pub fn hold_now(&self) {
+        self.requests.fetch_add(1, Ordering::SeqCst);
         self.what.store(HOLD_NOW, Ordering::SeqCst);
     }
 
@@ -124,10 +128,10 @@ impl Wish {
         self.what.load(Ordering::SeqCst) == HOLD_NOW || self.client.is_gone()
     }
 
-    /// Whether a hold is wanted or was, seen or not.
+    /// How often a stop or a hold was requested: a request that repeats an earlier one is counted too.
     #[must_use]
-    pub fn wanted_hold(&self) -> bool {
-        [HOLD_NOW, HEEDED].contains(&self.what.load(Ordering::SeqCst))
+    pub fn requests(&self) -> u32 {
+        self.requests.load(Ordering::SeqCst)
     }
 
     /// Whether the run is to end, now or after the step.
@@ -135,15 +139,6 @@ impl Wish {
     pub fn wants_end(&self) -> bool {
         self.what.load(Ordering::SeqCst) != NOTHING
     }
-
-    /// The number itself, for a signal handler that stores [`Wish::HOLD`] or [`Wish::STOP`].
-    #[must_use]
-    pub fn cell(&self) -> Arc<AtomicU8> {
-        Arc::clone(&self.what)
-    }
-
-    pub const STOP: u8 = STOP_AFTER_STEP;
-    pub const HOLD: u8 = HOLD_NOW;
 }
 
 #[cfg(test)]
@@ -161,9 +156,11 @@ mod tests {
         clone.stop_after_step();
         assert!(wish.wants_hold(), "not weakened");
         wish.heed();
-        assert!(!clone.wants_hold() && clone.wanted_hold() && clone.wants_end());
-        clone.cell().store(Wish::HOLD, Ordering::SeqCst);
+        assert!(!clone.wants_hold() && clone.wants_end());
+        assert_eq!(wish.requests(), 3);
+        clone.hold_now();
         assert!(wish.wants_hold(), "a second wish is a new one");
+        assert_eq!(wish.requests(), 4);
         assert!(wish.may_ask());
         clone.ask_nobody();
         assert!(!wish.may_ask());

@@ -8,6 +8,8 @@ use super::replayed::{Played, body};
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Line};
+use crate::rig::RigFault;
+use crate::run::session::STOPPED_ON_REQUEST;
 use crate::run::zero_drift::READINGS;
 
 /// The rules that this version computes a run by, as its records say in their header. 1: an `unload` may pass the place without load, and a
@@ -67,9 +69,12 @@ fn is_request(line: &Line) -> bool {
     line.kind == EntryKind::Operator && matches!(body(line), Ok(OperatorBody::Asked { .. }))
 }
 
-/// Whether an event is the one on record. An input that cannot be used was said of in SI units, as a number without one.
+/// Whether an event is the one on record. An input that cannot be used was said of in SI units, as a number without one; a request to
+/// hold while a person was asked was recorded as a hold on the way.
 pub(super) fn is_recorded(event: &Event, recorded: &Event) -> bool {
     const CAME_OUT: &str = " came out as ";
+    let stopped_while_asked =
+        event.text == STOPPED_ON_REQUEST && recorded.text == RigFault::Interrupted.to_string();
     let field = |event: &Event| {
         event
             .text
@@ -77,19 +82,39 @@ pub(super) fn is_recorded(event: &Event, recorded: &Event) -> bool {
             .map(|(field, _)| field.to_owned())
     };
     let older = field(recorded).is_some() && recorded.text.contains(" in SI units, but must be ");
-    recorded == event
-        || older
-            && field(recorded) == field(event)
-            && Event {
-                text: event.text.clone(),
-                ..recorded.clone()
-            } == *event
+    let same_otherwise = || {
+        Event {
+            text: event.text.clone(),
+            ..recorded.clone()
+        } == *event
+    };
+    let same_text = recorded.text == event.text
+        || stopped_while_asked
+        || older && field(recorded) == field(event);
+    same_text && same_otherwise()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::record::EventKind;
+
+    #[test]
+    fn a_hold_requested_while_a_person_was_asked_is_the_stop_on_record() {
+        let hold = |text: &str| Event {
+            time: 1.5,
+            procedure: None,
+            step: None,
+            kind: EventKind::Hold,
+            text: text.to_owned(),
+        };
+        let (now, older) = (
+            hold("stopped on request"),
+            hold("held on request in the middle of a step"),
+        );
+        assert!(is_recorded(&now, &older) && !is_recorded(&older, &now));
+        assert!(!is_recorded(&now, &hold("declined by the operator")));
+    }
 
     #[test]
     fn an_input_that_was_told_in_si_units_is_the_one_on_record() {

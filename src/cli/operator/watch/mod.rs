@@ -39,8 +39,8 @@ pub struct Watcher {
     alarm: Option<String>,
     /// Where a rig shows what it reads.
     live: Option<Live>,
-    /// Whether the end and a hold were wanted already when a person was first asked what to do with a rig that holds.
-    wanted: Option<(bool, bool)>,
+    /// How many stops had been requested when a person was first asked what to do with a rig that holds.
+    stops_before: Option<u32>,
     _signals: Signals,
 }
 
@@ -171,7 +171,7 @@ impl Watcher {
             ended: None,
             alarm: None,
             live: None,
-            wanted: None,
+            stops_before: None,
             _signals: signals,
         }
     }
@@ -220,8 +220,8 @@ impl Watcher {
 
     /// Whether Ctrl-C came since a person was first asked what to do with a rig that holds.
     fn is_interrupted(&mut self) -> bool {
-        let now = (self.wish.wants_end(), self.wish.wanted_hold());
-        now != *self.wanted.get_or_insert(now)
+        let now = self.wish.requests();
+        now != *self.stops_before.get_or_insert(now)
     }
 
     /// What a person in lines sees of a rig whose run has ended early: the alarm alone, or why it holds and what it feels.
@@ -320,7 +320,7 @@ impl Observer for Watcher {
         let answer = person.ask_to_unload(&question, &told, &mut self.operator);
         if matches!(answer, Some(Inspection::GoOn { .. })) {
             // A Ctrl-C on the way is for that way.
-            self.wanted = None;
+            self.stops_before = None;
         }
         answer
     }
