@@ -29,12 +29,14 @@ pub use crate::physics::structure::portal::{
 };
 
 pub use procedure::cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use procedure::damping_sweep::DampingSweep;
 pub use procedure::identification::{
-    BreakCount, DampingSweep, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
-    WatchedModel,
+    BreakCount, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel,
 };
-pub use procedure::impact_series::{Between, BlowOn, Escalate, MOST_BLOWS};
+pub use procedure::impact::{Contact, Impact, ImpactTarget, PointTarget, StoreyTarget};
+pub use procedure::impact_series::{Between, Escalate, MOST_IMPACTS};
 pub use procedure::mode::Mode;
+pub use procedure::move_to::Move;
 pub use procedure::stepping::{MOST_STEPS, Stepping, step_count, steps_in};
 pub use procedure::structure::Structure;
 pub use procedure::unload::{FrameUnload, Unload};
@@ -52,7 +54,7 @@ pub use rig::{
     PortPlan, ReadingErrors, ReadingRules, RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED,
     VirtualLink, ZeroAfter,
 };
-pub use specimen::frame::{Ground, MOST_STOREYS, Shake, ShakeDamping, StoreyImpact, rayleigh};
+pub use specimen::frame::{Ground, MOST_STOREYS, Shake, ShakeDamping, rayleigh};
 
 /// Everything that a run needs to know beforehand, in SI units. Names are resolved to indices into its lists.
 #[derive(Clone, Debug)]
@@ -216,7 +218,6 @@ pub enum ProcedureKind {
     StiffnessRamp(StiffnessRamp),
     DampingSweep(DampingSweep),
     Impact(Impact),
-    StoreyImpact(StoreyImpact),
     Shake(Shake),
     Cycle(Cycle),
     Unload(Unload),
@@ -236,7 +237,7 @@ impl ProcedureKind {
         match self {
             Self::StiffnessRamp(_) => "stiffness ramp",
             Self::DampingSweep(_) => "damping sweep",
-            Self::Impact(_) | Self::StoreyImpact(_) => "impact",
+            Self::Impact(_) => "impact",
             Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
             Self::Unload(_) | Self::FrameUnload(_) => "unload",
@@ -253,55 +254,14 @@ impl ProcedureKind {
             Self::StiffnessRamp(ramp) => Some(ramp.specimen),
             Self::DampingSweep(sweep) => Some(sweep.specimen),
             Self::Impact(impact) => Some(impact.specimen),
-            Self::StoreyImpact(impact) => Some(impact.specimen),
             Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
             Self::FrameUnload(unload) => Some(unload.specimen),
-            Self::Escalate(escalate) => Some(escalate.blow.specimen()),
+            Self::Escalate(series) => Some(series.impact.specimen),
             Self::Move(_) | Self::Inspect { .. } => None,
         }
     }
-}
-
-/// A computed striker meets one degree of freedom on the rig (Melo et al. 2006, eqs. 4 and 5).
-#[derive(Clone, Debug)]
-pub struct Impact {
-    pub specimen: usize,
-    /// Index into `Plan::strikers`.
-    pub striker: usize,
-    /// M \[kg\]
-    pub mass: Formula,
-    /// Standard uncertainty of a mass that is the specimen's \[kg\]; 0 where none is stated, or where the mass is a different one.
-    pub mass_uncertainty: f64,
-    /// K0 \[N/m\]
-    pub stiffness: Formula,
-    /// C of eqs. 4–5 \[N·s/m\]
-    pub damping: Formula,
-    pub contact: Contact,
-    pub stepping: Stepping,
-    /// Upper bound of simulated time \[s\].
-    pub duration: Formula,
-    pub until: Until,
-}
-
-/// The contact law between striker and structure.
-#[derive(Clone, Debug)]
-pub enum Contact {
-    Rigid,
-    /// \[N\]
-    Limit {
-        force: Formula,
-    },
-    Restitution {
-        coefficient: Formula,
-    },
-    /// k \[N/m^1.5\]; `loss` is the Hunt–Crossley factor \[s/m\]: F = k δ^1.5 (1 + loss·δ̇).
-    Hertz {
-        stiffness: Formula,
-        loss: Formula,
-        force_limit: Option<Formula>,
-    },
 }
 
 /// When the operator is asked to inspect.
@@ -313,15 +273,6 @@ pub enum InspectTrigger {
     ForceDrop(f64),
     /// At this simulated time \[s\].
     At(f64),
-}
-
-/// The actuator moves to a position.
-#[derive(Clone, Debug)]
-pub struct Move {
-    /// Absolute position \[m\].
-    pub to: Formula,
-    /// \[m/s\]
-    pub speed: Option<Formula>,
 }
 
 /// `require "label" condition`, one condition for each part joined with `and`.

@@ -1,10 +1,10 @@
-//! What the drivers of check and report must know of a procedure without carrying it out: each folder gives its own. In: nothing.
+//! The facts about a procedure that the drivers of check and report need without carrying it out. Each folder gives its own. In: nothing.
 //! Out: types.
 
 use super::unload;
 use crate::plan::{Condition, Contact, Dependence, FigureKind, ShakeDamping, Stepping};
 
-/// What a procedure tests.
+/// The structure that a procedure tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Tests {
     #[default]
@@ -13,15 +13,15 @@ pub(crate) enum Tests {
     Nothing,
 }
 
-/// Of a procedure of the plan.
+/// Facts about a procedure of the plan.
 #[derive(Default)]
 pub(crate) struct Facts<'a> {
     pub tests: Tests,
-    /// How it integrates, where it does.
+    /// Its time stepping, if it integrates.
     pub stepping: Option<&'a Stepping>,
-    /// The contact law of a blow.
+    /// The contact law of an impact.
     pub contact: Option<&'a Contact>,
-    /// The conditions under which a row of blows goes on.
+    /// The conditions under which a series of impacts continues.
     pub conditions: Option<&'a [Condition]>,
     /// The damping that the plan gives a frame, with its relative standard uncertainty.
     pub frame_damping: Option<(&'a ShakeDamping, f64)>,
@@ -29,23 +29,23 @@ pub(crate) struct Facts<'a> {
     pub dependence: Dependence,
     /// Whether it leaves the specimen without load.
     pub unloads: bool,
-    /// What it can draw, in the order of a report.
+    /// Its figures, in the order of a report.
     pub figures: &'static [FigureKind],
-    /// Of these, what several procedures of its kind can share, one curve of each.
+    /// Those that several procedures of its kind can share, one curve of each.
     pub shared_figures: &'static [FigureKind],
 }
 
-/// Of what a procedure recorded.
+/// Facts about the record of a procedure.
 pub(crate) struct Recorded {
-    /// Whether the numbers of its lists stand in a table of their own.
+    /// Whether the numbers of its lists have a separate table.
     pub lists_are_tabled: bool,
-    /// Virtual time (s) that it integrated, and the rig's (s) for it.
+    /// Integrated virtual time (s), and the laboratory time (s) that it took.
     pub time_spans: Option<(f64, f64)>,
-    /// Results that are worth an uncertainty budget where no requirement reads any.
+    /// Results that have an uncertainty budget where no requirement reads any.
     pub budgeted: &'static [&'static str],
-    /// What the entries of its lists are, where their names do not say it.
+    /// The name of the entries of its lists, where the names of the lists do not give it.
     pub entries: &'static str,
-    /// How the contributions to the uncertainty of its results were found.
+    /// The method by which the contributions to the uncertainty of its results were found.
     pub uncertainty: &'static str,
 }
 
@@ -61,11 +61,11 @@ impl Default for Recorded {
     }
 }
 
-/// How a procedure leaves the specimen to the next one that integrates.
+/// The state in which a procedure leaves the specimen to the next one that integrates.
 pub(crate) enum Leaves<'a> {
     /// As it found it.
     AsFound,
-    /// At rest, or wherever the plan wants it.
+    /// At rest, or where the plan commands it.
     AtRest,
     /// Under load or in motion.
     Moving(Motion<'a>),
@@ -74,9 +74,9 @@ pub(crate) enum Leaves<'a> {
 /// A motion that begins from where the one before it ended.
 pub(crate) struct Motion<'a> {
     pub what: &'a str,
-    /// Where it ends.
+    /// Its end, in words.
     pub ends: &'a str,
-    /// What helps the next one.
+    /// The help for the next one.
     pub help: &'a str,
     /// Whether its own end is at rest.
     pub rests: bool,

@@ -1,6 +1,6 @@
 //! The procedures, one folder each: check, run, tables, figures and report of one procedure together. In: a block of the plan, then a
-//! rig behind the guard. Out: histories and results. This file alone knows which procedures there are: one function for each stage,
-//! each with one exhaustive match. A new procedure is a folder, a variant, and what the compiler then asks for here.
+//! rig behind the guard. Out: histories and results. This file alone lists the procedures: one function for each stage, each with one
+//! exhaustive match. A new procedure is a folder, a variant, and the match arms that the compiler then asks for here.
 
 pub mod base_excitation;
 pub mod cycle;
@@ -10,10 +10,12 @@ pub(crate) mod fit_uncertainty;
 pub mod impact;
 pub mod impact_series;
 pub mod inspect;
+pub(crate) mod limit_lines;
 pub(crate) mod loop_sampling;
 pub mod move_to;
 pub(crate) mod perturbed_inputs;
 pub(crate) mod reached;
+pub(crate) mod read_field;
 pub(crate) mod results;
 pub mod stepping;
 pub mod stiffness_ramp;
@@ -23,9 +25,7 @@ use crate::language::check::checker::Checker;
 use crate::language::check::declarations::limits::CheckedLimits;
 use crate::language::check::declared::Declared;
 use crate::physics::self_test::Part;
-use crate::plan::{
-    BlowOn, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureKind, RampFit,
-};
+use crate::plan::{Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureKind, RampFit};
 use crate::record::{BroughtTogether, History, ProcedureRecord, RampHistory};
 use crate::report::Run;
 use crate::report::document::Block;
@@ -37,9 +37,9 @@ use crate::run::session::Session;
 use crate::schema::{Column, Kind};
 use crate::uncertainty::Source;
 use facts::{Facts, Leaves, Recorded, Tests};
-use impact::judge::Strikers;
+use impact::check::judge::Strikers;
 
-/// Check: what a block asks for; None with a fault, and of a block that is no procedure.
+/// Check: the procedure that a block specifies; None after an error, and for a block that is no procedure.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     match checker.scope.blocks[block].kind.kind {
         Kind::StiffnessRamp => stiffness_ramp::check::stiffness_ramp(checker, block),
@@ -63,7 +63,7 @@ pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind
     }
 }
 
-/// Check: judges a procedure by what the plan declares beside it.
+/// Check: judges a procedure by the other declarations of the plan.
 pub(crate) fn judge(
     checker: &mut Checker,
     block: usize,
@@ -71,22 +71,13 @@ pub(crate) fn judge(
     declared: &Declared<'_>,
 ) {
     match kind {
-        ProcedureKind::Impact(blow) => {
-            if let Some(striker) = declared.striker(blow.striker) {
+        ProcedureKind::Impact(impact) => {
+            if let Some(striker) = declared.striker(impact.striker) {
                 let strikers = Strikers {
                     slowest: striker,
                     fastest: striker,
                 };
-                impact::judge::on_specimen(checker, block, blow, &strikers, declared);
-            }
-        }
-        ProcedureKind::StoreyImpact(blow) => {
-            if let Some(striker) = declared.striker(blow.striker) {
-                let strikers = Strikers {
-                    slowest: striker,
-                    fastest: striker,
-                };
-                impact::judge::on_storey(checker, block, blow, &strikers, declared);
+                impact::check::judge::judge(checker, block, impact, &strikers, declared);
             }
         }
         ProcedureKind::Escalate(escalate) => {
@@ -109,13 +100,13 @@ pub(crate) fn judge(
     }
 }
 
-/// Check: judges what some text reads of the procedures; asked for only where no error stands.
+/// Check: judges the results that the plan reads from procedures; called only if there is no error.
 pub(crate) fn hold_reads(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     stiffness_ramp::read_results::hold(checker, procedures);
     cycle::declared_cycles::hold_entries(checker, procedures);
 }
 
-/// Check: holds what procedures say beforehand of where they go against the limits.
+/// Check: compares the targets that are known before the run with the limits.
 pub(crate) fn hold_limits(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
@@ -124,13 +115,12 @@ pub(crate) fn hold_limits(
     cycle::declared_cycles::hold_cycles(checker, procedures, limits);
 }
 
-/// Check: how a procedure leaves the specimen.
+/// Check: the state in which a procedure leaves the specimen.
 pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves<'static> {
     match kind {
-        ProcedureKind::Impact(_) => Leaves::Moving(impact::left::on_specimen()),
-        ProcedureKind::StoreyImpact(blow) => Leaves::Moving(impact::left::on_storey(blow)),
+        ProcedureKind::Impact(impact) => Leaves::Moving(impact::facts::motion(impact)),
         ProcedureKind::Shake(shake) => Leaves::Moving(base_excitation::left::left(shake, grounds)),
-        ProcedureKind::Escalate(row) => Leaves::Moving(impact_series::judge::left(row)),
+        ProcedureKind::Escalate(series) => Leaves::Moving(impact_series::judge::motion(series)),
         ProcedureKind::Inspect { .. } => Leaves::AsFound,
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -141,21 +131,18 @@ pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves
     }
 }
 
-/// Check: the specimen whose mass and its uncertainty a procedure uses, where it does, after collecting what its own mass states.
+/// Check: the specimen whose mass and its uncertainty a procedure uses, if it does. Collects the sources that its own mass states.
 pub(crate) fn uses_mass(kind: &ProcedureKind, stated: &mut Vec<Source>) -> Option<usize> {
-    let mut blow = |blow: &Impact| {
-        blow.mass.collect_stated(stated);
-        (blow.mass_uncertainty > 0.0).then_some(blow.specimen)
+    let mut of_impact = |impact: &Impact| {
+        let point = impact.point()?;
+        point.mass.collect_stated(stated);
+        (point.mass_uncertainty > 0.0).then_some(impact.specimen)
     };
     match kind {
         ProcedureKind::DampingSweep(sweep) => Some(sweep.specimen),
-        ProcedureKind::Impact(impact) => blow(impact),
-        ProcedureKind::Escalate(row) => match &row.blow {
-            BlowOn::Specimen(impact) => blow(impact),
-            BlowOn::Storey(_) => None,
-        },
+        ProcedureKind::Impact(impact) => of_impact(impact),
+        ProcedureKind::Escalate(series) => of_impact(&series.impact),
         ProcedureKind::StiffnessRamp(_)
-        | ProcedureKind::StoreyImpact(_)
         | ProcedureKind::Shake(_)
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
@@ -165,18 +152,17 @@ pub(crate) fn uses_mass(kind: &ProcedureKind, stated: &mut Vec<Source>) -> Optio
     }
 }
 
-/// Check and report: what is to be known of a procedure of the plan.
+/// Check and report: the facts about a procedure of the plan.
 pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
     match kind {
         ProcedureKind::StiffnessRamp(_) => stiffness_ramp::facts::facts(),
         ProcedureKind::DampingSweep(_) => damping_sweep::facts::facts(),
-        ProcedureKind::Impact(blow) => impact::facts::on_specimen(blow),
-        ProcedureKind::StoreyImpact(blow) => impact::facts::on_storey(blow),
+        ProcedureKind::Impact(impact) => impact::facts::facts(impact),
         ProcedureKind::Shake(shake) => base_excitation::facts::facts(shake),
         ProcedureKind::Cycle(_) => cycle::facts::facts(),
         ProcedureKind::Unload(_) => unload::facts::of_specimen(),
         ProcedureKind::FrameUnload(_) => unload::facts::of_frame(),
-        ProcedureKind::Escalate(row) => impact_series::facts::facts(row),
+        ProcedureKind::Escalate(series) => impact_series::facts::facts(series),
         ProcedureKind::Move(_) => Facts::default(),
         ProcedureKind::Inspect { .. } => Facts {
             tests: Tests::Nothing,
@@ -213,34 +199,37 @@ pub(crate) fn run(
         ProcedureKind::DampingSweep(sweep) => {
             damping_sweep::run::perform(sweep, plan, inputs, session)
         }
-        ProcedureKind::Impact(blow) => impact::run::perform(blow, plan, inputs, session),
-        ProcedureKind::StoreyImpact(blow) => impact::storey::perform(blow, plan, inputs, session),
+        ProcedureKind::Impact(impact) => impact::run::perform(impact, plan, inputs, session),
         ProcedureKind::Shake(shake) => base_excitation::run::perform(shake, plan, inputs, session),
         ProcedureKind::Cycle(cycles) => cycle::run::perform(cycles, plan, inputs, session),
-        ProcedureKind::Escalate(row) => impact_series::run::perform(row, plan, inputs, session),
-        ProcedureKind::Unload(way) => unload::run::perform(way, plan, inputs, session),
-        ProcedureKind::FrameUnload(way) => unload::run::perform_frame(way, plan, inputs, session),
-        ProcedureKind::Move(to) => move_to::run::perform(to, inputs, session),
+        ProcedureKind::Escalate(series) => {
+            impact_series::run::perform(series, plan, inputs, session)
+        }
+        ProcedureKind::Unload(unload) => unload::run::perform(unload, plan, inputs, session),
+        ProcedureKind::FrameUnload(unload) => {
+            unload::run::perform_frame(unload, plan, inputs, session)
+        }
+        ProcedureKind::Move(target) => move_to::run::perform(target, inputs, session),
         ProcedureKind::Inspect { note } => inspect::run::perform(note, session),
     }
 }
 
 /// Run: an upper bound of a procedure's steps, where the plan alone gives one.
 pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
-    let striker = |place: usize| plan.strikers.get(place);
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => {
             let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
             Some(once * u64::from(ramp.repeats))
         }
-        ProcedureKind::Impact(impact) => impact.known_steps(striker(impact.striker)?),
-        ProcedureKind::StoreyImpact(impact) => impact.known_steps(plan, striker(impact.striker)?),
+        ProcedureKind::Impact(impact) => {
+            impact.known_steps(plan, plan.strikers.get(impact.striker)?)
+        }
         ProcedureKind::Shake(shake) => shake.known_steps(plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
-        ProcedureKind::Escalate(row) => {
-            let blow = row.known_steps_of_a_blow(plan)?;
-            let blow = blow.saturating_add(impact_series::run::most_moves(row.between));
-            Some(blow.saturating_mul(row.velocities.len() as u64))
+        ProcedureKind::Escalate(series) => {
+            let steps = series.known_steps_of_an_impact(plan)?;
+            let steps = steps.saturating_add(impact_series::run::most_moves(series.between));
+            Some(steps.saturating_mul(series.velocities.len() as u64))
         }
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),
@@ -250,16 +239,16 @@ pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     }
 }
 
-/// Check and run: how many steps of virtual time a procedure that integrates takes, where the plan alone tells; None of any other.
+/// Check and run: the number of steps of a procedure that integrates, if the plan alone determines it; None for any other.
 pub(crate) fn known_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
-    let striker = |place: usize| plan.strikers.get(place);
     match kind {
-        ProcedureKind::Impact(impact) => impact.known_steps(striker(impact.striker)?),
-        ProcedureKind::StoreyImpact(impact) => impact.known_steps(plan, striker(impact.striker)?),
+        ProcedureKind::Impact(impact) => {
+            impact.known_steps(plan, plan.strikers.get(impact.striker)?)
+        }
         ProcedureKind::Shake(shake) => shake.known_steps(plan),
-        ProcedureKind::Escalate(row) => {
-            let blow = row.known_steps_of_a_blow(plan)?;
-            Some(blow.saturating_mul(row.velocities.len() as u64))
+        ProcedureKind::Escalate(series) => {
+            let steps = series.known_steps_of_an_impact(plan)?;
+            Some(steps.saturating_mul(series.velocities.len() as u64))
         }
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -282,7 +271,7 @@ pub(crate) fn chart(
     match &procedure.history {
         History::Ramp(history) => stiffness_ramp::chart::chart(name, history, kind),
         History::Sweep(history) => damping_sweep::chart::chart(name, history, kind),
-        History::Impact(history) => impact::chart::chart(run, name, history, figure),
+        History::Impact(history) => impact::figures::chart(run, name, history, figure),
         History::Shake(history) => base_excitation::chart::chart(run, name, history, figure),
         History::Cycle(history) => cycle::chart::chart(name, history, kind),
         History::Escalate(history) => impact_series::chart::chart(name, history, kind),
@@ -294,7 +283,7 @@ pub(crate) fn chart(
 /// Report: the curve of a procedure on a chart of several.
 pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<SharedCurve> {
     match history {
-        History::Impact(history) => impact::chart::shared(kind, history),
+        History::Impact(history) => impact::figures::shared(kind, history),
         History::Shake(history) => base_excitation::chart::shared(kind, history),
         History::Ramp(_)
         | History::Sweep(_)
@@ -374,7 +363,7 @@ pub(crate) fn report(
         History::Sweep(history) => damping_sweep::report::report(history, body),
         History::Impact(history) => match &history.frame {
             Some(struck) => {
-                impact::storey_report::struck(run, index, procedure, history, struck, body);
+                impact::report::storey::report(run, index, procedure, history, struck, body);
             }
             None => impact::report::report(run, index, procedure, history, body),
         },
@@ -392,7 +381,7 @@ pub(crate) fn report(
     }
 }
 
-/// Report: the parts of the program that a procedure goes through, each with those it goes together with.
+/// Report: the parts of the self-test that a procedure uses, each with those it is combined with.
 pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => match ramp.fit {
@@ -400,12 +389,8 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
             RampFit::Bilinear | RampFit::Multilinear(_) => vec![vec![Part::CurveFit]],
         },
         ProcedureKind::DampingSweep(_) => vec![vec![Part::DampingFit]],
-        ProcedureKind::Impact(blow) => impact::self_tested::struck(blow),
-        ProcedureKind::StoreyImpact(blow) => impact::self_tested::struck_storey(blow),
-        ProcedureKind::Escalate(row) => match &row.blow {
-            BlowOn::Specimen(blow) => impact::self_tested::struck(blow),
-            BlowOn::Storey(blow) => impact::self_tested::struck_storey(blow),
-        },
+        ProcedureKind::Impact(impact) => impact::facts::self_tested(impact),
+        ProcedureKind::Escalate(series) => impact::facts::self_tested(&series.impact),
         ProcedureKind::Shake(shake) => stepping::self_tested::stepped(&shake.stepping, true, None),
         ProcedureKind::Cycle(_) => vec![vec![Part::Loops]],
         ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => vec![vec![Part::Unloading]],
@@ -429,7 +414,7 @@ pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) 
             .iter()
             .for_each(|step| one(step.displacement, step.restoring_force)),
         History::Impact(history) => reached::of_impact(history, give),
-        History::Escalate(row) => row
+        History::Escalate(series) => series
             .blows
             .iter()
             .for_each(|blow| reached::of_impact(&blow.history, give)),
@@ -444,7 +429,7 @@ pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) 
     }
 }
 
-/// Report: how the readings of a sweep's strokes were brought to one place; None of another procedure.
+/// Report: the correction of the readings of a sweep's strokes to one position; None for another procedure.
 pub(crate) const fn strokes(history: &History) -> Option<BroughtTogether> {
     match history {
         History::Sweep(sweep) => Some(sweep.together),

@@ -12,6 +12,19 @@ impl ResultKind {
         result(self.name, self.dimension, value)
     }
 
+    /// This result as a list; None where it does not exist in this run.
+    pub(crate) fn found_list(self, values: Option<Vec<f64>>) -> NamedResult {
+        match values {
+            Some(values) => NamedResult {
+                name: self.name,
+                value: ResultValue::List(values),
+                dimension: self.dimension,
+                contributions: Vec::new(),
+            },
+            None => self.found(None),
+        }
+    }
+
     /// This result with its standard uncertainty, where it has one.
     pub(crate) fn found_with(self, value: Option<(f64, Option<f64>)>) -> NamedResult {
         measured(self.name, self.dimension, value)

@@ -7,8 +7,8 @@
 
 use crate::plan::formula::{Formula, ResultReference, ResultValue, Results};
 use crate::plan::{
-    BlowOn, Counts, DampingSweep, FRAME, Impact, Interval, Plan, ProcedureKind, Sides,
-    StiffnessRamp, StoreyImpact, Striker, steps_in,
+    Counts, DampingSweep, FRAME, Impact, ImpactTarget, Interval, Plan, ProcedureKind, Sides,
+    StiffnessRamp, Striker, steps_in,
 };
 
 use super::zero_drift;
@@ -176,25 +176,21 @@ impl Reckoner<'_> {
             ProcedureKind::StiffnessRamp(ramp) => Some(self.ramp(ramp)),
             ProcedureKind::DampingSweep(sweep) => self.sweep(sweep),
             ProcedureKind::Impact(impact) => {
-                self.blow(impact, self.plan.strikers.get(impact.striker)?)
+                self.impact(impact, self.plan.strikers.get(impact.striker)?)
             }
             ProcedureKind::Escalate(escalate) => {
                 let between = moves(UNLOADING * self.way).plus(Counts {
                     steps: UNLOADING,
                     ..Counts::default()
                 });
-                let fastest = escalate.fastest(self.plan.strikers.get(escalate.striker())?);
-                let blow = match &escalate.blow {
-                    BlowOn::Specimen(blow) => self.blow(blow, &fastest)?,
-                    BlowOn::Storey(blow) => self.storey_blow(blow, &fastest)?,
-                };
+                let impact = &escalate.impact;
+                let fastest = escalate.fastest(self.plan.strikers.get(impact.striker)?);
+                let counts = self.impact(impact, &fastest)?;
                 Some(
-                    blow.plus(between)
+                    counts
+                        .plus(between)
                         .times(rounded(escalate.velocities.len() as u64)),
                 )
-            }
-            ProcedureKind::StoreyImpact(impact) => {
-                self.storey_blow(impact, self.plan.strikers.get(impact.striker)?)
             }
             ProcedureKind::Shake(shaking) => {
                 let steps = rounded(shaking.known_steps(self.plan)?) + 1.0;
@@ -292,20 +288,21 @@ impl Reckoner<'_> {
         Some(all)
     }
 
-    fn blow(&self, impact: &Impact, striker: &Striker) -> Option<Counts> {
-        let critical = impact.critical_time_step(striker, |formula| self.number(formula))?;
-        let time_step = impact
-            .stepping
-            .time_step
-            .evaluate(&self.assumed, Some(critical))
-            .ok()?
-            .value;
-        let steps = steps_in(self.number(&impact.duration)?, time_step) + 1.0;
-        Some(Counts::stepped(impact.stepping.mode, steps))
-    }
-
-    fn storey_blow(&self, impact: &StoreyImpact, striker: &Striker) -> Option<Counts> {
-        let steps = rounded(impact.known_steps(self.plan, striker)?) + 1.0;
-        Some(Counts::stepped(impact.stepping.mode, steps))
+    fn impact(&self, impact: &Impact, striker: &Striker) -> Option<Counts> {
+        let steps = match &impact.target {
+            ImpactTarget::Point(_) => {
+                let critical =
+                    impact.critical_time_step(striker, |formula| self.number(formula))?;
+                let time_step = impact
+                    .stepping
+                    .time_step
+                    .evaluate(&self.assumed, Some(critical))
+                    .ok()?
+                    .value;
+                steps_in(self.number(&impact.duration)?, time_step)
+            }
+            ImpactTarget::Storey(_) => rounded(impact.known_steps(self.plan, striker)?),
+        };
+        Some(Counts::stepped(impact.stepping.mode, steps + 1.0))
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, Integrator, Limits, Link, Mode,
-    Plan, Procedure, ProcedureKind, RampFit, Report, RigPlan, Settle, ShakeDamping, Specimen,
-    Stepping, StiffnessRamp, Storey, StoreyImpact, Striker, Until, VirtualLink,
+    Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, ImpactTarget, Integrator, Limits,
+    Link, Mode, Plan, PointTarget, Procedure, ProcedureKind, RampFit, Report, RigPlan, Settle,
+    ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyTarget, Striker, Until,
+    VirtualLink,
 };
 use crate::record::{NamedResult, Record};
 use crate::rig::virtual_rig;
@@ -83,12 +84,14 @@ pub(crate) fn struck_frame() -> Plan {
         )
     };
     let frame = Frame::of_storeys(vec![storey(500.0, 20.0), storey(300.0, 15.0)]);
-    let blow = StoreyImpact {
+    let blow = Impact {
         specimen: 0,
         striker: 0,
-        struck: 1,
-        damping: ShakeDamping::Rayleigh(Formula::Constant(0.02)),
-        damping_uncertainty: 0.0,
+        target: ImpactTarget::Storey(StoreyTarget {
+            storey: 1,
+            damping: ShakeDamping::Rayleigh(Formula::Constant(0.02)),
+            damping_uncertainty: 0.0,
+        }),
         contact: Contact::Restitution {
             coefficient: Formula::Constant(0.5),
         },
@@ -99,7 +102,7 @@ pub(crate) fn struck_frame() -> Plan {
         duration: Formula::Constant(0.25),
         until: Until::Duration,
     };
-    let mut plan = elastic_plan(1.0, vec![ProcedureKind::StoreyImpact(blow)]);
+    let mut plan = elastic_plan(1.0, vec![ProcedureKind::Impact(blow)]);
     plan.specimens[0].frame = Some(frame);
     plan.specimens[0].behaviour = None;
     plan.specimens[0].mass = 2.0;
@@ -128,14 +131,42 @@ pub(crate) fn impact(stiffness: Formula) -> Impact {
     Impact {
         specimen: 0,
         striker: 0,
-        mass: Formula::Constant(1.0),
-        mass_uncertainty: 0.0,
-        stiffness,
-        damping: Formula::Constant(0.0),
+        target: ImpactTarget::Point(PointTarget {
+            mass: Formula::Constant(1.0),
+            mass_uncertainty: 0.0,
+            stiffness,
+            damping: Formula::Constant(0.0),
+        }),
         contact: Contact::Rigid,
         stepping: every(0.01),
         duration: Formula::Constant(0.5),
         until: Until::StrikerStop,
+    }
+}
+
+impl Impact {
+    pub(crate) fn point_mut(&mut self) -> &mut PointTarget {
+        match &mut self.target {
+            ImpactTarget::Point(point) => point,
+            ImpactTarget::Storey(_) => panic!("a storey is struck"),
+        }
+    }
+
+    pub(crate) fn storey_mut(&mut self) -> &mut StoreyTarget {
+        match &mut self.target {
+            ImpactTarget::Storey(storey) => storey,
+            ImpactTarget::Point(_) => panic!("one degree of freedom is struck"),
+        }
+    }
+
+    pub(crate) fn with_point(mut self, change: impl FnOnce(&mut PointTarget)) -> Self {
+        change(self.point_mut());
+        self
+    }
+
+    pub(crate) fn with_storey(mut self, change: impl FnOnce(&mut StoreyTarget)) -> Self {
+        change(self.storey_mut());
+        self
     }
 }
 

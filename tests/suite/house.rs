@@ -194,8 +194,6 @@ const LONG: &[&str] = &[
     "physics/relaxation/fit.rs",
     "physics/relaxation/reached_fit.rs",
     "physics/self_test.rs",
-    "procedures/damping_sweep/run.rs",
-    "procedures/impact_series/run.rs",
     "record/mod.rs",
     "remote/control.rs",
     "report/budget.rs",

@@ -1,4 +1,4 @@
-//! Checked identification procedures: a `stiffness ramp` and a `damping sweep`. In: formulas from the check. Out: what is moved, read
+//! Checked identification procedures: a `stiffness ramp`. In: formulas from the check. Out: what is moved, read
 //! and fitted. It fits nothing itself.
 
 pub use crate::physics::identification::multilinear_fit::BreakCount;
@@ -79,20 +79,4 @@ pub enum RampFit {
     /// Two lines that meet.
     Bilinear,
     Multilinear(BreakCount),
-}
-
-/// Sec. 6 (b): constant-velocity ramps at rising velocities.
-#[derive(Clone, Debug)]
-pub struct DampingSweep {
-    pub specimen: usize,
-    /// m/s
-    pub velocities: Vec<Formula>,
-    /// m
-    pub stroke: Formula,
-    /// The middle of the strokes, m. None: they begin where the actuator is.
-    pub about: Option<Formula>,
-    /// K of F_d = R − K·X, N/m.
-    pub stiffness: Formula,
-    /// Sampling rate, Hz. None: at least 50 samples on the steady part of each ramp.
-    pub rate: Option<Formula>,
 }

@@ -1,40 +1,23 @@
-//! How many steps a procedure that integrates takes, where the plan alone tells. In: a procedure, the plan around it. Out: an
-//! upper bound of its steps, or none where it hangs on what is measured before. It runs nothing.
+//! How many steps a procedure that integrates takes, where the plan alone determines it. In: a procedure, the plan around it. Out: an
+//! upper bound of its steps, or none where it depends on results that are measured before. It runs nothing.
 
 use crate::physics::frame::Damping;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::formula::{Formula, NoResults};
-use crate::plan::{BlowOn, Escalate, Impact, Plan, Shake, StoreyImpact, Striker, step_count};
+use crate::plan::{Escalate, Impact, ImpactTarget, Plan, Shake, Stepping, Striker, step_count};
 
 impl Impact {
-    /// Of one blow of this striker.
-    #[must_use]
-    pub fn known_steps(&self, striker: &Striker) -> Option<u64> {
-        let critical = self.critical_time_step(striker, Formula::constant)?;
-        let time_step = self
-            .stepping
-            .time_step
-            .evaluate(&NoResults, Some(critical))
-            .ok()?
-            .value;
-        Some(step_count(self.duration.constant()?, time_step))
-    }
-}
-
-impl StoreyImpact {
-    /// Of one blow of this striker.
+    /// The steps of one impact of this striker.
     #[must_use]
     pub fn known_steps(&self, plan: &Plan, striker: &Striker) -> Option<u64> {
-        let frame = plan.specimens.get(self.specimen)?.frame.as_ref()?;
-        let properties = FrameProperties::of(frame, &Damping::None).ok()?;
-        let approach = self.contact.approach(striker, Formula::constant)?;
-        let critical = properties.critical_on_impact(self.struck, &approach);
-        let time_step = self
-            .stepping
-            .time_step
-            .evaluate(&NoResults, Some(critical))
-            .ok()?
-            .value;
+        let critical = match &self.target {
+            ImpactTarget::Point(_) => self.critical_time_step(striker, Formula::constant)?,
+            ImpactTarget::Storey(target) => {
+                let approach = self.contact.approach(striker, Formula::constant)?;
+                undamped(plan, self.specimen)?.critical_on_impact(target.storey, &approach)
+            }
+        };
+        let time_step = known_time_step(&self.stepping, critical)?;
         Some(step_count(self.duration.constant()?, time_step))
     }
 }
@@ -42,16 +25,8 @@ impl StoreyImpact {
 impl Shake {
     #[must_use]
     pub fn known_steps(&self, plan: &Plan) -> Option<u64> {
-        let frame = plan.specimens.get(self.specimen)?.frame.as_ref()?;
-        let critical = FrameProperties::of(frame, &Damping::None)
-            .ok()?
-            .critical_time_step();
-        let time_step = self
-            .stepping
-            .time_step
-            .evaluate(&NoResults, Some(critical))
-            .ok()?
-            .value;
+        let critical = undamped(plan, self.specimen)?.critical_time_step();
+        let time_step = known_time_step(&self.stepping, critical)?;
         let duration = match &self.duration {
             Some(duration) => duration.constant()?,
             None => plan.grounds.get(self.ground)?.duration(),
@@ -61,13 +36,22 @@ impl Shake {
 }
 
 impl Escalate {
-    /// Of its longest blow.
+    /// The steps of its longest impact.
     #[must_use]
-    pub fn known_steps_of_a_blow(&self, plan: &Plan) -> Option<u64> {
-        let fastest = self.fastest(plan.strikers.get(self.striker())?);
-        match &self.blow {
-            BlowOn::Specimen(blow) => blow.known_steps(&fastest),
-            BlowOn::Storey(blow) => blow.known_steps(plan, &fastest),
-        }
+    pub fn known_steps_of_an_impact(&self, plan: &Plan) -> Option<u64> {
+        let fastest = self.fastest(plan.strikers.get(self.impact.striker)?);
+        self.impact.known_steps(plan, &fastest)
     }
+}
+
+/// The frame of a specimen without damping; None where it has no frame.
+fn undamped(plan: &Plan, specimen: usize) -> Option<FrameProperties> {
+    let frame = plan.specimens.get(specimen)?.frame.as_ref()?;
+    FrameProperties::of(frame, &Damping::None).ok()
+}
+
+/// Δt, s, for this critical time step, s; None where it reads results.
+fn known_time_step(stepping: &Stepping, critical: f64) -> Option<f64> {
+    let time_step = stepping.time_step.evaluate(&NoResults, Some(critical));
+    Some(time_step.ok()?.value)
 }

@@ -124,7 +124,7 @@ mod tests {
         );
         plan.strikers[0].velocity_uncertainty = 0.01;
         if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
-            blow.mass_uncertainty = 0.01;
+            blow.point_mut().mass_uncertainty = 0.01;
         }
         assert_eq!(
             undeclared(&plan, 1)[..2],

@@ -1,9 +1,9 @@
-//! Frames in a plan: the ground motion under them, a striker on one of their floors, their damping.
+//! Frames in a plan: the ground motion under them, their damping.
 //! In: numbers that `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
 use crate::physics::frame::Damping;
+use crate::plan::Stepping;
 use crate::plan::formula::Formula;
-use crate::plan::{Contact, Stepping, Until};
 
 /// Most degrees of freedom of one frame: each has its own actuator and load cell.
 pub const MOST_STOREYS: usize = 64;
@@ -65,25 +65,6 @@ pub struct Shake {
     pub scale: Formula,
     /// Simulated time \[s\]. None: to the end of the record.
     pub duration: Option<Formula>,
-}
-
-/// A striker on one floor of a frame.
-#[derive(Clone, Debug)]
-pub struct StoreyImpact {
-    /// Index into `Plan::specimens`; it has a frame.
-    pub specimen: usize,
-    /// Index into `Plan::strikers`.
-    pub striker: usize,
-    /// Index of the struck floor, from 0.
-    pub struck: usize,
-    pub damping: ShakeDamping,
-    /// Standard uncertainty of each damping ratio; 0 where none is stated.
-    pub damping_uncertainty: f64,
-    pub contact: Contact,
-    pub stepping: Stepping,
-    /// Most simulated time \[s\].
-    pub duration: Formula,
-    pub until: Until,
 }
 
 /// Fractions of critical damping.

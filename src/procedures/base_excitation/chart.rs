@@ -1,16 +1,18 @@
-//! The figures of a frame on moving ground, and of one that is unloaded: which there are, what each shows, and its curve on a
-//! chart of several shakes. In: a history. Out: [`Chart`]s in SI with their captions.
+//! The figures of a frame on moving ground, and of one that is unloaded, with their captions, and the curve of a shake on a chart of
+//! several. In: a history. Out: [`Chart`]s in SI.
 
 use super::figures;
 use crate::plan::{Figure, FigureKind};
-use crate::procedures::impact::figures::limits_on;
+use crate::procedures::limit_lines::limits_on;
 use crate::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
+use crate::schema::ResultKind;
+use crate::schema::procedures::base_excitation as schema;
 use crate::units::Dimension;
 
-/// Those of a shake, in the order of a report.
+/// Figures of a shake, in the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::Modes,
     FigureKind::Ground,
@@ -22,10 +24,10 @@ pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::Tracking,
 ];
 
-/// That of a frame that is unloaded.
+/// Figures of a frame that is unloaded.
 pub(crate) const UNLOADING_FIGURES: &[FigureKind] = &[FigureKind::Hysteresis];
 
-/// Those that several shakes share: one curve of each.
+/// Figures that several shakes share: one curve of each.
 pub(crate) const SHARED: &[FigureKind] = &[
     FigureKind::Displacement,
     FigureKind::Drift,
@@ -33,7 +35,7 @@ pub(crate) const SHARED: &[FigureKind] = &[
     FigureKind::BaseShear,
 ];
 
-/// A figure of a shake and its caption; None before the first step, and of what it does not draw.
+/// A figure of a shake and its caption; None before the first step, or if it is no figure of a shake.
 pub(crate) fn chart(
     run: &Run<'_>,
     name: &str,
@@ -43,7 +45,7 @@ pub(crate) fn chart(
     if history.steps.is_empty() {
         return None;
     }
-    let limits = |result| figures::of_size(limits_on(run, figure.procedure, result));
+    let limits = |result: ResultKind| figures::of_size(limits_on(run, figure.procedure, result));
     let chosen = if figures::is_chosen(&history.steps) {
         "; not every one is drawn"
     } else {
@@ -67,7 +69,7 @@ pub(crate) fn chart(
             ),
         ),
         FigureKind::Drift => (
-            figures::drift(&history.steps, &limits("max_drift")),
+            figures::drift(&history.steps, &limits(schema::MAX_DRIFT)),
             format!("{name}: drift of each storey against virtual time{chosen}."),
         ),
         FigureKind::Hysteresis => (
@@ -77,7 +79,7 @@ pub(crate) fn chart(
             ),
         ),
         FigureKind::BaseShear => (
-            figures::base_shear(&history.steps, &limits("max_base_shear")),
+            figures::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
             format!(
                 "{name}: base shear, the sum of the measured restoring forces, against virtual time."
             ),
@@ -91,7 +93,7 @@ pub(crate) fn chart(
     })
 }
 
-/// The way of a frame to where it carries no load.
+/// The unloading path of a frame to zero restoring force, and its caption.
 pub(crate) fn unloading_chart(
     name: &str,
     steps: &[UnloadStep],
@@ -107,7 +109,7 @@ pub(crate) fn unloading_chart(
     })
 }
 
-/// What the tracking of a frame shows, whatever moved it.
+/// The caption of the tracking of a frame.
 pub(crate) fn followed(name: &str, chosen: &str) -> String {
     format!(
         "{name}: what the actuator of each floor missed of its commands{chosen}, and the tracking indicator of all of them over the \
@@ -115,7 +117,7 @@ pub(crate) fn followed(name: &str, chosen: &str) -> String {
     )
 }
 
-/// The curve that stands for this history on a chart of several; None of a figure that is not shared.
+/// The curve of this history on a chart of several; None for a figure that is not shared.
 pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedCurve> {
     let points = points(kind, history)?;
     let over_time = |name, dimension| (Quantity::time(), Quantity::of(name, dimension));

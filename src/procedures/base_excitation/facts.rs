@@ -1,4 +1,4 @@
-//! What the drivers of check and report must know of a shake without carrying it out. In: it. Out: facts.
+//! The facts about a shake that the drivers of check and report need without carrying it out. In: a shake, or its history. Out: facts.
 
 use super::chart;
 use crate::plan::{Dependence, Shake};

@@ -1,6 +1,7 @@
-//! Charts of a frame on moving ground, and of floors and storeys whatever moved them. In: the steps, the modes. Out:
-//! [`Chart`]s in SI. Floors and storeys are told apart by colour and dash, the lowest first.
+//! Charts of a frame on moving ground, and of floors and storeys in general. In: the steps, the modes. Out: [`Chart`]s in SI. Colour and
+//! dash distinguish floors and storeys, the lowest first.
 
+use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
 use crate::record::{Floors, Modes, ShakeHistory, ShakeStep};
 use crate::report::figures::chart::{
     Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Quantity, Reference, SOLID, Series, Style,
@@ -9,7 +10,7 @@ use crate::report::figures::chart::{
 use crate::report::figures::points::{Gathering, Points};
 use crate::units::Dimension;
 
-/// More than this many curves cannot be told apart in one picture.
+/// More curves than this cannot be distinguished in one picture.
 const MOST_CURVES: usize = 6;
 
 const COLOURS: [Colour; MOST_CURVES] = [
@@ -22,7 +23,7 @@ const COLOURS: [Colour; MOST_CURVES] = [
 ];
 const DASHES: [&[f64]; MOST_CURVES] = [SOLID, DASHED, LONG, DASH_DOT, SOLID, DOTTED];
 
-/// Displacement of each floor against the ground.
+/// Displacement of each floor relative to the ground.
 pub(crate) fn displacement<S: Floors>(steps: &[S]) -> Chart {
     each_floor(
         steps,
@@ -49,7 +50,7 @@ pub(crate) fn drift<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
     chart
 }
 
-/// Storey shear against drift: the area of a loop is the energy it took.
+/// Storey shear against storey drift: the area of a loop is the absorbed energy.
 pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
     let curves = each(steps, |step| {
         step.drift().into_iter().zip(step.shear()).collect()
@@ -104,7 +105,7 @@ pub(crate) fn ground(history: &ShakeHistory) -> Chart {
     chart
 }
 
-/// What the actuator of each floor missed, and the tracking indicator of all as a length: over the largest command.
+/// The tracking error of each floor, and the tracking indicator of all as a length: divided by the largest command.
 pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
     let missed = |step: &S| {
         step.measured()
@@ -119,7 +120,7 @@ pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
         "floor",
         missed,
     );
-    // Mostly rounding and noise, from side to side at every step: dashes would not be seen.
+    // Mostly rounding and noise, alternating at every step: dashes would not be visible.
     for (curve, series) in chart.series.iter_mut().enumerate() {
         series.style = Style::line(COLOURS[curve % MOST_CURVES], 0.7, SOLID);
     }
@@ -149,38 +150,33 @@ pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
     chart
 }
 
-/// The input, and what it became.
+/// The input, and the energies that it became.
 pub(crate) fn energy(history: &ShakeHistory) -> Chart {
-    type Part = (&'static str, fn(&ShakeStep) -> f64, Style);
-    let parts: [Part; 4] = [
-        (
+    let curve = |label, read: fn(&ShakeStep) -> f64, style| EnergyCurve { label, read, style };
+    let curves = [
+        curve(
             "input",
             |step| step.energies.input,
             Style::line(palette::BLACK, 1.6, SOLID),
         ),
-        (
+        curve(
             "restoring",
             |step| step.energies.restoring,
             Style::line(palette::BLUE, 2.0, LONG),
         ),
-        (
+        curve(
             "damping",
             |step| step.energies.damping,
             Style::line(palette::PURPLE, 2.0, DASH_DOT),
         ),
-        (
+        curve(
             "kinetic",
             |step| step.energies.kinetic,
             Style::line(palette::SKY, 1.4, SOLID),
         ),
     ];
     let mut chart = over_time(Quantity::of("Energy", Dimension::ENERGY));
-    let drawn = parts
-        .into_iter()
-        .filter(|(_, read, _)| history.steps.iter().any(|step| read(step) != 0.0));
-    chart.series = drawn
-        .map(|(label, read, style)| one(&history.steps, label, read, style))
-        .collect();
+    chart.series = nonzero_curves(&history.steps, |step| step.time, curves);
     chart
 }
 
@@ -218,7 +214,7 @@ pub(crate) fn modes(modes: &Modes) -> Chart {
     }
 }
 
-/// Bounds on the size of what swings to both sides stand on both: the words at the first.
+/// Bounds on a peak absolute value are drawn on both sides; the label is at the first.
 pub(crate) fn of_size(limits: Vec<Reference>) -> Vec<Reference> {
     let both = |limit: Reference| {
         let other = (limit.y != 0.0).then(|| Reference {
@@ -239,7 +235,7 @@ fn floors<S: Floors>(steps: &[S]) -> usize {
     steps.first().map_or(0, |step| step.computed().len())
 }
 
-/// The floors that are drawn: all, or as many as can be told apart, evenly from the lowest to the highest.
+/// The floors that are drawn: all, or as many as can be distinguished, evenly from the lowest to the highest.
 pub(crate) fn shown(floors: usize) -> Vec<usize> {
     if floors <= MOST_CURVES {
         return (0..floors).collect();
@@ -295,7 +291,7 @@ pub(crate) fn style(curve: usize, width: f64) -> Style {
     )
 }
 
-/// A path that is gone again and again fills its own dashes: storeys are told apart by width, the thinner on top.
+/// A path that is travelled again fills its own dashes: the width distinguishes storeys, the thinner on top.
 fn retraced(curve: usize) -> Style {
     const WIDTHS: [f64; MOST_CURVES] = [3.2, 2.4, 1.8, 1.3, 0.9, 0.6];
     Style::line(

@@ -1,11 +1,11 @@
-//! How a shake leaves the frame to what comes next. In: a shake and the ground motions. Out: where it ends, in words, and what helps.
+//! The motion that a shake leaves to the next procedure. In: a shake and the ground motions. Out: its end, in words, and the help.
 
 use crate::physics::frame::Damping;
 use crate::plan::formula::Formula;
 use crate::plan::{Ground, Shake};
 use crate::procedures::facts::Motion;
 
-/// A damped frame comes to rest by itself where the ground rests for long enough.
+/// A damped frame comes to rest if the ground rests for long enough.
 pub(crate) fn left(shake: &Shake, grounds: &[Option<Ground>]) -> Motion<'static> {
     Motion {
         what: "shake",
@@ -16,7 +16,7 @@ pub(crate) fn left(shake: &Shake, grounds: &[Option<Ground>]) -> Motion<'static>
     }
 }
 
-/// Whether the ground rests before a damped frame's run ends.
+/// Whether the ground rests before the run of a damped frame ends.
 fn comes_to_rest(shake: &Shake, grounds: &[Option<Ground>]) -> bool {
     let still = grounds
         .get(shake.ground)

@@ -1,14 +1,17 @@
-//! A frame on moving ground, as a report tells it: its storeys, the record, the modes, what each storey went through, the
+//! A frame on moving ground, as a report states it: its storeys, the ground-motion record, the modes, the response of each storey, the
 //! energy. In: a plan and a record. Out: blocks.
 
 use crate::physics::frame::{SymmetricBand, storeys_of};
 use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
+use crate::procedures::stepping::energy;
 use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
 use crate::report::content::{budget, described, method, tracking};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::{Run, number, specimen_text};
+use crate::schema::ResultKind;
+use crate::schema::procedures::{base_excitation as schema, unload};
 use crate::units::Dimension;
 use crate::units::display::significant;
 
@@ -37,7 +40,7 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
         Column::numbers("Height"),
         Column::words("Virtual behaviour", 1),
     ];
-    // What only some frames have is a column of those.
+    // A column that is 0 for every storey is left out.
     let damping = frame.storeys.iter().any(|storey| storey.damping != 0.0);
     let friction = frame.storeys.iter().any(|storey| storey.coulomb != 0.0);
     columns.extend(damping.then(|| Column::numbers("Virtual damping")));
@@ -107,7 +110,7 @@ fn rounded(spacing: f64) -> f64 {
     format!("{spacing:.9e}").parse().unwrap_or(spacing)
 }
 
-/// What was integrated and how, the modes, the storeys, the energy.
+/// The blocks below the results of a shake: its integration, the modes, the storeys, the energy.
 pub(crate) fn shaken(
     run: &Run<'_>,
     index: usize,
@@ -121,7 +124,9 @@ pub(crate) fn shaken(
         return;
     };
     let Some(modes) = &history.modes else { return };
-    body.push(Block::paragraph(told(run, shake, procedure, history)));
+    body.push(Block::paragraph(
+        integration(run, shake, procedure, history).join(" "),
+    ));
     body.push(mode_table(modes, &history.damping_ratios));
     if !history.steps.is_empty() {
         let frame = frame_of(run, shake.specimen);
@@ -129,19 +134,20 @@ pub(crate) fn shaken(
             procedure,
             &history.steps,
             frame,
-            "max_displacement",
+            schema::MAX_DISPLACEMENT,
         ));
         body.extend(tracking::table(procedure));
         body.push(energy_balance(history));
     }
 }
 
-fn told(
+/// How the frame was integrated, and the ground motion that it was subjected to.
+fn integration(
     run: &Run<'_>,
     shake: &Shake,
     procedure: &ProcedureRecord,
     history: &ShakeHistory,
-) -> String {
+) -> Vec<String> {
     let time = |value| number::text(value, Dimension::TIME);
     let mut sentences = vec![
         integrated(
@@ -167,7 +173,7 @@ fn told(
             resampled(ground, history)
         ));
     }
-    sentences.join(" ")
+    sentences
 }
 
 /// The frame that a procedure tests.
@@ -258,7 +264,7 @@ pub(crate) fn storey_table<S: Floors>(
     procedure: &ProcedureRecord,
     steps: &[S],
     frame: Option<&Frame>,
-    displacement: &str,
+    displacement: ResultKind,
 ) -> Block {
     let shear = largest(steps, S::shear);
     let whole = |values: &[f64]| {
@@ -266,15 +272,17 @@ pub(crate) fn storey_table<S: Floors>(
             .iter()
             .fold(0.0, |largest: f64, value| largest.max(value.abs()))
     };
-    let drift = procedure.result("max_drift").map_or(&[][..], entries);
-    let cell = |name: &str, storey: usize| {
+    let drift = procedure
+        .result(schema::MAX_DRIFT.name)
+        .map_or(&[][..], entries);
+    let cell = |kind: ResultKind, storey: usize| {
         procedure
-            .result(name)
+            .result(kind.name)
             .map_or_else(|| "—".into(), |result| entry(result, storey))
     };
-    let with_u = |title: &str, name: &str| {
+    let with_u = |title: &str, kind: ResultKind| {
         let known = procedure
-            .result(name)
+            .result(kind.name)
             .is_some_and(|result| !result.contributions.is_empty());
         Column::numbers(if known {
             format!("{title} (u)")
@@ -285,9 +293,9 @@ pub(crate) fn storey_table<S: Floors>(
     let columns = vec![
         Column::words("Storey", 1),
         with_u("Largest displacement of its floor", displacement),
-        with_u("Largest drift", "max_drift"),
+        with_u("Largest drift", schema::MAX_DRIFT),
         Column::numbers("Of its height"),
-        with_u("Drift at the end", "final_drift"),
+        with_u("Drift at the end", schema::FINAL_DRIFT),
         Column::numbers("Largest shear"),
     ];
     let height = |storey: usize| {
@@ -302,9 +310,9 @@ pub(crate) fn storey_table<S: Floors>(
         vec![
             (storey + 1).to_string().into(),
             cell(displacement, storey),
-            cell("max_drift", storey),
+            cell(schema::MAX_DRIFT, storey),
             ratio.unwrap_or_else(|| "—".to_owned()).into(),
-            cell("final_drift", storey),
+            cell(schema::FINAL_DRIFT, storey),
             number::text_beside(shear[storey], whole(&shear), Dimension::FORCE).into(),
         ]
     };
@@ -322,15 +330,14 @@ fn entries(result: &NamedResult) -> &[f64] {
     }
 }
 
-/// A number of a list with its standard uncertainty where it has one, marked where that is not sure; else in the unit of the
-/// largest.
-pub(crate) fn entry(result: &NamedResult, place: usize) -> Text {
+/// An entry of a list with its standard uncertainty where it has one, marked where that is not sure; else in the unit of the largest.
+pub(crate) fn entry(result: &NamedResult, index: usize) -> Text {
     let values = entries(result);
-    let Some(value) = values.get(place) else {
+    let Some(value) = values.get(index) else {
         return "—".into();
     };
-    if let Some(Some(u)) = result.entry_uncertainties().get(place) {
-        let mark = if budget::is_sure(result, place) {
+    if let Some(Some(u)) = result.entry_uncertainties().get(index) {
+        let mark = if budget::is_sure(result, index) {
             ""
         } else {
             budget::MARK
@@ -344,17 +351,21 @@ pub(crate) fn entry(result: &NamedResult, place: usize) -> Text {
 }
 
 /// The same where its uncertainty is known.
-pub(crate) fn known_entry(procedure: &ProcedureRecord, name: &str, place: usize) -> Option<Text> {
-    let result = procedure.result(name)?;
+pub(crate) fn known_entry(
+    procedure: &ProcedureRecord,
+    kind: ResultKind,
+    index: usize,
+) -> Option<Text> {
+    let result = procedure.result(kind.name)?;
     result
         .entry_uncertainties()
-        .get(place)
+        .get(index)
         .copied()
         .flatten()
-        .map(|_| entry(result, place))
+        .map(|_| entry(result, index))
 }
 
-/// Where the storeys of a frame came to rest: what stayed of it is permanent.
+/// The blocks below the results of a frame that was unloaded: the storeys at zero restoring force, with their permanent drifts.
 pub(crate) fn unloaded(
     run: &Run<'_>,
     index: usize,
@@ -406,25 +417,25 @@ pub(crate) fn unloaded(
     let row = |storey: usize| -> Vec<Text> {
         let length = |value, beside| number::part_of(value, beside, 4, Dimension::LENGTH);
         let force = |value| number::part_of(value, whole(&loaded), 4, Dimension::FORCE);
-        let known = |name: &str, other: String| {
-            known_entry(procedure, name, storey).unwrap_or_else(|| other.into())
+        let known = |kind: ResultKind, other: String| {
+            known_entry(procedure, kind, storey).unwrap_or_else(|| other.into())
         };
         vec![
             (storey + 1).to_string().into(),
             known(
-                "floor_displacement",
+                unload::FLOOR_DISPLACEMENT,
                 length(
                     last.displacement[storey],
                     whole(&last.displacement).max(travel),
                 ),
             ),
             length(before[storey], travel).into(),
-            known("residual_drift", length(drift[storey], travel)),
+            known(unload::RESIDUAL_DRIFT, length(drift[storey], travel)),
             height(storey)
                 .map_or_else(|| "—".to_owned(), |height| percent(drift[storey] / height))
                 .into(),
             force(loaded[storey]).into(),
-            known("residual_shear", force(left[storey])),
+            known(unload::RESIDUAL_SHEAR, force(left[storey])),
         ]
     };
     body.push(Block::Table(Table {
@@ -445,7 +456,7 @@ fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {
     largest
 }
 
-/// What the motion of the ground put in, and where it was at the end.
+/// The energy that the motion of the ground put in, and where it was at the end.
 fn energy_balance(history: &ShakeHistory) -> Block {
     let e = history
         .steps
@@ -458,30 +469,5 @@ fn energy_balance(history: &ShakeHistory) -> Block {
         ("damping, ∫CẊ dX", e.damping),
         ("integration error", e.error),
     ];
-    let row = |(name, energy): (&str, f64)| -> Vec<Text> {
-        let share = if e.input > 0.0 {
-            percent(energy / e.input)
-        } else {
-            "—".to_owned()
-        };
-        vec![
-            name.into(),
-            number::part_of(energy, e.input, 5, Dimension::ENERGY).into(),
-            share.into(),
-        ]
-    };
-    let input = vec![
-        "input, −∫Mι üg dX".into(),
-        number::part_of(e.input, e.input, 5, Dimension::ENERGY).into(),
-        "100\u{a0}%".into(),
-    ];
-    let columns = vec![
-        Column::words("Energy balance at the end of the run", 1),
-        Column::numbers("Energy"),
-        Column::numbers("Of the input"),
-    ];
-    Block::Table(Table {
-        columns,
-        rows: std::iter::once(input).chain(parts.map(row)).collect(),
-    })
+    energy::balance_table(("input, −∫Mι üg dX", e.input), &parts)
 }

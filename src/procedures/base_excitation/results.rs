@@ -1,13 +1,12 @@
-//! What a shake leaves: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in the
-//! schema's order. It drives nothing.
+//! The results of a shake: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in the
+//! schema's order. It moves nothing.
 
 use crate::physics::frame::{FrameState, Modes, drifts};
 use crate::physics::statistics::noisy_largest::NoisyLargest;
-use crate::plan::formula::ResultValue;
-use crate::procedures::results::result;
 use crate::procedures::stepping::tracking_summary::Followed;
 use crate::record::NamedResult;
-use crate::units::Dimension;
+use crate::schema::ResultKind;
+use crate::schema::procedures::base_excitation as schema;
 
 /// Peaks over the computed displacements and the measured forces.
 pub(crate) struct ShakeSummary {
@@ -15,7 +14,7 @@ pub(crate) struct ShakeSummary {
     max_drift: Vec<f64>,
     drift: Vec<f64>,
     base_shear: NoisyLargest,
-    /// J, of the input or of what it became.
+    /// Largest input or kinetic energy, J.
     largest_energy: f64,
     energy_error: f64,
     steps: u64,
@@ -36,7 +35,7 @@ impl ShakeSummary {
         }
     }
 
-    /// Takes the end of a step.
+    /// Adds the end of a step.
     pub(crate) fn push(&mut self, state: &FrameState) {
         drifts(&state.displacement, &mut self.drift);
         let widen = |largest: &mut [f64], values: &[f64]| {
@@ -58,7 +57,7 @@ impl ShakeSummary {
         self.steps = state.step;
     }
 
-    /// What the balance misses, over the largest energy.
+    /// Error of the energy balance, over the largest energy.
     pub(crate) const fn energy_error(&self) -> f64 {
         self.energy_error
     }
@@ -69,55 +68,25 @@ impl ShakeSummary {
     }
 }
 
-/// In the order of the reference; what was not reached is missing.
+/// In the order of the reference; a result that was not reached is missing.
 pub(crate) fn results(
     modes: Option<&Modes>,
     summary: Option<&ShakeSummary>,
     followed: &Followed,
 ) -> Vec<NamedResult> {
-    let list = |name, dimension, values: Option<&Vec<f64>>| match values {
-        Some(values) => NamedResult {
-            name,
-            dimension,
-            value: ResultValue::List(values.clone()),
-            contributions: Vec::new(),
-        },
-        None => result(name, dimension, None),
+    let list = |kind: ResultKind, read: fn(&ShakeSummary) -> &[f64]| {
+        kind.found_list(summary.map(|summary| read(summary).to_vec()))
     };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let steps = summary.map(|summary| summary.steps as f64);
     let mut results = vec![
-        list(
-            "max_displacement",
-            Dimension::LENGTH,
-            summary.map(|summary| &summary.max_displacement),
-        ),
-        list(
-            "max_drift",
-            Dimension::LENGTH,
-            summary.map(|summary| &summary.max_drift),
-        ),
-        list(
-            "final_drift",
-            Dimension::LENGTH,
-            summary.map(|summary| &summary.drift),
-        ),
-        list(
-            "periods",
-            Dimension::TIME,
-            modes.map(|modes| &modes.periods),
-        ),
-        result(
-            "max_base_shear",
-            Dimension::FORCE,
-            summary.and_then(|summary| summary.base_shear.value()),
-        ),
-        result(
-            "energy_error",
-            Dimension::NUMBER,
-            summary.map(|summary| summary.energy_error),
-        ),
-        result("steps", Dimension::NUMBER, steps),
+        list(schema::MAX_DISPLACEMENT, |it| &it.max_displacement),
+        list(schema::MAX_DRIFT, |it| &it.max_drift),
+        list(schema::FINAL_DRIFT, |it| &it.drift),
+        schema::PERIODS.found_list(modes.map(|modes| modes.periods.clone())),
+        schema::MAX_BASE_SHEAR.found(summary.and_then(|summary| summary.base_shear.value())),
+        schema::ENERGY_ERROR.found(summary.map(|summary| summary.energy_error)),
+        schema::STEPS.found(steps),
     ];
     results.extend(followed.of_all());
     results.extend(followed.of_each());

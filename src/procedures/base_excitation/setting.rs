@@ -5,7 +5,7 @@ use crate::physics::structure::ground::peak_velocity;
 use crate::plan::formula::Formula;
 use crate::plan::{Frame, Ground, Shake};
 use crate::procedures::stepping;
-use crate::procedures::stepping::run::FrameSteps;
+use crate::procedures::stepping::run::{FrameSteps, Steps};
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
@@ -16,7 +16,7 @@ pub(crate) struct Setting {
     pub(crate) frame: FrameSteps,
     /// Factor on the record.
     pub(crate) scale: f64,
-    /// ½ ιᵀMι v², v the largest velocity of the ground, J: what its motion can put in, before it has.
+    /// ½ ιᵀMι v², v the largest velocity of the ground, J: the energy that its motion can put in.
     pub(crate) ground_energy: f64,
 }
 
@@ -30,13 +30,8 @@ impl Setting {
     ) -> Result<Self, Stop> {
         let properties = stepping::run::properties(frame, &plan.damping, inputs)?;
         let critical = properties.critical_time_step();
-        let time_step = stepping::run::time_step(
-            &plan.stepping,
-            (frame, &properties),
-            critical,
-            inputs,
-            session,
-        )?;
+        let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
+        stepping::run::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
         let to_the_end = Formula::Constant(ground.duration());
         let duration = inputs.positive(
             "duration",
@@ -44,16 +39,20 @@ impl Setting {
             Dimension::TIME,
         )?;
         let scale = inputs.number("scale", &plan.scale, Dimension::NUMBER)?;
-        let steps = FrameSteps::new(
-            properties,
+        let floors = properties.matrices.order();
+        let steps = Steps::evaluate(
             &plan.stepping,
-            (time_step, critical, duration),
+            time_step,
+            critical,
+            duration,
+            floors,
             inputs,
         )?;
+        let frame_steps = FrameSteps::new(properties, plan.stepping.integrator, steps);
         let velocity = scale * peak_velocity(&ground.times, &ground.accelerations);
         let ground_energy = 0.5 * frame.total_mass() * velocity * velocity;
         Ok(Self {
-            frame: steps,
+            frame: frame_steps,
             scale,
             ground_energy,
         })

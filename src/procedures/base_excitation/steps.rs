@@ -1,5 +1,5 @@
-//! A frame on moving ground as it is shaken: the ground as a load, and every step kept. In: what is known before the first step.
-//! Out: the history and what it comes to. How the steps are taken on the rig is `step_loop`'s; the equations are `mechanics`'.
+//! The steps of a frame on moving ground: the ground as a load, and every step kept. In: the setting before the first step. Out: the
+//! history and its summary. `step_loop` takes the steps on the rig; the equations are in `physics`.
 
 use super::results::ShakeSummary;
 use super::setting::Setting;
@@ -40,7 +40,7 @@ impl Shaking<'_> {
         } = self;
         let matrices = &setting.frame.properties.matrices;
         step_loop::run(
-            setting.frame.pace(),
+            setting.frame.steps.pace(),
             &plan.stepping,
             followed,
             session,
@@ -50,12 +50,12 @@ impl Shaking<'_> {
                 matrices.ground_load(ground_acceleration, &mut load);
                 let input = start.input(&setting.frame, &plan.stepping, &load);
                 let mut solver = FrameSolver::new(&input)
-                    .map_err(|error| not_stepped(setting.frame.time_step, &error))?;
+                    .map_err(|error| not_stepped(setting.frame.steps.time_step, &error))?;
                 solver.measured_at_start(&start.reading.displacement);
                 let stiffer = StifferSprings::of_storeys(
                     matrices,
                     &plan.stepping,
-                    setting.frame.time_step,
+                    setting.frame.steps.time_step,
                     start,
                 );
                 Ok((
@@ -79,17 +79,17 @@ impl Setting {
     /// Acceleration of the ground at the end of a step, as it is applied, m/s².
     fn ground_at(&self, ground: &Ground, step: u64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
-        let time = step as f64 * self.frame.time_step;
+        let time = step as f64 * self.frame.steps.time_step;
         self.scale * acceleration_at(&ground.times, &ground.accelerations, time)
     }
 }
 
-/// The frame under way.
+/// The frame during the run.
 struct Shaken<'a> {
     setting: &'a Setting,
     ground: &'a Ground,
     solver: FrameSolver,
-    /// Of the step under way, N.
+    /// Load of the present step, N.
     load: Vec<f64>,
     /// m/s²
     ground_acceleration: f64,
@@ -152,7 +152,7 @@ impl Stepped for Shaken<'_> {
             tracking: axes.to_vec(),
         });
         self.summary.push(state);
-        // An input that begins with nothing divides nothing: until it is larger, what the ground can put in counts.
+        // The input energy is 0 at the start: until it is larger, the reference is the energy that the ground motion can put in.
         let input = self
             .summary
             .largest_energy()

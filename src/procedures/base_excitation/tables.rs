@@ -1,6 +1,6 @@
-//! Tables of floors: a row a step and storey. Of a shake with the base motion beside it; of an impact on a storey with striker
-//! and contact; of an unloading, a row a move and storey. In: steps. Out: columns in SI. What is the whole frame's is the same in
-//! every row of a step; what tracking made of its energy is each floor's own.
+//! Tables of floors, one row per step and storey: of a shake with the ground motion, of an impact on a storey with striker and contact, of
+//! an unloading. In: steps. Out: columns in SI. Quantities of the whole frame are the same in every row of a step; the tracking energy is
+//! that of each floor.
 
 use crate::record::{FloorStep, Floors, FloorsAt, ImpactStep, ShakeHistory, ShakeStep, UnloadStep};
 use crate::report::tables::{Column, Table, integers, numbers, texts};
@@ -56,25 +56,25 @@ fn rows<'a, F: Floors + 'a, S>(steps: impl Iterator<Item = (&'a F, &'a S)>) -> V
     steps.flat_map(storeys).collect()
 }
 
-/// The rows of steps that say all of their floors themselves.
+/// The rows of steps that contain their floors.
 fn rows_of<S: Floors>(steps: &[S]) -> Vec<Row<'_, S>> {
     rows(steps.iter().map(|step| (step, step)))
 }
 
-/// Which storey, from 1.
+/// The number of the storey, from 1.
 fn storey<S>(rows: &[Row<'_, S>]) -> Column {
     integers("storey", rows, |row| row.floor as u64 + 1)
 }
 
-/// Where the floors were sent, and are.
-fn sent<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+/// Commanded and measured positions of the floors.
+fn positions<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
     vec![
         numbers("command_m", rows, |row| row.floors.command[row.floor]),
         numbers("displacement_m", rows, |row| row.floors.measured[row.floor]),
     ]
 }
 
-/// What was computed of them.
+/// The computed motion of the floors.
 fn computed<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
     vec![
         numbers("computed_m", rows, |row| row.floors.computed[row.floor]),
@@ -87,8 +87,8 @@ fn computed<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
     ]
 }
 
-/// What they carry, and the storeys with them.
-fn carried<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+/// The restoring forces of the floors, and the drifts and shears of the storeys.
+fn forces<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
     vec![
         numbers("restoring_force_n", rows, |row| {
             row.floors.restoring_force[row.floor]
@@ -98,8 +98,8 @@ fn carried<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
     ]
 }
 
-/// What following them has come to.
-fn followed<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+/// The tracking of the floors.
+fn tracking<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
     vec![
         numbers("tracking_energy_error_j", rows, |row| {
             row.floors.tracking[row.floor].energy_error
@@ -139,16 +139,16 @@ pub(crate) fn shake(steps: &[ShakeStep]) -> Vec<Column> {
     ];
     [
         step,
-        sent(&rows),
+        positions(&rows),
         computed(&rows),
-        carried(&rows),
+        forces(&rows),
         energies,
-        followed(&rows),
+        tracking(&rows),
     ]
     .concat()
 }
 
-/// Of an impact on a storey: what the striker did, and the floors beside it.
+/// The columns of an impact on a storey: the striker, and the floors.
 pub(crate) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<Column> {
     let rows = rows(floors.iter().zip(steps));
     let of = |name, read: fn(&Row<'_, ImpactStep>) -> f64| numbers(name, &rows, read);
@@ -182,16 +182,16 @@ pub(crate) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<C
     ];
     [
         step,
-        sent(&rows),
+        positions(&rows),
         computed(&rows),
-        carried(&rows),
+        forces(&rows),
         striker,
-        followed(&rows),
+        tracking(&rows),
     ]
     .concat()
 }
 
-/// Of an unloading; step 0 is where it began.
+/// The columns of an unloading; step 0 is its start.
 pub(crate) fn unloading(steps: &[UnloadStep]) -> Vec<Column> {
     let rows = rows_of(steps);
     let step = vec![
@@ -204,5 +204,5 @@ pub(crate) fn unloading(steps: &[UnloadStep]) -> Vec<Column> {
         .map(|row| row.step.tangent_stiffness[row.floor])
         .collect();
     let tangents = vec![Column::new("tangent_stiffness_n_per_m".into(), tangents)];
-    [step, sent(&rows), carried(&rows), tangents].concat()
+    [step, positions(&rows), forces(&rows), tangents].concat()
 }

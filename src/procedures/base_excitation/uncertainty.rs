@@ -12,9 +12,10 @@ use crate::procedures::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::results::{give, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
-use crate::procedures::stepping::run::FrameSteps;
+use crate::procedures::stepping::run::Steps;
 use crate::record::{NamedResult, ShakeHistory, ShakeStep};
 use crate::run::stop::Stop;
+use crate::schema::procedures::base_excitation as schema;
 use crate::uncertainty::Source;
 use crate::uncertainty::engine::{Evaluate, Evaluation, FINER, Shifts, Tick, Unknown};
 use crate::units::Dimension;
@@ -38,9 +39,11 @@ pub(crate) fn propagate(
         force: step.restoring_force.clone(),
     };
     let path = doubts.path(&setting.frame, history.steps.iter().map(reading).collect())?;
-    let FrameSteps {
-        time_step, steps, ..
-    } = setting.frame;
+    let Steps {
+        time_step,
+        count: steps,
+        ..
+    } = setting.frame.steps;
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let at = |step: u64| {
         acceleration_at(
@@ -63,7 +66,7 @@ pub(crate) fn propagate(
     let mut found = evaluate
         .run(&evaluate.inputs(&[])?, &exact)
         .map_err(|error| error.to_string())?;
-    if !leads_there(&found.ends, "max_displacement", results) {
+    if !leads_there(&found.ends, schema::MAX_DISPLACEMENT, results) {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
     evaluate.path = doubts.under_way(
@@ -71,10 +74,17 @@ pub(crate) fn propagate(
         evaluate.path,
         std::mem::take(&mut found.velocities),
     )?;
-    let lists =
-        ["max_displacement", "max_drift", "final_drift", "periods"].map(|name| (name, floors));
-    let layout: Vec<(&'static str, usize)> =
-        lists.into_iter().chain([("max_base_shear", 1)]).collect();
+    let lists = [
+        schema::MAX_DISPLACEMENT,
+        schema::MAX_DRIFT,
+        schema::FINAL_DRIFT,
+        schema::PERIODS,
+    ]
+    .map(|kind| (kind.name, floors));
+    let layout: Vec<(&'static str, usize)> = lists
+        .into_iter()
+        .chain([(schema::MAX_BASE_SHEAR.name, 1)])
+        .collect();
     let mut reported = values(&layout, results);
     if let Some(shear) = reported.last_mut() {
         // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.

@@ -2,29 +2,21 @@
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::methods as fault;
+use crate::plan::procedure::damping_sweep::damping_sweep_fields;
+use crate::plan::procedure::declaration::reader;
 use crate::plan::{DampingSweep, ProcedureKind};
+use crate::procedures::read_field::ReadField;
 use crate::procedures::stepping::mode_check::stops_at_targets;
 
 pub fn damping_sweep(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     read_together(checker, block);
-    let specimen = checker.specimen_of(block);
-    let velocities = checker.quantities(block, "velocities");
-    let stroke = checker.quantity(block, "stroke");
-    let about = checker.optional(block, "about");
-    let stiffness = checker.quantity(block, "stiffness");
-    let rate = checker.optional(block, "rate");
-    Some(ProcedureKind::DampingSweep(DampingSweep {
-        specimen: specimen?,
-        velocities: velocities?,
-        stroke: stroke?,
-        about: about?,
-        stiffness: stiffness?,
-        rate: rate?,
-    }))
+    read(checker, block).map(ProcedureKind::DampingSweep)
 }
 
-/// A sweep reads on the way. Where displacement and force are not of one instant, the way between the two is a force in proportion to
-/// the velocity, which no sweep can tell from damping.
+damping_sweep_fields!(reader);
+
+/// Refuses a rig that does not read displacement and force at one instant. A sweep reads in motion: the travel between the two instants
+/// gives a force proportional to the velocity, which cannot be distinguished from damping.
 fn read_together(checker: &mut Checker, block: usize) {
     let Some(rig) = checker.real_rig else { return };
     let at = checker.scope.blocks[block].block.head;
@@ -39,14 +31,16 @@ fn read_together(checker: &mut Checker, block: usize) {
             "the force is read here, and the displacement elsewhere".to_owned(),
         )),
         (None, Some(dialect)) => entry("link").or_else(|| entry("actuator")).map(|link| {
-            let told = format!(
+            let reason = format!(
                 "`{dialect}` gives no displacement and force of one instant while it moves"
             );
-            (link, told)
+            (link, reason)
         }),
         (None, None) => None,
     };
-    if let Some((link, told)) = apart {
-        checker.diagnostics.push(fault::read_apart(at, link, told));
+    if let Some((link, reason)) = apart {
+        checker
+            .diagnostics
+            .push(fault::read_apart(at, link, reason));
     }
 }

@@ -4,6 +4,8 @@
 pub(crate) mod chart;
 pub(crate) mod check;
 pub(crate) mod facts;
+mod findings;
+mod pairing;
 pub(crate) mod rate_separated_stiffness;
 pub(crate) mod report;
 pub(crate) mod run;

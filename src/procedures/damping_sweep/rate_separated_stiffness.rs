@@ -1,33 +1,33 @@
-//! Stiffness in readings that were made on the way: F = F₀ + K·d + c·v, for what damps the specimen is in them. In: displacement and
-//! force, reading by reading, evenly in time. Out: K with its standard error, where the readings tell one.
+//! Stiffness from readings in motion, which include the force of dampers: F = F₀ + K·d + c·v. In: displacement and force, reading by
+//! reading, evenly in time. Out: K with its standard error, where the readings determine it.
 
 use std::collections::VecDeque;
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Readings that are looked at together: enough that the scatter about the plane tells its own size, few enough that a stiffness
-/// that changes is still seen.
+/// Readings of one fit, at most and at least: enough to estimate the scatter about the plane, few enough to follow a stiffness that
+/// changes.
 const MOST: usize = 12;
 const FEWEST: usize = 10;
 
-/// The last readings of one way: friction changes its sign at a turn, a blow the velocity, and a new way begins there.
+/// The last readings in one direction. At a reversal friction changes its sign, in a contact the velocity jumps: a new fit begins there.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct OnTheWay {
-    /// The last two, m and N: a velocity is known a reading later, from the places before and after.
+pub(crate) struct RateSeparatedFit {
+    /// The last two readings, m and N: a velocity is known one reading later, from the positions before and after.
     last: Vec<(f64, f64)>,
-    /// m, m a reading, N
+    /// Position \[m\], velocity \[m per reading\], force \[N\].
     points: VecDeque<[f64; 3]>,
 }
 
-impl OnTheWay {
-    /// A blow: places before it tell no velocity after it.
-    pub(crate) fn struck(&mut self) {
+impl RateSeparatedFit {
+    /// Starts again after a contact: positions before it give no velocity after it.
+    pub(crate) fn restart(&mut self) {
         self.last.clear();
         self.points.clear();
     }
 
-    /// Takes a reading (m, N); K and its standard error (N/m) by readings whose standard deviations are `noise` (N, m).
-    pub(crate) fn take(&mut self, reading: (f64, f64), noise: (f64, f64)) -> Option<(f64, f64)> {
+    /// Adds a reading (m, N). Gives K and its standard error (N/m); the standard deviations of the readings are `noise` (N, m).
+    pub(crate) fn add(&mut self, reading: (f64, f64), noise: (f64, f64)) -> Option<(f64, f64)> {
         if let [before, at] = self.last[..] {
             let velocity = 0.5 * (reading.0 - before.0);
             if self
@@ -52,7 +52,7 @@ impl OnTheWay {
     }
 }
 
-/// Least squares about the means, each of the size of 1. Scatter that is larger than the noise declared counts in its place.
+/// Least squares about the means, scaled to a size of 1. The larger of scatter and declared noise is used.
 fn plane(points: &VecDeque<[f64; 3]>, noise: (f64, f64)) -> Option<(f64, f64)> {
     #[expect(clippy::cast_precision_loss, reason = "a dozen points")]
     let count = points.len() as f64;
@@ -98,24 +98,25 @@ mod tests {
     use super::*;
     use crate::tests::noise::normal;
 
-    /// 500 N/m with a damper that is felt as 40 N a metre a reading and friction of 0.2 N, along a sine of 40 readings.
-    fn told(noise: &mut dyn FnMut() -> f64, declared: f64) -> Vec<(f64, f64)> {
-        let mut way = OnTheWay::default();
-        let place = |step: f64| 0.01 * (std::f64::consts::TAU * step / 40.0).sin();
+    /// 500 N/m with a damper of 40 N per (metre per reading) and friction of 0.2 N, along a sine of 40 readings.
+    fn estimates(noise: &mut dyn FnMut() -> f64, declared: f64) -> Vec<(f64, f64)> {
+        let mut fit = RateSeparatedFit::default();
+        let position = |step: f64| 0.01 * (std::f64::consts::TAU * step / 40.0).sin();
         let readings = (0..400).filter_map(|step| {
             let step = f64::from(step);
-            let velocity = 0.5 * (place(step + 1.0) - place(step - 1.0));
-            let force = 500.0 * place(step) + 40.0 * velocity + 0.2 * velocity.signum() + noise();
-            way.take((place(step), force), (declared, 0.0))
+            let velocity = 0.5 * (position(step + 1.0) - position(step - 1.0));
+            let force =
+                500.0 * position(step) + 40.0 * velocity + 0.2 * velocity.signum() + noise();
+            fit.add((position(step), force), (declared, 0.0))
         });
         readings.collect()
     }
 
     #[test]
     fn dampers_and_friction_are_no_stiffness() {
-        let told = told(&mut || 0.0, 0.0);
-        assert!(told.len() > 100);
-        for (stiffness, error) in told {
+        let found = estimates(&mut || 0.0, 0.0);
+        assert!(found.len() > 100);
+        for (stiffness, error) in found {
             assert!(
                 (stiffness / 500.0 - 1.0).abs() < 1e-9 && error < 1e-6,
                 "{stiffness} N/m ± {error} N/m"
@@ -123,33 +124,34 @@ mod tests {
         }
     }
 
-    /// The standard error is what it says: of the estimates few lie beyond three of them, of seven degrees of freedom 2 % and none
-    /// beyond what a remark asks for, with the noise declared or not.
+    /// The standard errors are correct: with seven degrees of freedom 2 % of the estimates are beyond three of them, and almost none beyond
+    /// the threshold of an observation, with the noise declared or not.
     #[test]
     fn its_error_is_that_of_the_noise() {
         for declared in [0.01, 0.0] {
             let mut state = 5;
-            let told: Vec<(f64, f64)> = (0..20)
-                .flat_map(|_| told(&mut || 0.01 * normal(&mut state), declared))
+            let found: Vec<(f64, f64)> = (0..20)
+                .flat_map(|_| estimates(&mut || 0.01 * normal(&mut state), declared))
                 .collect();
             let beyond = |errors: f64| {
-                told.iter()
-                    .filter(|(found, error)| (found - 500.0).abs() > errors * error)
+                found
+                    .iter()
+                    .filter(|(stiffness, error)| (stiffness - 500.0).abs() > errors * error)
                     .count()
             };
             assert!(
-                beyond(3.0) * 40 <= told.len(),
+                beyond(3.0) * 40 <= found.len(),
                 "{} of {}",
                 beyond(3.0),
-                told.len()
+                found.len()
             );
             assert!(
-                beyond(6.0) * 2000 <= told.len(),
+                beyond(6.0) * 2000 <= found.len(),
                 "{} of {}",
                 beyond(6.0),
-                told.len()
+                found.len()
             );
-            assert!(told.iter().any(|(_, error)| *error < 10.0));
+            assert!(found.iter().any(|(_, error)| *error < 10.0));
         }
     }
 }

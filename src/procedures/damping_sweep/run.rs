@@ -1,18 +1,22 @@
-//! `damping sweep` (Melo et al. 2006, sec. 6 (b)): traverses of one stroke and back at rising constant velocities.
+//! `damping sweep` (Melo et al. 2006, sec. 6 (b)): constant-velocity passes over one stroke and back, at increasing velocities.
 //! In: velocities, stroke, the K of an earlier ramp. Out: c and the Coulomb force by `F_d = R − K·X = c·v + F_c·sign v`.
 //!
-//! X and R are as measured, X from the rig's zero. An offset of the cell adds the same to both directions at one place: the fit is
-//! of half the difference between a reading and the one at the same place on the way back, so that it does not reach c, `F_c` or
-//! their standard errors. Nor does the K of the plan: an actuator that lags reads behind on both ways, and what a pair is apart by
-//! is made up for with the stiffness that the strokes show themselves; its error is one of c. Nor does a specimen that flows: about
-//! a place, one stroke takes its flow before the first that is read, and one that flowed all the same is left out.
+//! X and R are as measured, X from the rig's zero. A zero offset of the load cell adds the same force to both directions at one
+//! position. The fit uses half the difference between a reading and the one at the same position on the return, so that the offset does
+//! not affect c, `F_c` or their standard errors. The K of the plan does not affect them either: a lagging actuator is behind in both
+//! directions, and the distance between the two positions of a pair is corrected with the stiffness of the strokes themselves, whose
+//! error is one of c. Yielding of the specimen does not affect them: with `about`, one unread stroke precedes the first that is read,
+//! and a stroke with plastic deformation is left out.
 //!
-//! A rig that reads at the times it was asked has nearly the same places out and back. One that reads when it can has not: there
-//! the measured share of the stroke says what is steady, and the sparser way is paired with the other one interpolated.
+//! A rig that reads at the times that are asked for has nearly the same positions out and back. For a rig that reads when it can, the
+//! measured fraction of the stroke determines the steady part, and the pass with fewer readings is paired with the other one
+//! interpolated.
 
 use std::ops::Range;
 
-use crate::physics::identification::damping_strokes::{OutAndBack, change_along, own_stiffness};
+use super::findings::RatioOf;
+use super::pairing::{Paired, paired_by_position, paired_by_time};
+use crate::physics::identification::damping_strokes::OutAndBack;
 use crate::physics::identification::{StatedVariance, damping_ratio, fit_damping, fit_line};
 use crate::plan::formula::Estimate;
 use crate::plan::{DampingSweep, Plan};
@@ -32,27 +36,14 @@ use crate::units::display::readable;
 /// Part of the stroke left out at either end: the actuator starts and stops there.
 const END: f64 = 0.1;
 
-/// Time constants of the actuator left out at the start: the piston then moves within 1 % of the velocity asked for,
-/// also after a reversal (2·exp(−5)). Three would leave a tenth, which c would show.
+/// Time constants of the actuator left out at the start: the piston then moves within 1 % of the commanded velocity, also after a
+/// reversal (2·exp(−5)). Three would leave a tenth, and bias c.
 const LAGS: f64 = 5.0;
 
 /// Readings on the steady part where the plan gives no rate.
 const STEADY_SAMPLES: f64 = 50.0;
 
-/// Fewer pairs of steady readings than this in a stroke are worth a word.
-const FEW: usize = 3;
-
-/// A share of the velocity by which the piston may miss it.
-const OFF_SPEED: f64 = 0.05;
-
-/// The strokes have another K than the plan's where the two differ by so many standard errors, and by this share.
-const CONTRADICTS: f64 = 5.0;
-const OFF_STIFFNESS: f64 = 0.1;
-
-/// Of the largest force: what a stiffness makes of the way is rounding below it.
-const ROUNDING: f64 = 1e-9;
-
-/// Readings of one traverse, at most.
+/// Readings of one pass, at most.
 pub const MOST_SAMPLES: f64 = 1e6;
 
 pub(crate) fn perform(
@@ -61,7 +52,7 @@ pub(crate) fn perform(
     inputs: &mut Inputs<'_>,
     session: &mut Session<'_>,
 ) -> Performed {
-    // A real actuator ends each stroke at the velocity asked for, or its own firmware says so: its lag is not known here.
+    // A real actuator ends each stroke at the commanded velocity, or its firmware reports an error: its lag is not known here.
     let link = whole.rig.link.as_virtual();
     let lag = link.map_or(0.0, |link| link.lag);
     let mut sweep = Sweep {
@@ -73,13 +64,13 @@ pub(crate) fn perform(
     };
     let stop = sweep.run(plan, inputs, session).err();
     let paired = sweep.paired();
-    let told = sweep.told(&paired);
+    let findings = sweep.findings(&paired);
     let kept = || {
         paired
             .iter()
-            .filter(|(stroke, _)| !told.left_out.contains(&stroke.out.start))
+            .filter(|(stroke, _)| !findings.left_out.contains(&stroke.out.start))
     };
-    let stiffness = told
+    let stiffness = findings
         .stiffness
         .map_or_else(|| sweep.planned(), |(stiffness, _)| stiffness);
     let of_history = |pair: &OutAndBack| {
@@ -93,11 +84,11 @@ pub(crate) fn perform(
         .unzip();
     let together = BroughtTogether {
         stiffness,
-        error: told.stiffness.map(|(_, error)| error),
+        error: findings.stiffness.map(|(_, error)| error),
         effects: effects_of_stiffness(kept().flat_map(|(_, pairs)| pairs)),
     };
     let instruments = InstrumentUncertainty::of(whole, session.guard.declared_noise(), 1);
-    // Behind by a lag, or read when it can be, the displacement is another one out than back.
+    // With a lag, or readings at other times than asked for, the displacements out and back differ.
     let apart = whole.rig.link.as_real().is_some() || together.effects != [0.0; 2];
     let of_reading = instruments.stated_variance(0, 1);
     let force = 0.5 * of_reading.about(if apart { stiffness } else { 0.0 });
@@ -113,23 +104,23 @@ pub(crate) fn perform(
         session.event(EventKind::Remark, text);
     }
     for text in sweep
-        .remarks(&paired)
+        .observations(&paired)
         .into_iter()
-        .chain(told.remarks)
+        .chain(findings.observations)
         .chain(fit.as_ref().and_then(negative))
     {
         session.event(EventKind::Remark, text);
     }
     let results = sweep.results(
         fit.as_ref(),
-        told.ratio_of,
+        findings.ratio_of,
         whole
             .specimens
             .get(plan.specimen)
             .map(|specimen| specimen.mass),
     );
     let stiffness = sweep.stiffness.map(|stiffness| stiffness.value);
-    let own_stiffness = if let RatioOf::Strokes(own) = told.ratio_of {
+    let own_stiffness = if let RatioOf::Strokes(own) = findings.ratio_of {
         Some(own)
     } else {
         None
@@ -150,7 +141,7 @@ pub(crate) fn perform(
     }
 }
 
-/// Damping that gives energy back is none.
+/// Observes negative damping, which would release energy.
 fn negative(fit: &LineFit) -> Option<String> {
     (fit.slope + fit.slope_error < 0.0).then(|| {
         let damping = readable(fit.slope, Dimension::DAMPING);
@@ -162,12 +153,12 @@ fn steady_from(seconds: f64, lag: f64) -> f64 {
     END.max(LAGS * lag / seconds)
 }
 
-/// Readings of one way that takes `seconds`, at a rate (Hz) or by the plan's default.
+/// Readings of one pass that takes `seconds`, at a rate (Hz) or by the default.
 pub(crate) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
     let steady = 1.0 - END - steady_from(seconds, lag);
     match rate {
         Some(rate) => (rate * seconds).round().max(1.0),
-        // One more, for the first steady reading may just miss the beginning of the steady part.
+        // One more: the first steady reading may just miss the beginning of the steady part.
         None if steady > 0.0 => (STEADY_SAMPLES / steady).ceil() + 1.0,
         None => STEADY_SAMPLES,
     }
@@ -195,54 +186,35 @@ fn effects_of_stiffness<'a>(pairs: impl Iterator<Item = &'a OutAndBack>) -> [f64
             )
         })
         .unzip();
-    // Of strokes at one velocity there is no line.
+    // Strokes at one velocity determine no line.
     fit_line(&speeds, &apart).map_or([0.0; 2], |line| [-line.slope, -line.intercept])
 }
 
-/// What strokes tell beside c.
-struct Told {
-    /// K of the strokes that count and its standard error, N/m, where they show it.
-    stiffness: Option<(f64, f64)>,
-    /// By their first steps: strokes that flowed, where others did not.
-    left_out: Vec<usize>,
-    ratio_of: RatioOf,
-    remarks: Vec<String>,
-}
-
-/// The stiffness that a damping ratio is told with.
-#[derive(Clone, Copy)]
-enum RatioOf {
-    Plan,
-    /// K and its standard error, N/m: it is not the plan's.
-    Strokes((f64, f64)),
-    /// The strokes contradict the plan's, and show none.
-    Nothing,
-}
-
 /// Steps of one stroke, out and back.
-struct Stroke {
-    out: Range<usize>,
-    back: Range<usize>,
-    /// Asked for, m/s.
-    speed: f64,
-    /// Whether every reading came at the time it was asked for.
-    on_grid: bool,
+pub(super) struct Stroke {
+    pub out: Range<usize>,
+    pub back: Range<usize>,
+    /// Commanded, m/s.
+    pub speed: f64,
+    /// Whether every reading was made at the time that was asked for.
+    pub on_grid: bool,
 }
 
-struct Sweep {
-    steps: Vec<SweepStep>,
-    /// The steps of each stroke that came back whole.
-    strokes: Vec<Stroke>,
-    stiffness: Option<Estimate>,
+pub(super) struct Sweep {
+    pub steps: Vec<SweepStep>,
+    /// The steps of each stroke that was completed, out and back.
+    pub strokes: Vec<Stroke>,
+    /// K of the plan, N/m.
+    pub stiffness: Option<Estimate>,
     /// s
-    lag: f64,
-    /// Whether the rig keeps the times it is asked for.
-    exact: bool,
+    pub lag: f64,
+    /// Whether the rig reads at the times that are asked for.
+    pub exact: bool,
 }
 
-/// One way of a stroke as it is asked for.
+/// A commanded constant-velocity pass.
 #[derive(Clone, Copy)]
-struct Way {
+struct Pass {
     /// m
     from: f64,
     to: f64,
@@ -280,7 +252,7 @@ impl Sweep {
         self.stiffness = Some(stiffness);
         if let Some(about) = &plan.about {
             let middle = inputs.number("about", about, Dimension::LENGTH)?;
-            // What the specimen flows on the first way out it has flowed before anything is read.
+            // Plastic deformation of the first stroke occurs before anything is read.
             session.go_to(middle + 0.5 * stroke, None)?;
             session.go_to(middle - 0.5 * stroke, None)?;
         }
@@ -297,20 +269,20 @@ impl Sweep {
             let seconds = (stroke / velocity).abs();
             let samples = self.samples(seconds, rate)?;
             let speed = velocity.abs().copysign(stroke);
-            let there = Way {
+            let out_pass = Pass {
                 from: home,
                 to: home + stroke,
                 velocity: speed,
                 seconds,
                 samples,
             };
-            let out = self.traverse(there, session)?;
+            let out = self.traverse(out_pass, session)?;
             let back = self.traverse(
-                Way {
-                    from: there.to,
+                Pass {
+                    from: out_pass.to,
                     to: home,
                     velocity: -speed,
-                    ..there
+                    ..out_pass
                 },
                 session,
             )?;
@@ -321,13 +293,13 @@ impl Sweep {
                 speed: speed.abs(),
                 on_grid,
             });
-            // A traverse ends in motion: the piston comes to rest at home before anything is read or asked of it there.
+            // A pass ends in motion: the piston comes to rest at home before the next reading or command.
             session.guard.move_to(&[home], None)?;
         }
         Ok(())
     }
 
-    /// Share of a traverse of `seconds` after which it is steady.
+    /// Fraction of a pass of `seconds` after which it is steady.
     fn steady_from(&self, seconds: f64) -> f64 {
         steady_from(seconds, self.lag)
     }
@@ -350,15 +322,15 @@ impl Sweep {
         Ok(wanted as usize)
     }
 
-    /// One way of a stroke; the steps it added.
-    fn traverse(&mut self, way: Way, session: &mut Session<'_>) -> Result<Range<usize>, Stop> {
-        let Way {
+    /// One pass; the range of steps that it added.
+    fn traverse(&mut self, pass: Pass, session: &mut Session<'_>) -> Result<Range<usize>, Stop> {
+        let Pass {
             from,
             to,
             velocity,
             seconds,
             samples,
-        } = way;
+        } = pass;
         let began = self.steps.len();
         let stiffness = self.stiffness.map_or(0.0, |estimate| estimate.value);
         let steady_from = self.steady_from(seconds);
@@ -392,7 +364,7 @@ impl Sweep {
             .map_or(Ok(began..self.steps.len()), |fault| Err(fault.into()))
     }
 
-    /// Every stroke with its pairs of readings over what is steady on both ways.
+    /// Every stroke with its pairs of readings over the part that is steady in both directions.
     fn paired(&self) -> Vec<Paired<'_>> {
         let pairs = |stroke: &Stroke| {
             let (out, back) = (
@@ -402,7 +374,7 @@ impl Sweep {
             if stroke.on_grid {
                 paired_by_time(out, back)
             } else {
-                paired_by_place(out, back)
+                paired_by_position(out, back)
             }
         };
         self.strokes
@@ -411,109 +383,9 @@ impl Sweep {
             .collect()
     }
 
-    /// What a person should know of the readings before believing c.
-    fn remarks(&self, paired: &[Paired<'_>]) -> Vec<String> {
-        let told = |(stroke, pairs): &Paired<'_>| {
-            let pairs = pairs.len();
-            let shown = readable(stroke.speed, Dimension::VELOCITY);
-            let few = (!stroke.on_grid && pairs < FEW).then(|| {
-                format!(
-                    "the strokes at {shown} give {pairs} steady pairs of readings: the line is too slow, or the stroke too short"
-                )
-            });
-            let off = [&stroke.out, &stroke.back].into_iter().filter(|_| !stroke.on_grid).find_map(|way| {
-                let moved = moved_at(&self.steps[way.clone()])?;
-                let error = (moved.slope.abs() - stroke.speed).abs();
-                let differs = error > OFF_SPEED * stroke.speed + 3.0 * moved.slope_error;
-                let measured = readable(moved.slope.abs(), Dimension::VELOCITY);
-                differs.then(|| {
-                    format!("by the times of the readings the piston went at {measured}, not at {shown}: c is as wrong as that")
-                })
-            });
-            few.into_iter().chain(off)
-        };
-        paired.iter().flat_map(told).collect()
-    }
-
-    /// What the strokes tell of the specimen beside its damping.
-    fn told(&self, strokes: &[Paired<'_>]) -> Told {
-        let of_all = own_stiffness(&strokes.iter().map(|(_, pairs)| pairs.as_slice()));
-        let of_all = of_all.map_or_else(|| self.planned(), |(stiffness, _)| stiffness);
-        let flowed: Vec<(&Stroke, f64)> = strokes
-            .iter()
-            .filter_map(|(stroke, pairs)| Some((*stroke, change_along(pairs, of_all)?)))
-            .collect();
-        let all = flowed.len() == strokes.len();
-        let mut remarks: Vec<String> = Vec::new();
-        for (stroke, change) in &flowed {
-            let (speed, change) = (
-                readable(stroke.speed, Dimension::VELOCITY),
-                readable(*change, Dimension::FORCE),
-            );
-            let so = if all {
-                "c and the Coulomb force are of its loop too"
-            } else {
-                "it is left out"
-            };
-            remarks.push(format!(
-                "the stroke at {speed} comes back by another way: half of out minus back changes by {change} along it, as of a specimen \
-                 that flows; {so}"
-            ));
-        }
-        let left_out: Vec<usize> = flowed
-            .iter()
-            .filter(|_| !all)
-            .map(|(stroke, _)| stroke.out.start)
-            .collect();
-        let kept = strokes
-            .iter()
-            .filter(|(stroke, _)| !left_out.contains(&stroke.out.start));
-        let stiffness = own_stiffness(&kept.map(|(_, pairs)| pairs.as_slice()));
-        let own_stiffness = stiffness.filter(|own| self.contradicts(*own));
-        let resists = |(own, error): (f64, f64)| {
-            let pairs = || strokes.iter().flat_map(|(_, pairs)| pairs);
-            let most = |read: fn(&OutAndBack) -> f64| pairs().map(read).fold(0.0, f64::max);
-            let force = most(|pair| pair.mean.abs() + pair.half_difference.abs());
-            own > CONTRADICTS * error && own * most(|pair| pair.place.abs()) > ROUNDING * force
-        };
-        let shown = |stiffness| readable(stiffness, Dimension::STIFFNESS);
-        let ratio_of = match own_stiffness.map(|own| (own, resists(own))) {
-            None => RatioOf::Plan,
-            Some((own, true)) => RatioOf::Strokes(own),
-            Some((_, false)) => RatioOf::Nothing,
-        };
-        let assumed = shown(self.planned());
-        match ratio_of {
-            RatioOf::Plan => {}
-            RatioOf::Strokes((own, _)) => remarks.push(format!(
-                "the strokes run at {}, not at the {assumed} of `stiffness`: the damping ratio is told with theirs",
-                shown(own)
-            )),
-            RatioOf::Nothing => {
-                remarks
-                    .push(format!("the strokes show no stiffness, not the {assumed} of `stiffness`: there is no damping ratio"));
-            }
-        }
-        Told {
-            stiffness,
-            left_out,
-            ratio_of,
-            remarks,
-        }
-    }
-
     /// K of the plan, N/m.
-    fn planned(&self) -> f64 {
+    pub(super) fn planned(&self) -> f64 {
         self.stiffness.map_or(0.0, |stiffness| stiffness.value)
-    }
-
-    /// Whether the K of the strokes (N/m, with its standard error) is another than the plan's.
-    fn contradicts(&self, (own, error): (f64, f64)) -> bool {
-        let Some(assumed) = self.stiffness else {
-            return false;
-        };
-        let sure = CONTRADICTS * error.hypot(assumed.uncertainty.unwrap_or(0.0));
-        (own - assumed.value).abs() > sure.max(OFF_STIFFNESS * assumed.value)
     }
 
     fn results(
@@ -550,71 +422,4 @@ impl Sweep {
             schema::MAX_VELOCITY.found(largest(self.steps.iter().map(|step| step.velocity))),
         ]
     }
-}
-
-/// A stroke with its pairs of readings.
-type Paired<'a> = (&'a Stroke, Vec<OutAndBack>);
-
-/// Pairs of readings at the same place by their times: the last reading of a way is where the next one starts, and has no
-/// partner.
-fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<OutAndBack> {
-    let steady = out
-        .iter()
-        .zip(back.iter().rev().skip(1))
-        .filter(|(out, back)| out.steady && back.steady);
-    let pair = |(out, back): (&SweepStep, &SweepStep)| OutAndBack {
-        velocity: out.velocity,
-        place: 0.5 * (out.displacement + back.displacement),
-        half_apart: 0.5 * (out.displacement - back.displacement),
-        half_difference: 0.5 * (out.restoring_force - back.restoring_force),
-        mean: 0.5 * (out.restoring_force + back.restoring_force),
-    };
-    steady.map(pair).collect()
-}
-
-/// Pairs at the places where the sparser way was read; there the other one lies between two of its readings.
-fn paired_by_place(out: &[SweepStep], back: &[SweepStep]) -> Vec<OutAndBack> {
-    let steady = |way: &[SweepStep]| {
-        let mut way: Vec<SweepStep> = way.iter().filter(|step| step.steady).copied().collect();
-        way.sort_by(|one, other| one.displacement.total_cmp(&other.displacement));
-        way
-    };
-    let (out, back) = (steady(out), steady(back));
-    let (sparse, dense) = if out.len() <= back.len() {
-        (out, back)
-    } else {
-        (back, out)
-    };
-    let pair = |step: &SweepStep| {
-        let other = interpolated(&dense, step.displacement)?;
-        Some(OutAndBack {
-            velocity: step.velocity,
-            place: step.displacement,
-            half_apart: 0.0,
-            half_difference: 0.5 * (step.restoring_force - other),
-            mean: 0.5 * (step.restoring_force + other),
-        })
-    };
-    sparse.iter().filter_map(pair).collect()
-}
-
-/// Force (N) at `place` (m) between the two readings about it, which are sorted by place.
-fn interpolated(steps: &[SweepStep], place: f64) -> Option<f64> {
-    let after = steps.iter().position(|step| step.displacement >= place)?;
-    let above = steps[after];
-    if above.displacement == place {
-        return Some(above.restoring_force);
-    }
-    let below = steps[after.checked_sub(1)?];
-    let share = (place - below.displacement) / (above.displacement - below.displacement);
-    Some(below.restoring_force + share * (above.restoring_force - below.restoring_force))
-}
-
-/// Measured place over time on the steady part: its slope is the velocity, m/s.
-fn moved_at(way: &[SweepStep]) -> Option<LineFit> {
-    let steady = way.iter().filter(|step| step.steady);
-    let (times, places): (Vec<f64>, Vec<f64>) = steady
-        .map(|step| (step.wall_time, step.displacement))
-        .unzip();
-    fit_line(&times, &places)
 }

@@ -1,41 +1,42 @@
-//! What the drivers of check and report must know of a blow without carrying it out. In: it. Out: facts.
+//! The facts about an impact that the drivers of check and report need without carrying it out. In: an impact of the plan, or its
+//! history. Out: facts, the motion that it leaves behind, the parts of the program that it uses.
 
-use super::{chart, report};
-use crate::plan::{Dependence, Impact, StoreyImpact};
-use crate::procedures::facts::{Facts, Recorded, Tests};
+use super::{figures, report};
+use crate::physics::self_test::Part;
+use crate::plan::{Contact, Dependence, Impact, ImpactTarget, Until};
+use crate::procedures::facts::{Facts, Motion, Recorded, Tests};
 use crate::procedures::stepping;
+use crate::procedures::stepping::self_tested::stepped;
 use crate::record::ImpactHistory;
 
-/// Of one degree of freedom.
-pub(crate) fn on_specimen(blow: &Impact) -> Facts<'_> {
-    Facts {
-        stepping: Some(&blow.stepping),
-        contact: Some(&blow.contact),
-        dependence: Dependence {
-            striker: Some(blow.striker),
-            mass_uncertainty: Some(blow.mass_uncertainty),
-            frame: None,
-        },
-        figures: chart::FIGURES,
-        shared_figures: chart::SHARED,
+pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
+    let shared = Facts {
+        stepping: Some(&impact.stepping),
+        contact: Some(&impact.contact),
         ..Facts::default()
-    }
-}
-
-/// Of a storey.
-pub(crate) fn on_storey(blow: &StoreyImpact) -> Facts<'_> {
-    Facts {
-        tests: Tests::Frame,
-        stepping: Some(&blow.stepping),
-        contact: Some(&blow.contact),
-        frame_damping: Some((&blow.damping, blow.damping_uncertainty)),
-        dependence: Dependence {
-            striker: Some(blow.striker),
-            mass_uncertainty: None,
-            frame: Some(blow.specimen),
+    };
+    match &impact.target {
+        ImpactTarget::Point(point) => Facts {
+            dependence: Dependence {
+                striker: Some(impact.striker),
+                mass_uncertainty: Some(point.mass_uncertainty),
+                frame: None,
+            },
+            figures: figures::FIGURES,
+            shared_figures: figures::SHARED,
+            ..shared
         },
-        figures: chart::STOREY_FIGURES,
-        ..Facts::default()
+        ImpactTarget::Storey(storey) => Facts {
+            tests: Tests::Frame,
+            frame_damping: Some((&storey.damping, storey.damping_uncertainty)),
+            dependence: Dependence {
+                striker: Some(impact.striker),
+                mass_uncertainty: None,
+                frame: Some(impact.specimen),
+            },
+            figures: figures::STOREY_FIGURES,
+            ..shared
+        },
     }
 }
 
@@ -54,4 +55,39 @@ pub(crate) fn recorded(history: &ImpactHistory) -> Recorded {
         uncertainty: stepping::report::UNCERTAINTY,
         ..Recorded::default()
     }
+}
+
+/// The state in which an impact leaves the specimen.
+pub(crate) const PEAK: &str = "ends near its largest displacement";
+
+/// The motion that an impact leaves. A frame comes to rest by itself if the run goes on for long enough.
+pub(crate) fn motion(impact: &Impact) -> Motion<'static> {
+    match &impact.target {
+        ImpactTarget::Point(_) => Motion {
+            what: "blow",
+            ends: PEAK,
+            help: "take the load off in between: `unload rest { }`",
+            rests: false,
+        },
+        ImpactTarget::Storey(_) => Motion {
+            what: "blow",
+            ends: PEAK,
+            help: "take the load off in between: `unload rest { }`, or let the first run on until the frame rests: \
+    `until = duration`, with a `damping_ratio`",
+            rests: impact.until == Until::Duration,
+        },
+    }
+}
+
+/// The parts of the self-test that an impact uses, each with those it is combined with.
+pub(crate) fn self_tested(impact: &Impact) -> Vec<Vec<Part>> {
+    let of_frame = matches!(impact.target, ImpactTarget::Storey(_));
+    let [point, storey] = match impact.contact {
+        Contact::Rigid => [Part::Rigid, Part::FrameRigid],
+        Contact::Limit { .. } => [Part::Limit, Part::FrameLimit],
+        Contact::Restitution { .. } => [Part::Restitution, Part::FrameRestitution],
+        Contact::Hertz { .. } => [Part::Hertz, Part::FrameHertz],
+    };
+    let law = if of_frame { storey } else { point };
+    stepped(&impact.stepping, of_frame, Some(law))
 }

@@ -1,6 +1,6 @@
-//! The steps of an impact, on one degree of freedom or on one floor of a frame: the striker beside the structure, and every step
-//! kept. In: a solver from where the rig stands. Out: the history and its summary. How the steps are taken on the rig is
-//! `step_loop`'s; the equations are `mechanics`'.
+//! The steps of an impact, on one degree of freedom or on one floor of a frame: the striker beside the structure, and every step kept.
+//! In: a solver at the present position of the rig. Out: the history and its summary. `step_loop` takes the steps on the rig; the
+//! equations are in `physics`.
 
 use super::summary::StruckSummary;
 use crate::physics::impact::ImpactSolver;
@@ -19,7 +19,7 @@ use crate::rig::Reading;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 
-/// How an impact is stepped.
+/// The settings of the steps of an impact.
 pub(crate) struct ImpactSteps<'a> {
     pub stepping: &'a Stepping,
     pub pace: Pace,
@@ -28,7 +28,7 @@ pub(crate) struct ImpactSteps<'a> {
     pub before: u64,
 }
 
-/// What is kept of an impact.
+/// The record of an impact under way.
 pub(crate) struct Kept {
     /// The struck degree of freedom and the striker.
     pub steps: Vec<ImpactStep>,
@@ -39,13 +39,13 @@ pub(crate) struct Kept {
 }
 
 impl Kept {
-    /// Before the first of `steps` steps: room for those to come, as far as it is cheap, for `duration` is often far beyond the end.
+    /// Before the first of `steps` steps. Capacity is reserved for at most 100,000 of them: `duration` is often far beyond the end.
     pub(crate) fn new(summary: StruckSummary, steps: u64) -> Self {
-        let room = usize::try_from(steps + 1)
+        let capacity = usize::try_from(steps + 1)
             .unwrap_or(usize::MAX)
             .min(100_000);
         Self {
-            steps: Vec::with_capacity(room),
+            steps: Vec::with_capacity(capacity),
             floors: Vec::new(),
             summary,
             followed: Followed::default(),
@@ -54,7 +54,7 @@ impl Kept {
 }
 
 impl ImpactSteps<'_> {
-    /// All steps, with the solver that `begin` makes of where the rig stands.
+    /// All steps, with the solver that `begin` makes from the present position of the rig.
     pub(crate) fn run<V: Vector>(
         &self,
         kept: &mut Kept,

@@ -1,6 +1,7 @@
 //! The uncertainty of the results of an impact on a storey. In: its inputs with their sources of uncertainty, and the recorded steps. Out:
 //! the contributions of each source to each number. The frame is re-integrated along its recorded path.
 
+use super::setting::{Setting, contact_law};
 use super::uncertainty::{at_least, contact_formulas, no_known_force, same, whole_steps};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
@@ -8,38 +9,38 @@ use crate::physics::perturbation::Perturbation;
 use crate::physics::reintegration::frame::{Blow, Floors, FrameRun, StrikerOutcome};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::impact::OUTCOMES;
-use crate::plan::{StoreyImpact, Striker};
-use crate::procedures::impact::run::law;
-use crate::procedures::impact::storey::Setting;
+use crate::plan::{Impact, StoreyTarget, Striker};
 use crate::procedures::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::results::{Layout, give, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
+use crate::procedures::stepping::run::FrameSteps;
 use crate::record::{FloorStep, NamedResult};
 use crate::run::stop::Stop;
+use crate::schema::procedures::impact as schema;
 use crate::uncertainty::Source;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Tick, Unknown};
 
 /// Numbers after those of any impact.
 const SCALARS: [&str; 4] = [
-    "contact_duration",
-    "rebound_velocity",
-    "max_base_shear",
-    "critical_time_step",
+    schema::CONTACT_DURATION.name,
+    schema::REBOUND_VELOCITY.name,
+    schema::MAX_BASE_SHEAR.name,
+    schema::CRITICAL_TIME_STEP.name,
 ];
 /// Lists after them, an entry a floor.
 const LISTS: [&str; 5] = [
-    "floor_displacement",
-    "max_drift",
-    "final_drift",
-    "storey_energy",
-    "periods",
+    schema::FLOOR_DISPLACEMENT.name,
+    schema::MAX_DRIFT.name,
+    schema::FINAL_DRIFT.name,
+    schema::STOREY_ENERGY.name,
+    schema::PERIODS.name,
 ];
 
 /// Gives `results` their contributions.
 pub(crate) fn propagate(
     doubts: &FrameUncertainty<'_>,
-    plan: &StoreyImpact,
+    plan: &Impact,
     setting: &Setting,
     history: &[FloorStep],
     recorded: &ImpactSummary,
@@ -51,12 +52,17 @@ pub(crate) fn propagate(
         displacement: step.displacement.clone(),
         force: step.restoring_force.clone(),
     };
-    let path = doubts.path(&setting.frame, history.iter().map(reading).collect())?;
+    let (Some(target), Some(frame)) = (plan.storey(), setting.frame()) else {
+        return Err("no floor of a frame is struck".to_owned().into());
+    };
+    let path = doubts.path(frame, history.iter().map(reading).collect())?;
     let floors = doubts.floors();
     let mut evaluate = RecordedStoreyImpact {
         doubts,
         plan,
+        target,
         setting,
+        frame,
         path,
     };
     let Inputs { run, blow, .. } = evaluate.inputs(&[])?;
@@ -64,11 +70,11 @@ pub(crate) fn propagate(
         .struck(&blow, &evaluate.path, &Perturbation::none(floors))
         .map_err(|error| error.to_string())?;
     if !same(&found.blow.summary, recorded)
-        || !leads_there(&found.floors.ends, "floor_displacement", results)
+        || !leads_there(&found.floors.ends, schema::FLOOR_DISPLACEMENT, results)
     {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
-    evaluate.path = doubts.under_way(&setting.frame, evaluate.path, found.floors.velocities)?;
+    evaluate.path = doubts.under_way(frame, evaluate.path, found.floors.velocities)?;
     let scalars = OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1));
     let layout: Layout = scalars.chain(LISTS.map(|name| (name, floors))).collect();
     let mut reported = values(&layout, results);
@@ -78,7 +84,7 @@ pub(crate) fn propagate(
         mass_uncertainty,
         velocity_uncertainty,
         ..
-    } = setting.striker;
+    } = doubts.whole.strikers[plan.striker];
     let stated = [
         (Source::StrikerMass(plan.striker), mass_uncertainty),
         (Source::StrikerVelocity(plan.striker), velocity_uncertainty),
@@ -86,10 +92,10 @@ pub(crate) fn propagate(
     let sources = doubts.sources(&contact_formulas(&plan.contact), &stated);
     let mut contributions =
         doubts.contributions(&evaluate, sources, history.len(), reported, tick)?;
-    no_known_force(setting.law, recorded, &mut contributions);
-    let time_step = setting.frame.time_step;
+    no_known_force(setting.input.law, recorded, &mut contributions);
+    let time_step = frame.steps.time_step;
     // From the beginning of a step to the end of one: two times.
-    let duration = ("contact_duration", time_step / 6.0_f64.sqrt());
+    let duration = (schema::CONTACT_DURATION.name, time_step / 6.0_f64.sqrt());
     for (name, quantum) in whole_steps(time_step).into_iter().chain([duration]) {
         at_least(
             quantum,
@@ -105,8 +111,10 @@ pub(crate) fn propagate(
 /// An impact on a storey along its recorded path.
 struct RecordedStoreyImpact<'a, 'run> {
     doubts: &'a FrameUncertainty<'run>,
-    plan: &'a StoreyImpact,
+    plan: &'a Impact,
+    target: &'a StoreyTarget,
     setting: &'a Setting,
+    frame: &'a FrameSteps,
     path: FramePath,
 }
 
@@ -125,20 +133,24 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         let Self {
             doubts,
             plan,
+            target,
             setting,
+            frame: steps,
             ..
         } = self;
         let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
         let (properties, law) = doubts.with_inputs(shifts, &mut |inputs| {
             Ok((
                 stepping::run::properties(&frame, &damping, inputs)?,
-                law(&plan.contact, inputs)?,
+                contact_law(&plan.contact, inputs)?,
             ))
         })?;
-        let (mut striker, declared) = (
-            setting.striker.clone(),
-            &doubts.whole.strikers[plan.striker],
-        );
+        let declared = &doubts.whole.strikers[plan.striker];
+        let recorded_velocity = setting.input.striker_velocity;
+        let mut striker = Striker {
+            velocity: recorded_velocity,
+            ..declared.clone()
+        };
         for (source, by) in shifts {
             match source {
                 Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
@@ -152,23 +164,23 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         }
         // Blows of a row have the critical time step of the fastest.
         let fastest = Striker {
-            velocity: striker.velocity * (setting.fastest / setting.striker.velocity),
+            velocity: striker.velocity * (setting.fastest / recorded_velocity),
             ..striker.clone()
         };
         let critical_time_step =
-            properties.critical_on_impact(plan.struck, &fastest.approach(law.stiffness()));
-        let stiffness = frame.stiffness[plan.struck][plan.struck];
+            properties.critical_on_impact(target.storey, &fastest.approach(law.stiffness()));
+        let stiffness = frame.stiffness[target.storey][target.storey];
         let body = ImpactInput {
-            mass: properties.struck_mass(plan.struck),
+            mass: properties.struck_mass(target.storey),
             stiffness,
             operator_stiffness: stiffness,
             striker_mass: striker.mass,
             striker_velocity: striker.velocity,
             law,
-            ..setting.body
+            ..setting.input
         };
         let blow = Blow {
-            struck: plan.struck,
+            struck: target.storey,
             law,
             until: plan.until,
             body,
@@ -176,7 +188,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         let periods = properties.modes.periods.clone();
         let run = FrameRun {
             matrices: properties.matrices,
-            ..doubts.run(&setting.frame)
+            ..doubts.run(steps)
         };
         Ok(Inputs {
             run,

@@ -1,5 +1,5 @@
-//! Results of an impact, collected step by step: those of the striker and of what it hits, and of a frame the peaks of every floor
-//! and storey. In: the ends of steps. Out: numbers. It drives nothing.
+//! The summary of an impact, collected step by step: striker and struck degree of freedom, and for a frame the peaks of every floor and
+//! storey. In: the ends of steps. Out: numbers. It moves nothing.
 
 use crate::physics::contact::state::StepState;
 use crate::physics::frame::{drifts, shears};
@@ -32,7 +32,7 @@ impl StruckSummary {
         }
     }
 
-    /// Takes the end of a step.
+    /// Adds the end of a step.
     pub(crate) fn push<V: Vector>(&mut self, structure: &State<V>, state: &ImpactState) {
         self.impact.push(state);
         if let Some(floors) = &mut self.floors {
@@ -40,12 +40,12 @@ impl StruckSummary {
         }
     }
 
-    /// Of the struck degree of freedom.
+    /// The summary of the struck degree of freedom.
     pub(crate) fn impact(&self) -> ImpactSummary {
         self.impact.clone().finish()
     }
 
-    /// Of every floor; none of one degree of freedom.
+    /// The summary of every floor; None for one degree of freedom.
     pub(crate) const fn floors(&self) -> Option<&FloorSummary> {
         self.floors.as_ref()
     }
@@ -56,7 +56,7 @@ pub(crate) struct FloorSummary {
     time_step: f64,
     pub floor_displacement: Vec<f64>,
     pub max_drift: Vec<f64>,
-    /// At the last step's end, m and N: of the force that the recursion takes.
+    /// Storey drifts at the end of the last step, m; their shears, N, are of the effective forces of the recursion.
     pub drift: Vec<f64>,
     shear: Vec<f64>,
     storey_energy: Vec<f64>,
@@ -87,7 +87,7 @@ impl FloorSummary {
         let (mut drift, mut shear) = (vec![0.0; self.drift.len()], vec![0.0; self.drift.len()]);
         drifts(structure.displacement.as_slice(), &mut drift);
         shears(structure.force_at_computed.as_slice(), &mut shear);
-        // Σ ½(V + V₁)Δδ over the storeys is ½(R + R₁)ᵀΔX over the floors. Step 0 is where it begins.
+        // Σ ½(V + V₁)Δδ over the storeys equals ½(R + R₁)ᵀΔX over the floors. Step 0 is the start.
         if structure.step > 0 {
             for storey in 0..drift.len() {
                 let moved = drift[storey] - self.drift[storey];
@@ -126,13 +126,13 @@ impl FloorSummary {
         &self.storey_energy
     }
 
-    /// Virtual time in contact from the first touch on, s; none where there was none.
+    /// Virtual time of the first contact, s; None where there was none.
     pub(crate) fn contact_duration(&self) -> Option<f64> {
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
         (self.first_impact > 0).then_some(self.first_impact as f64 * self.time_step)
     }
 
-    /// Speed of the striker back, m/s; none where it does not move back.
+    /// Rebound speed of the striker, m/s; None where it does not move back.
     pub(crate) fn rebound_velocity(&self) -> Option<f64> {
         Some(-self.striker_velocity).filter(|back| *back > 0.0)
     }

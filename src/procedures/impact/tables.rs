@@ -1,4 +1,4 @@
-//! The table of an impact, a row a step; of a frame, a row a step and storey. In: a history. Out: a table.
+//! The table of an impact, one row per step; for a frame, one row per step and storey. In: a history. Out: a table.
 
 use std::ops::Range;
 
@@ -37,7 +37,7 @@ pub(crate) const COLUMNS: &[schema::Column] = &[
     column("tracking_indicator_m2", Dimension::AREA),
 ];
 
-/// Those of an impact on a storey besides: one row a step and storey.
+/// Further numeric columns of an impact on a storey: one row per step and storey.
 pub(crate) const STOREY_COLUMNS: &[schema::Column] = &[
     column("storey", Dimension::NUMBER),
     column("drift_m", Dimension::LENGTH),
@@ -45,7 +45,7 @@ pub(crate) const STOREY_COLUMNS: &[schema::Column] = &[
     column("storey_energy_j", Dimension::ENERGY),
 ];
 
-/// Under this name.
+/// The table under this name.
 pub(crate) fn table(name: String, history: &ImpactHistory) -> Table<'_> {
     let Some(StruckFrame { floors, .. }) = &history.frame else {
         return Table::of(name, &history.steps, impact);

@@ -2,7 +2,7 @@
 //! contributions of each source to each result. The impact is re-integrated along the recorded force–displacement path with perturbed
 //! inputs and readings; no rig is moved.
 
-use super::run::Setting;
+use super::setting::{Setting, StruckStructure};
 use crate::physics::contact::state::ContactLaw;
 use crate::physics::impact::ImpactError;
 use crate::physics::impact::summary::ImpactSummary;
@@ -10,7 +10,7 @@ use crate::physics::perturbation::Perturbation;
 use crate::physics::reintegration::hysteresis_replay::{Reading, RecordedPath};
 use crate::physics::reintegration::impact::{OUTCOMES, Outcome, foretold, rerun};
 use crate::plan::formula::{Formula, ProcedureId, Results};
-use crate::plan::{Contact, Impact, Mode, Plan, Striker};
+use crate::plan::{Contact, Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::perturbed_inputs::{
     LEADS_ELSEWHERE, out_of_bounds, uncertain_inputs, with_shifts,
 };
@@ -19,6 +19,7 @@ use crate::record::{ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
+use crate::schema::procedures::impact as schema;
 use crate::uncertainty::engine::{
     CLOSE, Contributions, Evaluate, Evaluation, Shifts, Study, Tick, Unknown,
 };
@@ -28,6 +29,7 @@ use crate::uncertainty::{InstrumentUncertainty, Source};
 #[derive(Clone, Copy)]
 pub(crate) struct ImpactUncertainty<'run> {
     plan: &'run Impact,
+    point: &'run PointTarget,
     whole: &'run Plan,
     results: &'run dyn Results,
     procedure: ProcedureId,
@@ -41,12 +43,14 @@ pub(crate) struct ImpactUncertainty<'run> {
 impl<'run> ImpactUncertainty<'run> {
     pub(crate) fn new(
         plan: &'run Impact,
+        point: &'run PointTarget,
         whole: &'run Plan,
         inputs: &Inputs<'run>,
         noise: DeclaredNoise,
     ) -> Self {
         Self {
             plan,
+            point,
             whole,
             results: inputs.results(),
             procedure: inputs.procedure(),
@@ -90,7 +94,7 @@ impl<'run> ImpactUncertainty<'run> {
         let layout: Layout = OUTCOMES
             .iter()
             .copied()
-            .chain(["critical_time_step"])
+            .chain([schema::CRITICAL_TIME_STEP.name])
             .map(|name| (name, 1))
             .collect();
         let study = Study {
@@ -132,7 +136,7 @@ impl<'run> ImpactUncertainty<'run> {
                 input.resolution,
             );
         }
-        let velocities = foretold(input, self.plan.until, setting.steps, &readings);
+        let velocities = foretold(input, self.plan.until, setting.steps().count, &readings);
         RecordedPath::under_way(
             readings,
             (&velocities, input.time_step),
@@ -147,12 +151,15 @@ impl<'run> ImpactUncertainty<'run> {
         let Impact {
             striker,
             specimen,
-            mass,
-            stiffness,
-            damping,
             contact,
             ..
         } = self.plan;
+        let PointTarget {
+            mass,
+            stiffness,
+            damping,
+            ..
+        } = self.point;
         let formulas: Vec<&Formula> = [mass, stiffness, damping]
             .into_iter()
             .chain(contact_formulas(contact))
@@ -165,7 +172,7 @@ impl<'run> ImpactUncertainty<'run> {
         let stated = [
             (Source::StrikerMass(*striker), mass_uncertainty),
             (Source::StrikerVelocity(*striker), velocity_uncertainty),
-            (Source::SpecimenMass(*specimen), self.plan.mass_uncertainty),
+            (Source::SpecimenMass(*specimen), self.point.mass_uncertainty),
         ];
         uncertain_inputs(&formulas, stated.into_iter(), self.results)
     }
@@ -183,7 +190,7 @@ impl RecordedImpact<'_, '_> {
         rerun(
             &setting.input,
             self.doubts.plan.until,
-            setting.steps,
+            setting.steps().count,
             &self.path,
             readings,
         )
@@ -197,6 +204,7 @@ impl Evaluate for RecordedImpact<'_, '_> {
     fn inputs(&self, shifts: Shifts<'_>) -> Result<Setting, String> {
         let ImpactUncertainty {
             plan,
+            point,
             whole,
             results,
             procedure,
@@ -211,7 +219,7 @@ impl Evaluate for RecordedImpact<'_, '_> {
             match source {
                 Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
                 Source::StrikerVelocity(_) => striker.velocity += by * striker.velocity_uncertainty,
-                Source::SpecimenMass(_) => heavier += by * plan.mass_uncertainty,
+                Source::SpecimenMass(_) => heavier += by * point.mass_uncertainty,
                 // Formulas follow it where they read it; the others are of the instruments.
                 _ => {}
             }
@@ -221,17 +229,20 @@ impl Evaluate for RecordedImpact<'_, '_> {
         let faster = striker.velocity / declared.velocity;
         striker.velocity = self.setting.fastest * faster;
         let mut found = with_shifts(results, shifts, &mut |results| {
-            Setting::evaluate(
+            Setting::of_point(
                 plan,
+                point,
                 &striker,
                 &mut Inputs::moved(results, procedure, lift),
                 noise,
             )
         })
         .map_err(|stop| out_of_bounds(&stop))?;
-        found.heavier(heavier);
+        found.add_mass(heavier);
         found.input.time_step = self.setting.input.time_step;
-        found.steps = self.setting.steps;
+        if let StruckStructure::Point(steps) = &mut found.structure {
+            steps.count = self.setting.steps().count;
+        }
         found.input.striker_velocity = self.setting.input.striker_velocity * faster;
         Ok(found)
     }
@@ -244,7 +255,7 @@ impl Evaluate for RecordedImpact<'_, '_> {
             values
                 .iter()
                 .copied()
-                .chain([setting.critical_time_step])
+                .chain([setting.steps().critical_time_step])
                 .collect()
         };
         Evaluation {
@@ -271,7 +282,8 @@ pub(crate) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
 
 /// Times that are told to a whole step, with the standard uncertainty of a quantum Δt, Δt/√12 (s).
 pub(crate) fn whole_steps(time_step: f64) -> [(&'static str, f64); 2] {
-    ["stop_time", "time_of_max_displacement"].map(|name| (name, time_step / 12.0_f64.sqrt()))
+    [schema::STOP_TIME, schema::TIME_OF_MAX_DISPLACEMENT]
+        .map(|kind| (kind.name, time_step / 12.0_f64.sqrt()))
 }
 
 /// Lets the time step contribute so much at least to the number at a place.
@@ -300,7 +312,7 @@ pub(crate) fn no_known_force(
     if law.force_follows_the_step(recorded.max_contact_force)
         && let Some(index) = OUTCOMES
             .iter()
-            .position(|outcome| *outcome == "max_contact_force")
+            .position(|outcome| *outcome == schema::MAX_CONTACT_FORCE.name)
     {
         contributions[index].clear();
     }

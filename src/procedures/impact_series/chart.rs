@@ -1,4 +1,4 @@
-//! The figures of a row of blows: which there are and what each shows. In: a history. Out: [`Chart`]s in SI with their captions.
+//! The figures of a series of impacts, with their captions. In: a history. Out: [`Chart`]s in SI.
 
 use super::figures;
 use crate::plan::FigureKind;
@@ -6,14 +6,14 @@ use crate::procedures::base_excitation;
 use crate::record::{Blow, EscalateHistory, FloorStep};
 use crate::report::figures::chart::Chart;
 
-/// Those of blows on one degree of freedom, in the order of a report.
+/// Figures of impacts on one degree of freedom, in the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::Blows,
     FigureKind::ForceDisplacement,
     FigureKind::Displacement,
 ];
 
-/// Those of blows on a storey.
+/// Figures of impacts on a storey.
 pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
     FigureKind::Blows,
     FigureKind::Drift,
@@ -21,7 +21,7 @@ pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
     FigureKind::Displacement,
 ];
 
-/// A figure and its caption; None where nothing was recorded for it, and of what it does not draw.
+/// A figure and its caption; None where nothing was recorded for it, or it is no figure of a series.
 pub(crate) fn chart(
     name: &str,
     history: &EscalateHistory,

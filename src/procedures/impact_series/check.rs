@@ -1,16 +1,15 @@
-//! `escalate NAME { … }`: the fields of an impact, its levels, and the condition that lets the next blow follow.
+//! `escalate NAME { … }`: the fields of an impact, its levels, and the condition for the next impact.
 
 use crate::language::check::checker::{Checker, Context, Reads};
 use crate::language::check::declarations::striker::STANDARD_GRAVITY;
 use crate::language::check::messages::{cyclic as fault, names, values};
 use crate::plan::formula::{Formula, Function, Operator};
-use crate::plan::{Between, BlowOn, Condition, Escalate, MOST_BLOWS, ProcedureKind};
+use crate::plan::{Between, Condition, Escalate, MOST_IMPACTS, ProcedureKind};
 use crate::procedures::impact;
-use crate::procedures::impact::storey_check;
 use crate::schema::Kind;
 use crate::text::source::Span;
 
-/// The fields each of which gives the levels.
+/// The fields that give the levels; exactly one of them is given.
 const LEVELS: [&str; 3] = ["speeds", "drop_heights", "energies"];
 
 pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
@@ -21,17 +20,11 @@ pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let inspect_between = checker
         .word(block, "inspect_between", "false")
         .map(|word| word == "true");
-    let blow = match storey_check::struck_frame(checker, block) {
-        Some((specimen, frame)) => {
-            storey_check::storey_impact(checker, block, specimen, frame.as_ref())
-                .map(BlowOn::Storey)
-        }
-        None => impact::check::blow(checker, block).map(BlowOn::Specimen),
-    };
+    let impact = impact::check::fields(checker, block);
     let (velocities, energies) = levels?;
     Some(ProcedureKind::Escalate(Escalate {
         own,
-        blow: blow?,
+        impact: impact?,
         velocities,
         energies,
         condition: condition?,
@@ -44,7 +37,7 @@ pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     }))
 }
 
-/// The striker's velocity of each blow: v, √(2·gn·h) or √(2E/Ms), and its energy where that is what the plan gives.
+/// The velocity of the striker in each impact: v, √(2·gn·h) or √(2E/Ms), and its energy where the plan gives energies.
 fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<Vec<Formula>>)> {
     let declared = &checker.scope.blocks[block];
     let (kind, name, head) = (declared.kind, declared.name, declared.block.head);
@@ -80,12 +73,12 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
         }
     };
     let levels = checker.quantities(block, field)?;
-    if levels.len() > MOST_BLOWS {
+    if levels.len() > MOST_IMPACTS {
         #[expect(
             clippy::cast_precision_loss,
             reason = "a list has at most 100,000 entries"
         )]
-        let (found, most) = (levels.len() as f64, MOST_BLOWS as f64);
+        let (found, most) = (levels.len() as f64, MOST_IMPACTS as f64);
         return checker.fail(values::too_many(
             "blows",
             found,
@@ -133,7 +126,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
     })
 }
 
-/// `while`: conditions on the results of a blow, by their own names.
+/// `while`: conditions on the results of an impact, by their own names.
 fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
     let own = checker.scope.blocks[block].procedure?;
     let (entry, written) = checker.field(block, "while")?;

@@ -1,21 +1,22 @@
-//! What the drivers of check and report must know of a row of blows without carrying it out. In: it. Out: facts.
+//! The facts about a series of impacts that the drivers of check and report need without carrying it out. In: the series of the plan.
+//! Out: facts.
 
 use super::chart;
-use crate::plan::{BlowOn, Escalate};
+use crate::plan::{Escalate, ImpactTarget};
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::{impact, stepping};
 
-pub(crate) fn facts(row: &Escalate) -> Facts<'_> {
-    let (blow, figures) = match &row.blow {
-        BlowOn::Specimen(blow) => (impact::facts::on_specimen(blow), chart::FIGURES),
-        BlowOn::Storey(blow) => (impact::facts::on_storey(blow), chart::STOREY_FIGURES),
+pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
+    let figures = match &series.impact.target {
+        ImpactTarget::Point(_) => chart::FIGURES,
+        ImpactTarget::Storey(_) => chart::STOREY_FIGURES,
     };
     Facts {
-        conditions: Some(&row.condition),
+        conditions: Some(&series.condition),
         frame_damping: None,
         figures,
         shared_figures: &[],
-        ..blow
+        ..impact::facts::facts(&series.impact)
     }
 }
 

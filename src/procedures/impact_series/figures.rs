@@ -1,5 +1,5 @@
-//! Charts of blows of rising energy: each blow's path and motion over each other, and what came of each against its
-//! energy. In: the history. Out: [`Chart`]s in SI.
+//! Charts of a series of impacts: the path and the motion of each, overlaid, and the response to each against its energy. In: the
+//! history. Out: [`Chart`]s in SI.
 
 use std::borrow::Cow;
 
@@ -9,10 +9,11 @@ use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
 use crate::report::figures::points::Points;
+use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 use crate::units::display::stated;
 
-/// Restoring force against displacement, blow over blow.
+/// Restoring force against displacement, one curve per impact.
 pub(crate) fn force_displacement(history: &EscalateHistory) -> Chart {
     over_each_other(
         history,
@@ -25,7 +26,7 @@ pub(crate) fn force_displacement(history: &EscalateHistory) -> Chart {
     )
 }
 
-/// Displacement against the time of each blow.
+/// Displacement against the virtual time of each impact.
 pub(crate) fn displacement(history: &EscalateHistory) -> Chart {
     let of = |step: &ImpactStep| (step.time, step.command);
     let displaced = Quantity {
@@ -35,9 +36,9 @@ pub(crate) fn displacement(history: &EscalateHistory) -> Chart {
     over_each_other(history, Quantity::time(), displaced, of)
 }
 
-/// Largest displacement, and where the specimen then rested, against the energy of the blow.
+/// Largest displacement, and the position after the impact, against its energy.
 pub(crate) fn blows(history: &EscalateHistory) -> Chart {
-    let largest = |blow: &Blow| blow.number("max_displacement");
+    let largest = |blow: &Blow| blow.number(schema::MAX_DISPLACEMENT.name);
     let peaks = history
         .blows
         .iter()
@@ -89,14 +90,15 @@ pub(crate) fn blows(history: &EscalateHistory) -> Chart {
     }
 }
 
-/// Largest drift of each storey, and what stayed of it, against the energy of the blow.
+/// Largest drift of each storey, and the drift after the impact, against its energy.
 pub(crate) fn drift(history: &EscalateHistory) -> Chart {
     let storeys = history
         .storeys()
         .next()
         .and_then(|blow| blow.floors.first())
         .map_or(0, |floors| floors.computed.len());
-    let largest = |blow: &Blow, storey: usize| blow.list("max_drift")?.get(storey).copied();
+    let largest =
+        |blow: &Blow, storey: usize| blow.list(schema::MAX_DRIFT.name)?.get(storey).copied();
     let stayed = |blow: &Blow, storey: usize| blow.rest.as_ref()?.drift().get(storey).copied();
     let points = |of: &dyn Fn(&Blow, usize) -> Option<f64>, storey: usize| -> Points {
         history
@@ -140,7 +142,7 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
     }
 }
 
-/// What moves: the specimen, or the floor that is struck.
+/// The name of the displacement: that of the specimen, or of the struck floor.
 fn displaced(history: &EscalateHistory) -> Cow<'static, str> {
     match history.storeys().next() {
         None => "Displacement X".into(),
@@ -148,10 +150,11 @@ fn displaced(history: &EscalateHistory) -> Cow<'static, str> {
     }
 }
 
-/// Labels of blows, at most: more of them hide what they are to tell.
+/// Labels of impacts, at most: more of them hide the curves.
 const MOST_LABELS: usize = 7;
 
-/// Earlier blows lighter, the last one in a colour of its own. All bear their energies, of many blows every so many and the last.
+/// One curve per impact, earlier ones lighter, the last one in a separate colour. Each is labelled with its energy; of many impacts, every
+/// n-th one and the last.
 fn over_each_other(
     history: &EscalateHistory,
     x: Quantity,
@@ -160,7 +163,7 @@ fn over_each_other(
 ) -> Chart {
     let last = history.blows.len().saturating_sub(1);
     let every = history.blows.len().div_ceil(MOST_LABELS).max(1);
-    // One just before the last would stand in its way.
+    // A label just before the last would overlap it.
     let labelled = |index: usize| {
         index == last || (index.is_multiple_of(every) && last - index >= every.div_ceil(2))
     };
@@ -194,9 +197,9 @@ fn energy(blow: &Blow) -> String {
     stated(blow.energy, Dimension::ENERGY)
 }
 
-/// From the light blue of the first to the dark one of the last but one.
+/// From light blue for the first impact to dark blue for the last but one.
 fn shade(index: usize, last: usize) -> Colour {
-    #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_IMPACTS")]
     let share = if last > 1 {
         index as f64 / (last - 1) as f64
     } else {
@@ -212,7 +215,7 @@ fn shade(index: usize, last: usize) -> Colour {
         let byte = value.round() as u8;
         byte
     };
-    // Paler than sky and darker than blue, so that neighbours are told apart.
+    // Paler than sky and darker than blue, so that neighbours can be distinguished.
     let (light, dark) = ((150, 206, 242), (0, 66, 120));
     (
         mix(light.0, dark.0),

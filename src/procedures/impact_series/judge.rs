@@ -1,39 +1,36 @@
-//! The judgement of a row of blows once striker and specimen are known: every blow is as likely to fail as its slowest or fastest.
-//! In: a row and what the plan declares. Out: faults and warnings.
+//! The check of a series of impacts against striker and specimen: the slowest must arrive, the time step must follow the fastest. In: a
+//! series and the declarations of the plan. Out: errors and warnings.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::declared::Declared;
-use crate::plan::{Between, BlowOn, Escalate};
+use crate::plan::{Between, Escalate};
 use crate::procedures::facts::Motion;
-use crate::procedures::impact::judge::{Strikers, on_specimen, on_storey};
-use crate::procedures::impact::left::PEAK;
+use crate::procedures::impact;
+use crate::procedures::impact::check::judge::Strikers;
+use crate::procedures::impact::facts::PEAK;
 
-/// Judges the blows.
 pub(crate) fn judge(
     checker: &mut Checker,
     block: usize,
-    escalate: &Escalate,
+    series: &Escalate,
     declared: &Declared<'_>,
 ) {
-    let Some(striker) = declared.striker(escalate.striker()) else {
+    let Some(striker) = declared.striker(series.impact.striker) else {
         return;
     };
     let strikers = Strikers {
-        slowest: &escalate.slowest(striker),
-        fastest: &escalate.fastest(striker),
+        slowest: &series.slowest(striker),
+        fastest: &series.fastest(striker),
     };
-    match &escalate.blow {
-        BlowOn::Specimen(blow) => on_specimen(checker, block, blow, &strikers, declared),
-        BlowOn::Storey(blow) => on_storey(checker, block, blow, &strikers, declared),
-    }
+    impact::check::judge::judge(checker, block, &series.impact, &strikers, declared);
 }
 
-/// How the row leaves the specimen to what comes next.
-pub(crate) fn left(escalate: &Escalate) -> Motion<'static> {
+/// The motion that the series leaves.
+pub(crate) fn motion(series: &Escalate) -> Motion<'static> {
     Motion {
         what: "row of blows",
         ends: PEAK,
         help: "write `between = unload`, or `unload rest { }` in between",
-        rests: escalate.between != Between::Stay,
+        rests: series.between != Between::Stay,
     }
 }

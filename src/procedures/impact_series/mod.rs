@@ -7,6 +7,8 @@ pub(crate) mod check;
 pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod judge;
+pub(crate) mod repeated_impact;
 pub(crate) mod report;
+pub(crate) mod results;
 pub(crate) mod run;
 pub(crate) mod tables;

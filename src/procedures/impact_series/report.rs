@@ -1,16 +1,18 @@
-//! The blows of an `escalate`, one row each, and on a frame what became of its storeys. In: plan and history. Out: blocks.
+//! The impacts of a series, one row each, and the storeys of a frame. In: plan and history. Out: blocks.
 
 use crate::plan::formula::ResultValue;
-use crate::plan::{BlowOn, Frame, ProcedureKind, StoreyImpact};
+use crate::plan::{Frame, Impact, ProcedureKind, StoreyTarget};
 use crate::procedures::base_excitation;
 use crate::procedures::impact::report::contact_law;
 use crate::record::{Blow, EscalateHistory, ImpactHistory, ProcedureRecord, StruckFrame};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::{Run, number};
+use crate::schema::ResultKind;
+use crate::schema::procedures::{impact, impact_series as schema};
 use crate::units::Dimension;
 
-/// Blows printed; the tables hold every one.
+/// Impacts printed; the tables hold every one.
 const PRINTED: usize = 40;
 
 pub(crate) fn table(
@@ -29,8 +31,9 @@ pub(crate) fn table(
     else {
         return;
     };
+    let impact = &planned.impact;
     if let (
-        BlowOn::Storey(impact),
+        Some(target),
         [
             Blow {
                 history:
@@ -41,9 +44,9 @@ pub(crate) fn table(
             },
             ..,
         ],
-    ) = (&planned.blow, &blows[..])
+    ) = (impact.storey(), &blows[..])
     {
-        body.push(Block::paragraph(struck(run, impact, first, frame)));
+        body.push(Block::paragraph(struck(run, impact, target, first, frame)));
         body.extend(
             frame
                 .modes
@@ -58,7 +61,7 @@ pub(crate) fn table(
             blows.len() - PRINTED
         )));
     }
-    if let BlowOn::Storey(impact) = &planned.blow {
+    if impact.storey().is_some() {
         let frame = run
             .plan
             .specimens
@@ -77,10 +80,11 @@ pub(crate) fn table(
     ));
 }
 
-/// Which floor was struck, and how it was integrated.
+/// The struck floor, and the integration.
 fn struck(
     run: &Run<'_>,
-    impact: &StoreyImpact,
+    impact: &Impact,
+    target: &StoreyTarget,
     first: &ImpactHistory,
     frame: &StruckFrame,
 ) -> String {
@@ -92,7 +96,7 @@ fn struck(
         base_excitation::report::integrated(
             base_excitation::report::frame_of(run, impact.specimen),
             impact.stepping.integrator,
-            &impact.damping,
+            &target.damping,
             &frame.damping_ratios
         ),
         time(first.time_step),
@@ -100,18 +104,22 @@ fn struck(
     )
 }
 
-/// What each storey went through in all blows, and what stayed.
+/// The largest drift of each storey over all impacts, the drift after the last, and the energy.
 fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
-    let list = |name: &str| match procedure.result(name).map(|result| &result.value) {
+    let list = |kind: ResultKind| match procedure.result(kind.name).map(|result| &result.value) {
         Some(ResultValue::List(values)) => values.as_slice(),
         _ => &[],
     };
-    let left = if procedure.result("residual_drift").is_some() {
-        "residual_drift"
+    let left = if procedure.result(schema::RESIDUAL_DRIFT.name).is_some() {
+        schema::RESIDUAL_DRIFT
     } else {
-        "final_drift"
+        schema::FINAL_DRIFT
     };
-    let (largest, stayed, energy) = (list("max_drift"), list(left), list("storey_energy"));
+    let (largest, stayed, energy) = (
+        list(schema::MAX_DRIFT),
+        list(left),
+        list(schema::STOREY_ENERGY),
+    );
     let whole = |values: &[f64]| {
         values
             .iter()
@@ -131,7 +139,7 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
         Column::numbers("Energy it took"),
     ];
     let row = |storey: usize| -> Vec<Text> {
-        let length = |name: &str, values: &[f64]| {
+        let length = |kind: ResultKind, values: &[f64]| {
             let text = |value: &f64| number::text_beside(*value, whole(largest), Dimension::LENGTH);
             let plain = || {
                 values
@@ -139,7 +147,7 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
                     .map_or_else(|| "—".to_owned(), text)
                     .into()
             };
-            base_excitation::report::known_entry(procedure, name, storey).unwrap_or_else(plain)
+            base_excitation::report::known_entry(procedure, kind, storey).unwrap_or_else(plain)
         };
         let share = |values: &[f64]| {
             let share = height(storey)
@@ -150,11 +158,11 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
         let took = energy.get(storey).map_or(0.0, |energy| *energy);
         vec![
             (storey + 1).to_string().into(),
-            length("max_drift", largest),
+            length(schema::MAX_DRIFT, largest),
             share(largest).into(),
             length(left, stayed),
             share(stayed).into(),
-            base_excitation::report::known_entry(procedure, "storey_energy", storey)
+            base_excitation::report::known_entry(procedure, schema::STOREY_ENERGY, storey)
                 .unwrap_or_else(|| {
                     number::text_beside(took, whole(energy), Dimension::ENERGY).into()
                 }),
@@ -166,12 +174,12 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
     })
 }
 
-/// Every number with its standard uncertainty where it has one, else of a column in the unit of its largest.
+/// Every number with its standard uncertainty where it has one, else in the unit of the largest of its column.
 fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
     let energy = blows.iter().map(|blow| blow.energy).fold(0.0, f64::max);
     let travel = blows
         .iter()
-        .filter_map(|blow| blow.number("max_displacement"))
+        .filter_map(|blow| blow.number(impact::MAX_DISPLACEMENT.name))
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     let shown = |value: Option<f64>, beside: f64, dimension| {
         value.map_or_else(
@@ -179,11 +187,13 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
             |value| number::text_beside(value, beside, dimension).into(),
         )
     };
-    let unloaded = procedure.result("residual_displacements").is_some();
+    let unloaded = procedure
+        .result(schema::RESIDUAL_DISPLACEMENTS.name)
+        .is_some();
     let left = if unloaded {
-        "residual_displacements"
+        schema::RESIDUAL_DISPLACEMENTS
     } else {
-        "final_displacements"
+        schema::FINAL_DISPLACEMENTS
     };
     let row = |(index, blow): (usize, &Blow)| {
         let held = match blow.held {
@@ -192,27 +202,35 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
             None if blow.rest.is_some() => "not decided",
             None => "not complete",
         };
-        let known = |list: &str, other: Text| {
+        let known = |list: ResultKind, other: Text| {
             base_excitation::report::known_entry(procedure, list, index).unwrap_or(other)
         };
         let rest = blow.rest_of_struck().map(|(displacement, _)| displacement);
         vec![
             Text::from((index + 1).to_string()),
             known(
-                "velocities",
+                schema::VELOCITIES,
                 number::text(blow.velocity, Dimension::VELOCITY).into(),
             ),
             known(
-                "blow_energies",
+                schema::BLOW_ENERGIES,
                 shown(Some(blow.energy), energy, Dimension::ENERGY),
             ),
             known(
-                "max_displacements",
-                shown(blow.number("max_displacement"), travel, Dimension::LENGTH),
+                schema::MAX_DISPLACEMENTS,
+                shown(
+                    blow.number(impact::MAX_DISPLACEMENT.name),
+                    travel,
+                    Dimension::LENGTH,
+                ),
             ),
             known(
-                "absorbed_energies",
-                shown(blow.number("absorbed_energy"), energy, Dimension::ENERGY),
+                schema::ABSORBED_ENERGIES,
+                shown(
+                    blow.number(impact::ABSORBED_ENERGY.name),
+                    energy,
+                    Dimension::ENERGY,
+                ),
             ),
             known(left, shown(rest, travel, Dimension::LENGTH)),
             Text::from(held),

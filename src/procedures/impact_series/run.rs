@@ -1,10 +1,12 @@
-//! `escalate`: blows of rising energy on one specimen. In: the blow, its levels, the condition. Out: every blow as an impact
-//! of its own, and which was the last that passed. Each decision follows from results, and they from recorded answers.
+//! `escalate`: a series of impacts of increasing energy on one specimen. In: the impact, its levels, the condition. Out: every impact, and
+//! the last one after which the condition held. Each decision follows from results, and they follow from logged readings.
 
+use super::repeated_impact::{RepeatedImpact, velocities};
+use super::results::{Left, list, number, results};
+use crate::physics::frame::Unloading;
 use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Between, Escalate, Plan};
-use crate::procedures::impact::one_impact::{Blown, Struck};
-use crate::procedures::results::{measured, result};
+use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::run::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest};
 use crate::procedures::unload::uncertainty::RestUncertainty;
@@ -13,7 +15,7 @@ use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::uncertainty::{Contribution, Source, combined, share};
+use crate::uncertainty::{Contribution, Source};
 use crate::units::Dimension;
 use crate::units::display::readable;
 use crate::verdict::{Declared, Verdict, assess_on_blow};
@@ -43,15 +45,15 @@ fn run(
     session: &mut Session<'_>,
     history: &mut EscalateHistory,
 ) -> Result<(), Stop> {
-    let (mut struck, velocities) = Struck::evaluate(plan, whole, inputs, session)?;
-    // As the plan gives them: a square of a root is not always what the root was taken of.
+    let velocities = velocities(plan, inputs)?;
+    let mut impact = RepeatedImpact::evaluate(plan, &velocities, whole, inputs, session)?;
+    // As the plan gives them: in floating point, the square of a root is not always the number itself.
     let energies = plan
         .energies
         .as_ref()
         .map(|energies| inputs.list("energies", energies))
         .transpose()?;
-    let (time_step, critical) = struck.time_steps();
-    above_critical(time_step, critical, session);
+    above_critical(impact.steps(), session);
     let home = session.guard.commanded().to_vec();
     let doubts = RestUncertainty::new(whole, inputs, session);
     let mut done = 0;
@@ -59,15 +61,13 @@ fn run(
         let given = energies
             .as_ref()
             .and_then(|energies| energies.get(index).copied());
-        let energy = given.unwrap_or_else(|| struck.energy(velocity));
-        let blown = struck.blow((index, velocity), done, session);
-        done += blown.steps;
-        let Blown {
+        let energy = given.unwrap_or_else(|| impact.energy(velocity));
+        let ImpactRun {
             results,
             history: steps,
             stop,
-            ..
-        } = blown;
+        } = impact.strike(index, velocity, done, session);
+        done += steps.steps.last().map_or(0, |last| last.step);
         history.blows.push(Blow {
             velocity,
             energy,
@@ -82,11 +82,12 @@ fn run(
         let rest = bring(
             plan.between,
             &home,
-            (&struck, &doubts.of_blow(index)),
+            impact.unloading(),
+            &doubts.of_blow(index),
             &mut done,
             session,
         )?;
-        let told = readable(energy, Dimension::ENERGY);
+        let stated = readable(energy, Dimension::ENERGY);
         if let Some(blow) = history.blows.last_mut() {
             blow.rest = Some(rest);
             let (held, reason) = decide(plan, whole, blow, inputs.results());
@@ -99,13 +100,13 @@ fn run(
             if let Some(why) = ends {
                 session.event(
                     EventKind::Remark,
-                    format!("blow {} of {told}: {why}", index + 1),
+                    format!("blow {} of {stated}: {why}", index + 1),
                 );
                 return Ok(());
             }
         }
         if plan.inspect_between && index + 1 < velocities.len() {
-            session.inspect(&format!("after blow {} of {told}", index + 1))?;
+            session.inspect(&format!("after blow {} of {stated}", index + 1))?;
         }
     }
     session.event(
@@ -115,19 +116,19 @@ fn run(
     Ok(())
 }
 
-/// Whether the condition holds after a blow, decided once the specimen is where the next one begins; else why that is not known.
+/// Whether the condition holds after an impact, assessed where the next one begins; None with the reason if that is inconclusive.
 fn decide(
     plan: &Escalate,
     whole: &Plan,
     blow: &Blow,
     before: &dyn Results,
 ) -> (Option<bool>, String) {
-    let of_blow = OfBlow {
+    let of_impact = OfImpact {
         own: plan.own,
         results: as_brought(blow, plan.between),
         before,
     };
-    let (rule, known) = (whole.decision_rule, Declared::of(whole, &of_blow));
+    let (rule, known) = (whole.decision_rule, Declared::of(whole, &of_impact));
     let parts = plan
         .condition
         .iter()
@@ -148,7 +149,7 @@ fn decide(
     }
 }
 
-/// The results of a blow, with where the specimen was brought to after it, as the results of the row name it.
+/// The results of an impact, with the position to which the specimen was brought after it, named as in the results of the series.
 fn as_brought(blow: &Blow, between: Between) -> Vec<NamedResult> {
     let mut results = blow.results.clone();
     let Some(rest) = &blow.rest else {
@@ -156,21 +157,15 @@ fn as_brought(blow: &Blow, between: Between) -> Vec<NamedResult> {
     };
     let left = Left::of(between);
     let [parts, _] = blow.doubts_of_rest().unwrap_or_default();
-    let place = told(
+    let position = number(
         left.displacement,
-        Dimension::LENGTH,
-        blow.rest_of_struck().map(|(place, _)| place),
+        blow.rest_of_struck().map(|(position, _)| position),
         parts,
     );
-    let drift = blow.storey().map(|_| {
-        list(
-            left.drift,
-            Dimension::LENGTH,
-            rest.drift(),
-            rest.doubts_of_drifts(),
-        )
-    });
-    for brought in [Some(place), drift].into_iter().flatten() {
+    let drift = blow
+        .storey()
+        .map(|_| list(left.drift, rest.drift(), rest.doubts_of_drifts()));
+    for brought in [Some(position), drift].into_iter().flatten() {
         match results
             .iter_mut()
             .find(|result| result.name == brought.name)
@@ -182,44 +177,20 @@ fn as_brought(blow: &Blow, between: Between) -> Vec<NamedResult> {
     results
 }
 
-/// What the place is called where a blow leaves the specimen: a residual one only where the load is off.
-struct Left {
-    displacement: &'static str,
-    displacements: &'static str,
-    drift: &'static str,
-}
-
-impl Left {
-    const fn of(between: Between) -> Self {
-        match between {
-            Between::Unload => Self {
-                displacement: "residual_displacement",
-                displacements: "residual_displacements",
-                drift: "residual_drift",
-            },
-            Between::Home | Between::Stay => Self {
-                displacement: "final_displacement",
-                displacements: "final_displacements",
-                drift: "final_drift",
-            },
-        }
-    }
-}
-
-/// To where the next blow begins.
+/// Brings the specimen to where the next impact begins.
 fn bring(
     between: Between,
     home: &[f64],
-    (struck, doubts): (&Struck<'_>, &RestUncertainty<'_>),
+    unloading: &Unloading,
+    doubts: &RestUncertainty<'_>,
     done: &mut u64,
     session: &mut Session<'_>,
 ) -> Result<Rest, Stop> {
     if between == Between::Unload {
         let mut steps = Vec::new();
-        let unloading = struck.unloading();
         let mut rest = to_rest(unloading.clone(), None, None, *done, session, &mut steps)?;
-        doubts.unloaded(&mut rest, &unloading, &steps);
-        // The first is where it began.
+        doubts.unloaded(&mut rest, unloading, &steps);
+        // The first step is the start.
         *done += steps.len() as u64 - 1;
         return Ok(rest);
     }
@@ -241,7 +212,7 @@ fn bring(
     Ok(rest)
 }
 
-/// Moves from one blow to the next, at most.
+/// Moves between two impacts, at most.
 pub(crate) const fn most_moves(between: Between) -> u64 {
     match between {
         Between::Stay => 0,
@@ -250,14 +221,14 @@ pub(crate) const fn most_moves(between: Between) -> u64 {
     }
 }
 
-/// The results of the blow that is just over, by the procedure they will belong to, and those before it.
-struct OfBlow<'a> {
+/// The results of the last impact, under the procedure to which they will belong, and those of earlier procedures.
+struct OfImpact<'a> {
     own: ProcedureId,
     results: Vec<NamedResult>,
     before: &'a dyn Results,
 }
 
-impl Results for OfBlow<'_> {
+impl Results for OfImpact<'_> {
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         if reference.procedure == self.own {
             return self
@@ -296,234 +267,5 @@ impl Results for OfBlow<'_> {
     }
 }
 
-/// What a blow is a procedure of.
+/// The keyword of one impact.
 const IMPACT: &str = "impact";
-
-/// The largest of a result of length over all blows, as uncertain as that of its blow.
-fn largest(blows: &[Blow], name: &'static str) -> NamedResult {
-    let found = blows
-        .iter()
-        .filter_map(|blow| Some((blow.number(name)?, blow)))
-        .filter(|(value, _)| value.is_finite());
-    let most = found.reduce(|most, next| if next.0 > most.0 { next } else { most });
-    let parts = most.map_or_else(Vec::new, |(_, blow)| contributions(blow, name));
-    told(name, Dimension::LENGTH, most.map(|(value, _)| value), parts)
-}
-
-/// The sum of a result of energy over all blows: what they share of their sources adds up before it is squared.
-fn sum(blows: &[Blow], name: &'static str, total: Option<f64>) -> NamedResult {
-    let mut parts: Vec<Contribution> = Vec::new();
-    for part in blows.iter().flat_map(|blow| contributions(blow, name)) {
-        share(&mut parts, part);
-    }
-    told(name, Dimension::ENERGY, total, parts)
-}
-
-fn contributions(blow: &Blow, name: &str) -> Vec<Contribution> {
-    let found = blow.results.iter().find(|result| result.name == name);
-    found.map_or_else(Vec::new, |result| result.contributions.clone())
-}
-
-fn told(
-    name: &'static str,
-    dimension: Dimension,
-    value: Option<f64>,
-    contributions: Vec<Contribution>,
-) -> NamedResult {
-    let result = measured(
-        name,
-        dimension,
-        value.map(|value| (value, combined(&contributions))),
-    );
-    NamedResult {
-        contributions,
-        ..result
-    }
-}
-
-/// In the order of the reference.
-fn results(history: &EscalateHistory, between: Between) -> Vec<NamedResult> {
-    let blows = &history.blows;
-    let left = Left::of(between);
-    // Each as uncertain as that of its blow.
-    let known = |name, dimension, of_blow: &str| {
-        list(
-            name,
-            dimension,
-            of(blows, of_blow),
-            by_blow(blows, |blow| contributions(blow, of_blow)),
-        )
-    };
-    let unknown =
-        |name, dimension, of_blow: &str| list(name, dimension, of(blows, of_blow), Vec::new());
-    #[expect(clippy::cast_precision_loss, reason = "at most MOST_BLOWS")]
-    let count = |held: Option<bool>| {
-        blows
-            .iter()
-            .filter(|blow| held.is_none() || blow.held == held)
-            .count() as f64
-    };
-    let energy = |name, blow: Option<&Blow>, without: Option<f64>| {
-        let parts = blow.map_or_else(Vec::new, |blow| contributions(blow, "striker_energy"));
-        told(
-            name,
-            Dimension::ENERGY,
-            blow.map(|blow| blow.energy).or(without),
-            parts,
-        )
-    };
-    let passed = blows.iter().rev().find(|blow| blow.held == Some(true));
-    let failed = blows.iter().find(|blow| blow.held == Some(false));
-    // What the first blow breaks has withstood nothing; what it left undecided is not known.
-    let nothing = blows
-        .first()
-        .filter(|first| first.held == Some(false))
-        .map(|_| 0.0);
-    let some = |values: Vec<f64>| values.into_iter().filter(|value| value.is_finite());
-    let place = |blow: &Blow| blow.rest_of_struck().map(|(displacement, _)| displacement);
-    let doubts_of_place = |blow: &Blow| {
-        blow.doubts_of_rest()
-            .map_or_else(Vec::new, |[place, _]| place)
-    };
-    let last = blows.last();
-    let absorbed = some(of(blows, "absorbed_energy")).reduce(|sum, energy| sum + energy);
-    let rests = blows
-        .iter()
-        .map(|blow| place(blow).unwrap_or(f64::NAN))
-        .collect();
-    let mut results = vec![
-        result("blows", Dimension::NUMBER, Some(count(None))),
-        result("passed", Dimension::NUMBER, Some(count(Some(true)))),
-        energy("last_passed_energy", passed, nothing),
-        energy("first_failed_energy", failed, None),
-        largest(blows, "max_displacement"),
-        told(
-            left.displacement,
-            Dimension::LENGTH,
-            last.and_then(place),
-            last.map_or_else(Vec::new, doubts_of_place),
-        ),
-        sum(blows, "absorbed_energy", absorbed),
-        list(
-            "velocities",
-            Dimension::VELOCITY,
-            blows.iter().map(|blow| blow.velocity).collect(),
-            by_blow(blows, of_velocity),
-        ),
-        list(
-            "blow_energies",
-            Dimension::ENERGY,
-            blows.iter().map(|blow| blow.energy).collect(),
-            by_blow(blows, |blow| contributions(blow, "striker_energy")),
-        ),
-        known("max_displacements", Dimension::LENGTH, "max_displacement"),
-        list(
-            left.displacements,
-            Dimension::LENGTH,
-            rests,
-            by_blow(blows, doubts_of_place),
-        ),
-        known("absorbed_energies", Dimension::ENERGY, "absorbed_energy"),
-        known("impulses", Dimension::IMPULSE, "impulse"),
-        unknown("energy_errors", Dimension::NUMBER, "energy_error"),
-    ];
-    if blows.iter().any(|blow| blow.storey().is_some()) {
-        let rest = last.and_then(|blow| blow.rest.as_ref());
-        let (drift, doubts) = rest
-            .map(|rest| (rest.drift(), rest.doubts_of_drifts()))
-            .unwrap_or_default();
-        results.extend([
-            largest_of_storeys(blows, "max_drift"),
-            list(left.drift, Dimension::LENGTH, drift, doubts),
-            sum_of_storeys(blows, "storey_energy"),
-        ]);
-    }
-    results
-}
-
-const fn list(
-    name: &'static str,
-    dimension: Dimension,
-    values: Vec<f64>,
-    contributions: Vec<Contribution>,
-) -> NamedResult {
-    NamedResult {
-        name,
-        value: ResultValue::List(values),
-        dimension,
-        contributions,
-    }
-}
-
-/// A number of every blow; NaN where a blow does not have it.
-fn of(blows: &[Blow], name: &str) -> Vec<f64> {
-    blows
-        .iter()
-        .map(|blow| blow.number(name).unwrap_or(f64::NAN))
-        .collect()
-}
-
-/// What is uncertain of a list with an entry for each blow.
-fn by_blow(blows: &[Blow], of_blow: impl Fn(&Blow) -> Vec<Contribution>) -> Vec<Contribution> {
-    let of_entry = |(entry, blow)| {
-        of_blow(blow)
-            .into_iter()
-            .map(move |part| Contribution { entry, ..part })
-    };
-    blows.iter().enumerate().flat_map(of_entry).collect()
-}
-
-/// E = ½ Ms V0²: what the velocity alone does to the energy is 2E/V0 times what it does to itself.
-fn of_velocity(blow: &Blow) -> Vec<Contribution> {
-    let parts = contributions(blow, "striker_energy").into_iter();
-    let of_speed = parts.filter(|part| matches!(part.source, Source::StrikerVelocity(_)));
-    of_speed
-        .map(|part| Contribution {
-            amount: part.amount * 0.5 * blow.velocity / blow.energy,
-            ..part
-        })
-        .collect()
-}
-
-/// The largest of each storey over all blows, as uncertain as that of its blow.
-fn largest_of_storeys(blows: &[Blow], name: &'static str) -> NamedResult {
-    let lists: Vec<(&[f64], &Blow)> = blows
-        .iter()
-        .filter_map(|blow| Some((blow.list(name)?, blow)))
-        .collect();
-    let storeys = lists.first().map_or(0, |(values, _)| values.len());
-    let (mut values, mut parts) = (Vec::new(), Vec::new());
-    for storey in 0..storeys {
-        let largest = lists.iter().reduce(|most, next| {
-            if next.0[storey] > most.0[storey] {
-                next
-            } else {
-                most
-            }
-        });
-        let Some((found, blow)) = largest else {
-            continue;
-        };
-        values.push(found[storey]);
-        parts.extend(
-            contributions(blow, name)
-                .into_iter()
-                .filter(|part| part.entry == storey),
-        );
-    }
-    list(name, Dimension::LENGTH, values, parts)
-}
-
-/// The sum of each storey over all blows: what they share of their sources adds up before it is squared.
-fn sum_of_storeys(blows: &[Blow], name: &'static str) -> NamedResult {
-    let lists = blows.iter().filter_map(|blow| blow.list(name));
-    let sum = lists
-        .map(<[f64]>::to_vec)
-        .reduce(|sum, next| sum.iter().zip(next).map(|(sum, next)| sum + next).collect());
-    let mut parts: Vec<Contribution> = Vec::new();
-    blows
-        .iter()
-        .flat_map(|blow| contributions(blow, name))
-        .for_each(|part| share(&mut parts, part));
-    list(name, Dimension::ENERGY, sum.unwrap_or_default(), parts)
-}

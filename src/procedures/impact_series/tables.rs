@@ -1,4 +1,4 @@
-//! Tables of an `escalate`: one row a blow, and on a frame one row a blow and storey. In: the history. Out: columns.
+//! Tables of a series of impacts: one row per impact, and on a frame one row per impact and storey. In: the history. Out: columns.
 
 use std::iter::once;
 
@@ -6,10 +6,12 @@ use crate::procedures::impact;
 use crate::record::{Blow, EscalateHistory, Rest};
 use crate::report::tables::{Column, Table, integers, numbers};
 use crate::schema;
+use crate::schema::ResultKind;
 use crate::schema::columns::{self, column};
+use crate::schema::procedures::impact as results;
 use crate::units::Dimension;
 
-/// The numeric columns of its blows; each blow has the table of an impact besides.
+/// The numeric columns, one row per impact; each impact also has the table of an impact.
 pub(crate) const COLUMNS: &[schema::Column] = &[
     column("blow", Dimension::NUMBER),
     columns::VELOCITY,
@@ -27,7 +29,7 @@ pub(crate) const COLUMNS: &[schema::Column] = &[
     column("rest_force_n", Dimension::FORCE),
 ];
 
-/// What each storey went through in a blow on a frame, and what stayed; each blow has the table of an impact on a storey besides.
+/// The numeric columns, one row per impact and storey; each impact also has the table of an impact on a storey.
 pub(crate) const STOREY_COLUMNS: &[schema::Column] = &[
     column("floor_displacement_m", Dimension::LENGTH),
     column("max_drift_m", Dimension::LENGTH),
@@ -35,7 +37,7 @@ pub(crate) const STOREY_COLUMNS: &[schema::Column] = &[
     column("rest_shear_n", Dimension::FORCE),
 ];
 
-/// The blows, what became of the storeys, and each blow under the name with its number.
+/// The table of the impacts, that of each impact under a numbered name, and that of the storeys.
 pub(crate) fn tables(name: String, history: &EscalateHistory) -> Vec<Table<'_>> {
     let blows = history.blows.iter().zip(1..).map(|(blow, number)| {
         let name = format!("{name}_{number}");
@@ -54,11 +56,11 @@ pub(crate) fn tables(name: String, history: &EscalateHistory) -> Vec<Table<'_>> 
         .collect()
 }
 
-/// The results of each blow, with its level and what followed.
+/// One row per impact: its level, its results, the position after it.
 pub(crate) fn rows(history: &EscalateHistory) -> Vec<Column> {
     let blows = &history.blows;
-    let of = |name: &str, result: &str| {
-        let read = |blow: &Blow| blow.number(result);
+    let of = |name: &str, result: ResultKind| {
+        let read = |blow: &Blow| blow.number(result.name);
         Column::new(
             name.into(),
             blows.iter().map(read).collect::<Vec<Option<f64>>>(),
@@ -75,15 +77,18 @@ pub(crate) fn rows(history: &EscalateHistory) -> Vec<Column> {
         integers("blow", &numbered, |number| *number),
         numbers("velocity_m_per_s", blows, |blow| blow.velocity),
         numbers("energy_j", blows, |blow| blow.energy),
-        of("max_displacement_m", "max_displacement"),
-        of("time_of_max_displacement_s", "time_of_max_displacement"),
-        of("stop_time_s", "stop_time"),
-        of("absorbed_energy_j", "absorbed_energy"),
-        of("impulse_n_s", "impulse"),
-        of("max_contact_force_n", "max_contact_force"),
-        of("contacts", "contacts"),
-        of("indentation_m", "indentation"),
-        of("energy_error", "energy_error"),
+        of("max_displacement_m", results::MAX_DISPLACEMENT),
+        of(
+            "time_of_max_displacement_s",
+            results::TIME_OF_MAX_DISPLACEMENT,
+        ),
+        of("stop_time_s", results::STOP_TIME),
+        of("absorbed_energy_j", results::ABSORBED_ENERGY),
+        of("impulse_n_s", results::IMPULSE),
+        of("max_contact_force_n", results::MAX_CONTACT_FORCE),
+        of("contacts", results::CONTACTS),
+        of("indentation_m", results::INDENTATION),
+        of("energy_error", results::ENERGY_ERROR),
         some("rest_displacement_m", |blow| {
             blow.rest_of_struck().map(|rest| rest.0)
         }),
@@ -100,7 +105,7 @@ pub(crate) fn rows(history: &EscalateHistory) -> Vec<Column> {
     ]
 }
 
-/// What each storey went through in each blow, and what stayed.
+/// One row per impact and storey: its results, the position after it.
 pub(crate) fn storeys(history: &EscalateHistory) -> Vec<Column> {
     let storeys = history
         .storeys()
@@ -111,9 +116,9 @@ pub(crate) fn storeys(history: &EscalateHistory) -> Vec<Column> {
         .zip(&history.blows)
         .flat_map(|(number, blow)| (0..storeys).map(move |storey| (number, blow, storey)))
         .collect();
-    let of = |name: &str, result: &str| {
+    let of = |name: &str, result: ResultKind| {
         let read =
-            |(_, blow, storey): &(u64, &Blow, usize)| blow.list(result)?.get(*storey).copied();
+            |(_, blow, storey): &(u64, &Blow, usize)| blow.list(result.name)?.get(*storey).copied();
         Column::new(
             name.into(),
             rows.iter().map(read).collect::<Vec<Option<f64>>>(),
@@ -132,9 +137,9 @@ pub(crate) fn storeys(history: &EscalateHistory) -> Vec<Column> {
         integers("blow", &rows, |(number, ..)| *number),
         integers("storey", &rows, |(.., storey)| *storey as u64 + 1),
         numbers("energy_j", &rows, |(_, blow, _)| blow.energy),
-        of("floor_displacement_m", "floor_displacement"),
-        of("max_drift_m", "max_drift"),
-        of("storey_energy_j", "storey_energy"),
+        of("floor_displacement_m", results::FLOOR_DISPLACEMENT),
+        of("max_drift_m", results::MAX_DRIFT),
+        of("storey_energy_j", results::STOREY_ENERGY),
         rest("rest_displacement_m", |rest| rest.displacement.clone()),
         rest("rest_force_n", |rest| rest.force.clone()),
         rest("rest_drift_m", Rest::drift),

@@ -1,4 +1,4 @@
-//! `inspect`: a person looks at the specimen while the rig stays where it is. What was said is an event of the record.
+//! `inspect`: the operator examines the specimen while the rig holds its position. The answer is an event of the record.
 
 use crate::record::History;
 use crate::run::Performed;

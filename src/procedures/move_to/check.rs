@@ -1,16 +1,14 @@
 //! `move NAME { … }`
 
 use crate::language::check::checker::Checker;
+use crate::plan::procedure::declaration::reader;
+use crate::plan::procedure::move_to::move_fields;
 use crate::plan::{Move, ProcedureKind};
+use crate::procedures::read_field::ReadField;
 
 pub fn move_block(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     checker.specimen_needed(block);
-    let (to, speed) = (
-        checker.quantity(block, "to"),
-        checker.optional(block, "speed"),
-    );
-    Some(ProcedureKind::Move(Move {
-        to: to?,
-        speed: speed?,
-    }))
+    read(checker, block).map(ProcedureKind::Move)
 }
+
+move_fields!(reader);

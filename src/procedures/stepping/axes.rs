@@ -1,5 +1,5 @@
-//! Several axes in one step: how each was followed, and how they are reported to whoever watches. In: targets, readings, the
-//! end of a step. Out: numbers of each axis. It drives nothing.
+//! Several axes in one step: the tracking of each, and the report to an observer of the run. In: targets, readings, the end of a step.
+//! Out: numbers of each axis. It moves nothing.
 
 use crate::physics::integrator::solver::State;
 use crate::physics::matrix::Vector;
@@ -7,7 +7,7 @@ use crate::physics::tracking::monitor::{Monitor, Tracking};
 use crate::rig::Reading;
 use crate::run::{AxisReport, StepReport};
 
-/// The end of a step, an entry an axis.
+/// The end of a step, one entry per axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AxesState<'a> {
     pub step: u64,
@@ -43,7 +43,7 @@ impl<'a> AxesState<'a> {
 pub(crate) struct Monitors(Vec<Monitor>);
 
 impl Monitors {
-    /// `taken` is what the recursion would take for the forces at the commands, N.
+    /// `taken` are the effective forces of the recursion at the commands, N.
     pub(crate) fn new(commanded: &[f64], reading: &Reading, taken: &[f64]) -> Self {
         let axes = commanded.iter().zip(
             reading
@@ -57,12 +57,12 @@ impl Monitors {
         Self(axes.map(monitor).collect())
     }
 
-    /// What each axis has come to so far.
+    /// The tracking of each axis so far.
     pub(crate) fn tracking(&self) -> Vec<Tracking> {
         self.0.iter().map(Monitor::tracking).collect()
     }
 
-    /// What each axis has come to; `taken` is what the recursion takes for the forces at the commands, N.
+    /// Adds a step; `taken` are the effective forces of the recursion at the commands, N.
     pub(crate) fn take(
         &mut self,
         commanded: &[f64],

@@ -1,14 +1,17 @@
-//! How a procedure steps: the fields that an impact, an impact on a storey and a shake share, and what the steps of a frame
-//! must be held against. In: a block. Out: its steps, or what is wrong with them. It knows no striker and no ground.
+//! The fields that impacts and shakes share, and the checks of the steps of a frame. In: a block. Out: its stepping, or errors. It knows
+//! no striker and no ground.
 
 use super::{integrator_check, mode_check};
-use crate::language::check::checker::Checker;
+use crate::language::check::checker::{Checker, Context};
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::expressions::fields::whole as whole_number;
 use crate::language::check::messages::{frames as fault, methods, values, whole};
 use crate::physics::frame::storeys_of;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::formula::{Formula, NoResults, Operator};
-use crate::plan::{Contact, Frame, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in};
-use crate::procedures::impact;
+use crate::plan::{
+    Contact, Frame, InspectTrigger, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in,
+};
 
 /// The fields of a block that steps; where it gives no time step, the critical one over `finer`.
 pub fn stepping(
@@ -54,7 +57,7 @@ pub fn stepping(
             "leave it out, or write `integrator = tangent`",
         ));
     }
-    let inspect = impact::check::triggers(checker, block);
+    let inspect = triggers(checker, block);
     Some(Stepping {
         integrator: integrator?,
         allow_unstable: allow_unstable?,
@@ -67,7 +70,7 @@ pub fn stepping(
     })
 }
 
-/// The steps of a frame, and how long they go on: s, where it is known before the run.
+/// The steps of a frame, and their duration, s, where it is known before the run.
 pub struct FrameSteps<'a> {
     pub specimen: usize,
     pub frame: &'a Frame,
@@ -76,8 +79,8 @@ pub struct FrameSteps<'a> {
     pub duration: Option<f64>,
 }
 
-/// What the time step of a frame must be held against, as far as it is known before the run: stability, the critical step
-/// (of the modes, or `critical`'s), the number of steps. Gives the frame and the step (s) where more can be said of them.
+/// Checks the time step of a frame as far as it is known before the run: stability, the critical step (of the modes, or `critical`'s),
+/// the number of steps. Gives the properties of the frame and the step (s) where further checks are possible.
 pub fn judge(
     checker: &mut Checker,
     block: usize,
@@ -85,13 +88,13 @@ pub fn judge(
     critical: impl FnOnce(&FrameProperties) -> Option<f64>,
 ) -> Option<(FrameProperties, f64)> {
     let FrameSteps {
-        specimen,
         frame,
         damping,
         stepping,
         duration,
+        ..
     } = *steps;
-    mode_check::storeys_damped_twice(checker, block, (specimen, stepping.mode, damping), frame);
+    mode_check::storeys_damped_twice(checker, block, steps);
     let head = checker.scope.blocks[block].block.head;
     let at = |checker: &Checker, field| {
         checker
@@ -146,7 +149,7 @@ pub fn judge(
             methods::unstable(step_at, stepping.integrator, step, limit)
         });
     }
-    impact::check::beyond_duration(checker, block, Some(step), duration);
+    beyond_duration(checker, block, Some(step), duration);
     if let Some(critical) = critical.filter(|critical| step > *critical) {
         checker
             .diagnostics
@@ -166,4 +169,63 @@ pub fn judge(
         ));
     }
     Some((properties, step))
+}
+
+/// Refuses a time step that is longer than the run; both times in s.
+pub(crate) fn beyond_duration(
+    checker: &mut Checker,
+    block: usize,
+    step: Option<f64>,
+    duration: Option<f64>,
+) {
+    let Some((step, duration)) = step
+        .zip(duration)
+        .filter(|(step, duration)| step > duration)
+    else {
+        return;
+    };
+    let head = checker.scope.blocks[block].block.head;
+    let at = |field| {
+        checker
+            .field(block, field)
+            .map_or(head, |(_, entry)| entry.value.span)
+    };
+    checker.diagnostics.push(values::step_beyond_duration(
+        at("time_step"),
+        step,
+        at("duration"),
+        duration,
+    ));
+}
+
+/// The inspection triggers of a block.
+fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigger>> {
+    let Some((entry, _)) = checker.field(block, "inspect") else {
+        return Some(Vec::new());
+    };
+    let place = checker.context_of(block, entry);
+    let chosen = checker.choices(block, "inspect")?;
+    let triggers: Vec<Option<InspectTrigger>> = chosen
+        .iter()
+        .map(|chosen| trigger(checker, chosen, place))
+        .collect();
+    triggers.into_iter().collect()
+}
+
+fn trigger<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Context,
+) -> Option<InspectTrigger> {
+    Some(match chosen.variant.name {
+        "every" => InspectTrigger::Every(
+            checker
+                .constant_argument(chosen, "steps", place)
+                .and_then(whole_number)?,
+        ),
+        "force_drop" => {
+            InspectTrigger::ForceDrop(checker.constant_argument(chosen, "fraction", place)?)
+        }
+        _ => InspectTrigger::At(checker.constant_argument(chosen, "time", place)?),
+    })
 }

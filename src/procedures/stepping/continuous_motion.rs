@@ -1,48 +1,48 @@
-//! Actuators that do not stop at the steps: they follow smooth paths together, and are read as they pass their targets. In: step
-//! by step the places to pass and the velocities to pass them with. Out: the reading there. It knows no equation of motion.
+//! Continuous motion: the actuators do not stop at the steps. They follow smooth paths together, and are read as they pass their
+//! targets. In: for each step the waypoints with their velocities. Out: the reading there. It knows no equation of motion.
 //!
-//! A step of Δt takes `time_scale`·Δt of rig time. While its reading is made durable and its targets are computed the
-//! actuators move on along parabolas, with the place and velocity that they have and the mean acceleration of the step before:
-//! nothing in it knows the reading. Where a blow has its share in that acceleration it is no trend, and they go on as fast as they are.
-//! For the rest of the step each follows the cubic from there to its target, which it passes with the velocity that the
-//! integrator foretells there, over the time scale. Place and velocity are continuous everywhere (the guard refuses a path that
-//! does not join), and the path is of third order. The last reading is made at the target.
+//! A step of Δt takes `time_scale`·Δt of laboratory time. While its reading is made durable and its targets are computed, the
+//! actuators continue along parabolas, from their position and velocity with the mean acceleration of the step before: this part does
+//! not depend on the reading. If a contact force contributed to that acceleration, it is no trend, and the velocity stays constant.
+//! For the rest of the step each actuator follows a cubic to its target, which it passes with the velocity that the integrator
+//! predicts there, divided by the time scale. Position and velocity are continuous everywhere (the guard refuses a path that does not
+//! join). The last reading is made at the target.
 
 use crate::physics::tracking::trajectory::Path;
 use crate::rig::{Reading, RigFault};
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 
-/// Readings while they are not, and on the way to them: each is held against the limits.
+/// Readings while the targets are not known, and on the path to them: each is compared with the limits.
 const READINGS: (usize, usize) = (1, 4);
-/// Share of a step in which its target is not known yet.
+/// Fraction of a step in which its target is not known yet.
 const AHEAD: f64 = 0.2;
-/// Steps' time in which the actuators come to rest at the end.
+/// Duration of the braking at the end, in steps.
 const BRAKING: f64 = 5.0;
 
-/// Where an actuator is to pass.
+/// The point that an actuator passes at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Passing {
     /// m
     pub place: f64,
     /// m/s, of virtual time.
     pub velocity: f64,
-    /// Whether a blow has its share in the velocity.
+    /// Whether a contact force contributes to the velocity.
     pub struck: bool,
 }
 
-/// An actuator as the last path left it.
+/// The motion of an actuator at the end of the last path.
 #[derive(Clone, Copy)]
 struct Motion {
     /// m
     place: f64,
     /// m/s, of rig time.
     velocity: f64,
-    /// To go on with, m/s²: the mean over the last step.
+    /// Mean over the last step, m/s²: the next parabola has it.
     acceleration: f64,
 }
 
-/// All actuators of a rig, under way.
+/// All actuators of a rig in continuous motion.
 pub(crate) struct Gliding {
     axes: Vec<Motion>,
     time_scale: f64,
@@ -51,7 +51,7 @@ pub(crate) struct Gliding {
 }
 
 impl Gliding {
-    /// From rest at these places (m); `time_step` of virtual time, s.
+    /// From rest at these positions (m); `time_step` of virtual time, s.
     pub(crate) fn from_rest(places: &[f64], time_scale: f64, time_step: f64) -> Self {
         let axes = places
             .iter()
@@ -68,11 +68,11 @@ impl Gliding {
         }
     }
 
-    /// One step: the reading at its end, or where it broke a limit, and what ends the run then. `foretell` is asked while the actuators
-    /// are on their way.
+    /// One step: the reading at its end; or the one that violated a limit, with the stop that follows. `predict` is called while the
+    /// actuators move.
     pub(crate) fn step(
         &mut self,
-        foretell: impl FnOnce() -> Vec<Passing>,
+        predict: impl FnOnce() -> Vec<Passing>,
         session: &mut Session<'_>,
     ) -> Result<(Reading, Option<Stop>), Stop> {
         let seconds = AHEAD * self.step_time;
@@ -105,7 +105,7 @@ impl Gliding {
         let paths: Vec<Path> = self
             .axes
             .iter_mut()
-            .zip(ahead.iter().zip(foretell()))
+            .zip(ahead.iter().zip(predict()))
             .map(on)
             .collect();
         follow(&paths, READINGS.1, session)
@@ -126,7 +126,7 @@ impl Gliding {
     }
 }
 
-/// Follows paths; the reading at their end, or the one that broke a limit with what ends the run then.
+/// Follows paths: the reading at their end; or the one that violated a limit, with the stop that follows.
 fn follow(
     paths: &[Path],
     readings: usize,

@@ -6,13 +6,15 @@ use super::run::FrameSteps;
 use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::plan::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
-use crate::plan::{Frame, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyImpact};
+use crate::plan::{Frame, Impact, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyTarget};
 use crate::procedures::perturbed_inputs::{out_of_bounds, uncertain_inputs, with_shifts};
 use crate::record::NamedResult;
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use crate::schema::ResultKind;
+use crate::schema::procedures::base_excitation as schema;
 use crate::uncertainty::engine::{CLOSE, Contributions, Evaluate, Shifts, Study, Tick, Unknown};
 use crate::uncertainty::{InstrumentUncertainty, Source};
 
@@ -59,18 +61,20 @@ impl<'run> FrameUncertainty<'run> {
     }
 
     pub fn of_blow(
-        plan: &'run StoreyImpact,
+        plan: &'run Impact,
+        target: &'run StoreyTarget,
         whole: &'run Plan,
         inputs: &Inputs<'run>,
         session: &Session<'_>,
     ) -> Self {
-        let StoreyImpact {
-            specimen,
+        let Impact {
+            specimen, stepping, ..
+        } = plan;
+        let StoreyTarget {
             damping,
             damping_uncertainty,
-            stepping,
             ..
-        } = plan;
+        } = target;
         Self::new(
             (*specimen, damping, *damping_uncertainty, stepping),
             whole,
@@ -261,8 +265,8 @@ impl<'run> FrameUncertainty<'run> {
             integrator: self.stepping.integrator,
             i_modification: self.stepping.i_modification,
             tangents: steps.tangents,
-            time_step: steps.time_step,
-            steps: steps.steps,
+            time_step: steps.steps.time_step,
+            steps: steps.steps.count,
             force_noise: self.noise.force,
             resolution: self.noise.resolution,
             gliding: matches!(self.stepping.mode, Mode::Continuous { .. }),
@@ -301,7 +305,7 @@ impl<'run> FrameUncertainty<'run> {
         let stiffness = &steps.properties.matrices.stiffness;
         let path = FramePath::new(
             readings,
-            (velocities, steps.time_step),
+            (velocities, steps.steps.time_step),
             stiffness,
             self.noise.force,
             self.noise.resolution,
@@ -310,16 +314,20 @@ impl<'run> FrameUncertainty<'run> {
     }
 }
 
-/// Whether the floors came to what is told of them; `displacement` names the result with the floors' largest.
-pub(crate) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResult]) -> bool {
-    // The largest shear is told without what noise adds to it: the drifts say that the way is the recorded one.
+/// Whether the floors came to the recorded results; `displacement` is the result with the peaks of the floors.
+pub(crate) fn leads_there(
+    floors: &Floors,
+    displacement: ResultKind,
+    results: &[NamedResult],
+) -> bool {
+    // The largest shear is reported without the part of noise: the drifts show whether the path is the recorded one.
     let lists = [
-        (displacement, floors.max_displacement.as_slice()),
-        ("max_drift", &floors.max_drift),
-        ("final_drift", &floors.final_drift),
+        (displacement.name, floors.max_displacement.as_slice()),
+        (schema::MAX_DRIFT.name, &floors.max_drift),
+        (schema::FINAL_DRIFT.name, &floors.final_drift),
     ];
     lists.into_iter().all(|(name, found)| {
-        let told = match told
+        let recorded = match results
             .iter()
             .find(|result| result.name == name)
             .map(|result| &result.value)
@@ -329,6 +337,6 @@ pub(crate) fn leads_there(floors: &Floors, displacement: &str, told: &[NamedResu
             None => return false,
         };
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
-        told.len() == found.len() && told.iter().zip(found).all(near)
+        recorded.len() == found.len() && recorded.iter().zip(found).all(near)
     })
 }

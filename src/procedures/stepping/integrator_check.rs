@@ -1,14 +1,13 @@
-//! `integrator = …` of a procedure that integrates, and whether its time step is stable. In: a block. Out: the
-//! integrator, or why it cannot be.
+//! `integrator = …` of a procedure that integrates, and the stability of its time step. In: a block. Out: the integrator, or an error.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{frames, methods as fault};
 use crate::physics::integrator::stability::{Met, longest_stable_step};
-use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, Specimen, Striker};
-use crate::procedures::impact::check::time_step_before_the_run;
+use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, PointTarget, Specimen, Striker};
+use crate::procedures::impact::check::judge::time_step_before_the_run;
 
-/// The integrator a block names. Else the tangent form; in continuous mode, where the secant of two readings would take
-/// what a damper does for stiffness, explicit Newmark, as far as the contact law can do without the tangent.
+/// The integrator that a block names, else the tangent form. In continuous mode the secant of two readings would include the force of a
+/// damper: there the default is explicit Newmark, if the contact law does not need the tangent.
 pub fn integrator(
     checker: &mut Checker,
     block: usize,
@@ -35,8 +34,8 @@ pub fn integrator(
     })
 }
 
-/// Laws that find the instant of a blow inside a step go by the tangent's prediction of the force there: an integrator
-/// that imposes before it solves has none.
+/// Refuses a contact law that finds the instant of contact inside a step by the tangent's prediction of the force, with an integrator
+/// that imposes the displacement before it solves.
 pub fn meets_the_contact(
     checker: &mut Checker,
     block: usize,
@@ -66,18 +65,19 @@ pub fn meets_the_contact(
     ))
 }
 
-/// The longest stable step against the plan's, as far as both are known before the run: of the stiffness the procedure
-/// starts from, and of what a virtual specimen is.
+/// Compares the time step with the longest stable one, as far as both are known before the run: for the initial stiffness of the
+/// procedure, and for the model of a virtual specimen.
 pub fn stable(
     checker: &mut Checker,
     block: usize,
     impact: &Impact,
+    point: &PointTarget,
     striker: &Striker,
     specimen: Option<&Specimen>,
 ) {
     let (Some(step), Some(mass)) = (
         time_step_before_the_run(impact, striker),
-        impact.mass.constant(),
+        point.mass.constant(),
     ) else {
         return;
     };
@@ -86,11 +86,11 @@ pub fn stable(
         .filter(|_| virtual_rig)
         .and_then(|specimen| specimen.behaviour.as_ref());
     let behaves = specimen.map_or(0.0, Behaviour::largest_stiffness);
-    let assumed = impact.stiffness.constant();
+    let assumed = point.stiffness.constant();
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
     let met = Met::one(
         mass,
-        impact.damping.constant().unwrap_or(0.0),
+        point.damping.constant().unwrap_or(0.0),
         stiffest,
         assumed.unwrap_or(stiffest),
     );

@@ -1,10 +1,11 @@
-//! `mode = …` of a procedure that integrates: whether the actuator stops at every target. In: a block. Out: the mode, or
-//! why it cannot be, and a warning where damping would count twice.
+//! `mode = …` of a procedure that integrates: whether the actuator stops at every target. In: a block. Out: the mode, or an error, and a
+//! warning where damping would count twice.
 
+use super::check::FrameSteps;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::methods as fault;
 use crate::language::syntax::ast::{Argument, ExprKind};
-use crate::plan::{Dialect, Frame, Impact, Mode, ShakeDamping, Specimen};
+use crate::plan::{Dialect, Impact, Mode, PointTarget, ShakeDamping, Specimen};
 use crate::schema::Kind;
 
 /// The mode a block names, else step and pause.
@@ -33,8 +34,8 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
     Some(Mode::Continuous { time_scale })
 }
 
-/// The dialect of a real rig that follows no path, and gives no displacement and force of one instant: any but `native`. What is no
-/// dialect is another fault.
+/// The protocol of a real rig that follows no path and does not read displacement and force at one instant: any except `native`. An
+/// unknown one is reported elsewhere.
 pub fn stops_at_targets<'a>(checker: &Checker<'a>, rig: usize) -> Option<&'a str> {
     let (_, written) = checker
         .field(rig, "link")
@@ -60,12 +61,10 @@ pub fn damping_twice(
     checker: &mut Checker,
     block: usize,
     impact: &Impact,
+    point: &PointTarget,
     specimen: Option<&Specimen>,
 ) {
-    let computed = impact
-        .damping
-        .constant()
-        .is_none_or(|damping| damping > 0.0);
+    let computed = point.damping.constant().is_none_or(|damping| damping > 0.0);
     let felt = specimen.is_some_and(|specimen| specimen.damping > 0.0);
     if !(computed && felt && matches!(impact.stepping.mode, Mode::Continuous { .. })) {
         return;
@@ -86,27 +85,26 @@ pub fn damping_twice(
     }
 }
 
-/// The same of a frame, whose damping is that of its storeys.
-pub fn storeys_damped_twice(
-    checker: &mut Checker,
-    block: usize,
-    (specimen, mode, damping): (usize, Mode, &ShakeDamping),
-    frame: &Frame,
-) {
-    let computed = match damping {
+/// The same for a frame, whose storeys have damping.
+pub fn storeys_damped_twice(checker: &mut Checker, block: usize, steps: &FrameSteps<'_>) {
+    let computed = match steps.damping {
         ShakeDamping::Rayleigh(ratio) => ratio.constant().is_none_or(|ratio| ratio > 0.0),
         ShakeDamping::Modal(ratios) => ratios
             .iter()
             .any(|ratio| ratio.constant().is_none_or(|ratio| ratio > 0.0)),
     };
-    let felt = frame.storeys.iter().any(|storey| storey.damping > 0.0);
-    if !(computed && felt && matches!(mode, Mode::Continuous { .. })) {
+    let felt = steps
+        .frame
+        .storeys
+        .iter()
+        .any(|storey| storey.damping > 0.0);
+    if !(computed && felt && matches!(steps.stepping.mode, Mode::Continuous { .. })) {
         return;
     }
     let of_specimen = checker
         .scope
         .of_kind(Kind::Specimen)
-        .nth(specimen)
+        .nth(steps.specimen)
         .map(|(index, _)| index);
     let at = |block, field| checker.field(block, field).map(|(_, entry)| entry.span);
     let felt = of_specimen.and_then(|index| at(index, "storeys"));

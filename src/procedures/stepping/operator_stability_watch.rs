@@ -1,13 +1,13 @@
-//! Whether a specimen is stiffer than its integrator takes it for (physics, section 11): α-OS is stable for every step only while
-//! the specimen is not stiffer than its `K_I`, and explicit Newmark up to 2/ω of what it is at its stiffest. In: what is imposed and
-//! read, step by step. Out: one remark. It stops nothing.
+//! Observes a specimen that is stiffer than its integrator assumes (physics, section 11): α-OS is stable for every step only while the
+//! specimen is not stiffer than `K_I`, and explicit Newmark up to 2/ω of its largest stiffness. In: the readings, step by step. Out: one
+//! observation. It stops nothing.
 
 use super::start::Start;
 use crate::physics::frame::{FrameMatrices, drifts, shears, storeys_of};
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::plan::{Integrator, Mode, Stepping};
-use crate::procedures::damping_sweep::rate_separated_stiffness::OnTheWay;
+use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit;
 use crate::record::EventKind;
 use crate::rig::Reading;
 use crate::run::session::{Session, first};
@@ -15,15 +15,15 @@ use crate::text::diagnostic::Code;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// A secant tells where its change of displacement is this many times what noise and quanta make of it, and is believed beyond
-/// `K_I` by so many of its standard deviations: fewer, and the noise of many steps becomes a stiffness.
+/// A secant counts if its change of displacement is this many standard deviations of the readings, and exceeds `K_I` by as many of its
+/// own. With fewer, the noise of many steps appears as a stiffness.
 const SURE: f64 = 5.0;
 
-/// A response that alternates is judged where every other place is farther out by more than this share of a step: less, and what
-/// a specimen creeps or relaxes by at one place becomes a stiffness. Past its limit by a hundredth, explicit Newmark grows by more.
+/// An alternating response is judged where every other position is farther out by more than this fraction of a step. With less, creep or
+/// relaxation appears as a stiffness. Explicit Newmark, one hundredth beyond its limit, grows by more.
 const GROWN: f64 = 0.05;
 
-/// What a step of one spring, or of one storey, is judged by.
+/// The quantities by which the steps of one spring, or of one storey, are judged.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Judged {
     pub integrator: Integrator,
@@ -35,11 +35,11 @@ pub(crate) struct Judged {
     pub time_step: f64,
     /// Standard deviation of a force, N, and of a displacement, m.
     pub noise: (f64, f64),
-    /// Whether it is read on the way: dampers are in the force then.
+    /// Whether it is read in motion: the force then includes dampers.
     pub moving: bool,
 }
 
-/// Of a reading: what is lost of it to rounding, in the numerics as on the way to them.
+/// Relative rounding error of a reading.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 #[derive(Debug)]
@@ -52,12 +52,12 @@ pub(crate) struct Stiffer {
     moved: f64,
     /// Whether the last step turned.
     turned: bool,
-    way: OnTheWay,
-    said: bool,
+    in_motion: RateSeparatedFit,
+    observed: bool,
 }
 
 impl Stiffer {
-    /// `first` is what was read before the first step, m and N.
+    /// `first` is the reading before the first step, m and N.
     pub(crate) fn new(judged: Judged, first: (f64, f64)) -> Self {
         Self {
             judged,
@@ -65,30 +65,30 @@ impl Stiffer {
             before: first,
             moved: 0.0,
             turned: false,
-            way: OnTheWay::default(),
-            said: false,
+            in_motion: RateSeparatedFit::default(),
+            observed: false,
         }
     }
 
-    /// Takes a reading, m and N; says once that the specimen is stiffer than the step is stable for. `what` names it.
-    /// Where a blow fell in the step (`struck`) the velocity is none that readings tell.
+    /// Adds a reading, m and N; records once that the specimen, called `name`, is stiffer than the stability of the step allows. In a step
+    /// with contact (`struck`) the readings give no velocity.
     pub(crate) fn take(
         &mut self,
         reading: (f64, f64),
         struck: bool,
-        what: &str,
+        name: &str,
         session: &mut Session<'_>,
     ) {
         if struck {
-            self.way.struck();
+            self.in_motion.restart();
         }
-        let text = self.judge(reading, what);
+        let text = self.judge(reading, name);
         if let Some(text) = text {
             session.event(EventKind::Remark, text);
         }
     }
 
-    fn judge(&mut self, reading: (f64, f64), what: &str) -> Option<String> {
+    fn judge(&mut self, reading: (f64, f64), name: &str) -> Option<String> {
         let Judged {
             integrator,
             operator_stiffness,
@@ -96,15 +96,15 @@ impl Stiffer {
             time_step,
             ..
         } = self.judged;
-        if integrator == Integrator::Tangent || self.said {
+        if integrator == Integrator::Tangent || self.observed {
             return None;
         }
         let (measured, spread) = if self.judged.moving {
-            self.way.take(reading, self.judged.noise)
+            self.in_motion.add(reading, self.judged.noise)
         } else {
             self.secant(reading)
         }?;
-        // Rounding makes a secant of a move too small to tell; on the way velocities are differences too.
+        // The secant of a very small move is rounding; in motion the velocities are differences too.
         let rounding = if self.judged.moving { 1e-4 } else { 1e-9 } * operator_stiffness;
         let stiffness = |value| readable(value, Dimension::STIFFNESS);
         let time = |value| readable(value, Dimension::TIME);
@@ -114,16 +114,16 @@ impl Stiffer {
                 &Met::one(1.0 / mobility, 0.0, stiffness, operator_stiffness),
             )
         };
-        // Explicit Newmark is bound by what the specimen is, not by what it was taken for.
+        // The stiffness of the specimen, not the assumed one, limits explicit Newmark.
         if integrator == Integrator::Explicit {
             let sure = measured - SURE * spread - rounding;
             if sure <= 0.0 || time_step <= limit(sure) {
                 return None;
             }
-            self.said = true;
+            self.observed = true;
             let limit = time(limit(measured));
             return Some(format!(
-                "{}: {what} reached {}: explicit Newmark is stable up to {limit} there, and the time step is {}",
+                "{}: {name} reached {}: explicit Newmark is stable up to {limit} there, and the time step is {}",
                 Code::StifferThanOperator,
                 stiffness(measured),
                 time(time_step),
@@ -133,18 +133,18 @@ impl Stiffer {
             return None;
         }
         let limit = limit(measured);
-        // One that takes it up with damping of its own is stable all the same.
+        // Numerical damping can compensate: then every step is stable.
         if limit == f64::INFINITY {
             return None;
         }
-        self.said = true;
+        self.observed = true;
         let so = if time_step > limit {
             "which it is beyond"
         } else {
             "which it is within"
         };
         Some(format!(
-            "{}: {what} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",
+            "{}: {name} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",
             Code::StifferThanOperator,
             stiffness(measured),
             stiffness(operator_stiffness),
@@ -155,9 +155,9 @@ impl Stiffer {
 }
 
 impl Stiffer {
-    /// Stiffness of the last step with its standard deviation, N/m; None where it moved too little to tell, or turned: friction
-    /// turns with it. Of a response that turns at every step, as an unstable one does, the last reading but one is as far from
-    /// friction: both came the same way, if what is between them has grown enough to tell.
+    /// Secant stiffness of the last step with its standard deviation, N/m; None where the move is too small, or reversed: friction
+    /// reverses with it. In a response that reverses at every step, as an unstable one does, the last reading but one has the same
+    /// friction: both were reached in the same direction, if the amplitude has grown enough.
     fn secant(&mut self, reading: (f64, f64)) -> Option<(f64, f64)> {
         let noise = self.judged.noise;
         let moved = reading.0 - self.last.0;
@@ -165,41 +165,42 @@ impl Stiffer {
         let turned = moved * self.moved <= 0.0;
         let alternates = turned && self.turned && !first;
         let from = if alternates { self.before } else { self.last };
-        let way = reading.0 - from.0;
-        // It goes on beyond where it turned last but one: both turned, and each step is longer than the one before.
-        let tells = if alternates {
-            way * moved > 0.0 && way.abs() > GROWN * moved.abs()
+        let change = reading.0 - from.0;
+        // The position is beyond that of the last reversal but one: each step is longer than the one before.
+        let counts = if alternates {
+            change * moved > 0.0 && change.abs() > GROWN * moved.abs()
         } else {
             !turned
         };
-        let measured = (reading.1 - from.1) / way;
+        let measured = (reading.1 - from.1) / change;
         (self.before, self.last, self.moved, self.turned) =
             (self.last, reading, moved, turned && !first);
-        // A reading is no better than its last digits.
+        // A reading has at least the error of its last digits.
         let rounded =
             |noise: f64, read: f64, other: f64| noise.max(ROUNDING * read.abs().max(other.abs()));
         let force = rounded(noise.0, reading.1, from.1);
         let spread = std::f64::consts::SQRT_2
             * force.hypot(measured * rounded(noise.1, reading.0, from.0))
-            / way.abs();
-        (tells && measured.is_finite() && way.abs() > SURE * noise.1).then_some((measured, spread))
+            / change.abs();
+        (counts && measured.is_finite() && change.abs() > SURE * noise.1)
+            .then_some((measured, spread))
     }
 }
 
-/// Every spring of a structure: the specimen of one degree of freedom, or every storey of a frame by its shear and drift; none of a
-/// frame that has no storeys. A storey alone that is stiffer by ΔK makes M⁻¹(K − `K_I`) a matrix of rank one, whose frequency is ΔK
-/// over the masses it joins.
+/// Every spring of a structure: the specimen of one degree of freedom, or every storey of a frame by its shear and drift; none for a
+/// frame without storeys. If one storey is stiffer by ΔK, M⁻¹(K − `K_I`) is a matrix of rank one; its squared frequency is ΔK times the
+/// sum of 1/M of the floors that the storey joins.
 pub(crate) struct StifferSprings(Vec<(String, Stiffer)>);
 
 impl StifferSprings {
-    /// Of one degree of freedom.
+    /// The spring of one degree of freedom.
     pub(crate) fn of_specimen(input: &ImpactInput, plan: &Stepping, start: &Start) -> Self {
         let judged = Judged {
             integrator: plan.integrator,
             operator_stiffness: input.operator_stiffness,
             mobility: 1.0 / input.mass,
             time_step: input.time_step,
-            // A quantum q is spread evenly over ±q/2.
+            // A resolution q has u = q/√12.
             noise: (start.noise.force, start.noise.resolution / 12_f64.sqrt()),
             moving: plan.mode != Mode::StepAndPause,
         };
@@ -209,7 +210,7 @@ impl StifferSprings {
         )])
     }
 
-    /// Of a frame.
+    /// The storeys of a frame.
     pub(crate) fn of_storeys(
         matrices: &FrameMatrices,
         plan: &Stepping,
@@ -224,8 +225,8 @@ impl StifferSprings {
         let judged = |(storey, operator_stiffness): (usize, f64)| {
             #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
             let above = (count - storey) as f64;
-            // A shear is the sum of the cells above; a drift the difference of two places. A quantum q is spread over ±q/2.
-            let place = noise.resolution / 12_f64.sqrt()
+            // A shear is the sum of the load cells above; a drift is the difference of two positions. A resolution q has u = q/√12.
+            let position = noise.resolution / 12_f64.sqrt()
                 * if storey == 0 {
                     1.0
                 } else {
@@ -237,7 +238,7 @@ impl StifferSprings {
                 moving: plan.mode != Mode::StepAndPause,
                 mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
                 time_step,
-                noise: (noise.force * above.sqrt(), place),
+                noise: (noise.force * above.sqrt(), position),
             };
             (
                 format!("storey {}", storey + 1),

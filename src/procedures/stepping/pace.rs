@@ -1,6 +1,6 @@
-//! How many time steps a run takes, and how long they are.
+//! The number of time steps of a run, and their times.
 
-/// How many steps there are, and how long they take.
+/// The number of steps and their times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pace {
     /// Δt, s

@@ -1,12 +1,12 @@
-//! What the steps of a frame need before the first one, whatever moves it: its properties, a time step that it can be
-//! integrated with, how many steps there are, tangents. In: a frame of the plan and how the plan steps. Out: numbers, each
-//! inside its domain. It knows no ground and no striker.
+//! The quantities that the steps of a procedure need before the first one: time step, duration, number of steps, and for a frame its
+//! properties and tangents. In: a procedure of the plan, and a frame where it tests one. Out: numbers, each inside its domain. It knows
+//! no ground and no striker.
 
 use super::pace::Pace;
 use crate::physics::frame::{Damping, Tangents, storeys_of};
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::{
-    Frame, Integrator, MOST_STEPS, ShakeDamping, Stepping, rayleigh, step_count, steps_in,
+    Frame, Integrator, MOST_STEPS, Plan, ShakeDamping, Stepping, rayleigh, step_count, steps_in,
 };
 use crate::record::EventKind;
 use crate::run::inputs::Inputs;
@@ -15,19 +15,101 @@ use crate::run::stop::Stop;
 use crate::units::Dimension;
 use crate::units::display::stated;
 
-/// Everything the steps of a frame need.
-pub(crate) struct FrameSteps {
-    pub properties: FrameProperties,
-    pub tangents: Tangents,
-    /// c of `K_t within [0, c·K]`
-    pub max_tangent_ratio: f64,
-    /// s
+/// The steps of a procedure, as many as its duration needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Steps {
+    /// Δt, s
     pub time_step: f64,
     /// s
     pub critical_time_step: f64,
-    pub steps: u64,
-    /// s
+    /// Number of steps.
+    pub count: u64,
+    /// s, at every step.
     pub pause: f64,
+    /// c of `K_t within [0, c·K]`
+    pub max_tangent_ratio: f64,
+}
+
+impl Steps {
+    /// Steps of `time_step` in `duration`; both times, and the critical step, in s. A frame has several `axes`.
+    pub(crate) fn evaluate(
+        plan: &Stepping,
+        time_step: f64,
+        critical_time_step: f64,
+        duration: f64,
+        axes: usize,
+        inputs: &mut Inputs<'_>,
+    ) -> Result<Self, Stop> {
+        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let max_tangent_ratio = inputs.positive(
+            "max_tangent_ratio",
+            &plan.max_tangent_ratio,
+            Dimension::NUMBER,
+        )?;
+        holds_a_step(time_step, duration)?;
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+        let axes = axes as f64;
+        if steps_in(duration, time_step) * axes > MOST_STEPS {
+            let wanted = format!("long enough for at most {} steps", MOST_STEPS / axes);
+            return Err(Stop::BadInput {
+                field: "time_step",
+                value: time_step,
+                dimension: Dimension::TIME,
+                wanted: wanted.into(),
+            });
+        }
+        Ok(Self {
+            time_step,
+            critical_time_step,
+            count: step_count(duration, time_step),
+            pause,
+            max_tangent_ratio,
+        })
+    }
+
+    pub(crate) const fn pace(&self) -> Pace {
+        Pace {
+            time_step: self.time_step,
+            steps: self.count,
+            pause: self.pause,
+        }
+    }
+}
+
+/// A frame and its steps.
+pub(crate) struct FrameSteps {
+    pub properties: FrameProperties,
+    pub tangents: Tangents,
+    pub steps: Steps,
+}
+
+impl FrameSteps {
+    pub(crate) fn new(properties: FrameProperties, integrator: Integrator, steps: Steps) -> Self {
+        let tangents = match storeys_of(&properties.matrices.stiffness) {
+            Some(_) if integrator == Integrator::Tangent => Tangents::Storeys {
+                largest_ratio: steps.max_tangent_ratio,
+            },
+            _ => Tangents::Initial,
+        };
+        Self {
+            properties,
+            tangents,
+            steps,
+        }
+    }
+
+    /// Degrees of freedom.
+    pub(crate) fn order(&self) -> usize {
+        self.properties.matrices.order()
+    }
+}
+
+/// The frame of a specimen; `check` refuses a procedure on a frame whose specimen has none.
+pub(crate) fn frame_of(plan: &Plan, specimen: usize) -> Result<&Frame, Stop> {
+    plan.specimens[specimen]
+        .frame
+        .as_ref()
+        .ok_or_else(Stop::no_frame)
 }
 
 /// The properties of a frame with this damping.
@@ -45,7 +127,7 @@ pub(crate) fn properties(
     })
 }
 
-/// The damping, and a ratio of it for a message.
+/// The damping, and one of its ratios for a message.
 fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
     let known = |ratio: f64| match ratio {
         ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
@@ -73,62 +155,38 @@ fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64
     })
 }
 
-/// The time step, s, `critical` (s) the critical one: what `check` could not know of it is held against stability here.
+/// The time step, s, `critical` (s) the critical one.
 pub(crate) fn time_step(
     plan: &Stepping,
-    (frame, properties): (&Frame, &FrameProperties),
     critical: f64,
     inputs: &mut Inputs<'_>,
-    session: &Session<'_>,
 ) -> Result<f64, Stop> {
-    let time_step = inputs
-        .positive_estimate(
-            "time_step",
-            &plan.time_step,
-            Dimension::TIME,
-            Some(critical),
-        )?
-        .value;
+    let time_step = inputs.positive_estimate(
+        "time_step",
+        &plan.time_step,
+        Dimension::TIME,
+        Some(critical),
+    )?;
+    Ok(time_step.value)
+}
+
+/// Refuses an unstable time step, s, of a frame. `check` cannot know one that depends on results.
+pub(crate) fn stable_on_frame(
+    plan: &Stepping,
+    time_step: f64,
+    frame: &Frame,
+    properties: &FrameProperties,
+    session: &Session<'_>,
+) -> Result<(), Stop> {
+    let model = Some(frame).filter(|_| session.reckoned());
     stable(
         plan,
         time_step,
-        properties.longest_stable_step(plan.integrator, Some(frame).filter(|_| session.reckoned())),
-    )?;
-    Ok(time_step)
+        properties.longest_stable_step(plan.integrator, model),
+    )
 }
 
-/// Says of steps longer than the critical one (both s) that they are: what `check` could not know, and what a reader of the results must.
-pub(crate) fn above_critical(time_step: f64, critical: f64, session: &mut Session<'_>) {
-    if time_step > critical {
-        let (step, critical) = (
-            stated(time_step, Dimension::TIME),
-            stated(critical, Dimension::TIME),
-        );
-        let text = format!(
-            "the time step {step} is above the critical time step {critical} (W701): peaks between two steps are missed"
-        );
-        session.event(EventKind::Remark, text);
-    }
-}
-
-/// A duration that holds one step at least.
-pub(crate) fn holds_a_step(time_step: f64, duration: f64) -> Result<(), Stop> {
-    if time_step <= duration {
-        return Ok(());
-    }
-    let wanted = format!(
-        "no longer than the run, {}",
-        stated(duration, Dimension::TIME)
-    );
-    Err(Stop::BadInput {
-        field: "time_step",
-        value: time_step,
-        dimension: Dimension::TIME,
-        wanted: wanted.into(),
-    })
-}
-
-/// Whether a plan may take a time step, `limit` the longest that is stable (s).
+/// Refuses a time step beyond `limit`, the longest stable one (both s), unless the plan allows it.
 pub(crate) fn stable(plan: &Stepping, time_step: f64, limit: f64) -> Result<(), Stop> {
     if time_step <= limit || plan.allow_unstable {
         return Ok(());
@@ -146,56 +204,33 @@ pub(crate) fn stable(plan: &Stepping, time_step: f64, limit: f64) -> Result<(), 
     })
 }
 
-impl FrameSteps {
-    /// How many there are, and how long they take.
-    pub(crate) const fn pace(&self) -> Pace {
-        Pace {
-            time_step: self.time_step,
-            steps: self.steps,
-            pause: self.pause,
-        }
+/// Notes a time step above the critical one: `check` could not know it, and a reader of the results must.
+pub(crate) fn above_critical(steps: &Steps, session: &mut Session<'_>) {
+    if steps.time_step > steps.critical_time_step {
+        let (step, critical) = (
+            stated(steps.time_step, Dimension::TIME),
+            stated(steps.critical_time_step, Dimension::TIME),
+        );
+        let text = format!(
+            "the time step {step} is above the critical time step {critical} (W701): peaks between two steps are missed"
+        );
+        session.event(EventKind::Remark, text);
     }
+}
 
-    /// Steps of `time_step` in `duration`; both times, and the critical step, in s.
-    pub(crate) fn new(
-        properties: FrameProperties,
-        plan: &Stepping,
-        (time_step, critical_time_step, duration): (f64, f64, f64),
-        inputs: &mut Inputs<'_>,
-    ) -> Result<Self, Stop> {
-        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
-        let max_tangent_ratio = inputs.positive(
-            "max_tangent_ratio",
-            &plan.max_tangent_ratio,
-            Dimension::NUMBER,
-        )?;
-        holds_a_step(time_step, duration)?;
-        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
-        let floors = properties.matrices.order() as f64;
-        if steps_in(duration, time_step) * floors > MOST_STEPS {
-            let wanted = format!("long enough for at most {} steps", MOST_STEPS / floors);
-            return Err(Stop::BadInput {
-                field: "time_step",
-                value: time_step,
-                dimension: Dimension::TIME,
-                wanted: wanted.into(),
-            });
-        }
-        let tangents = match storeys_of(&properties.matrices.stiffness) {
-            Some(_) if plan.integrator == Integrator::Tangent => Tangents::Storeys {
-                largest_ratio: max_tangent_ratio,
-            },
-            _ => Tangents::Initial,
-        };
-        let steps = step_count(duration, time_step);
-        Ok(Self {
-            properties,
-            tangents,
-            max_tangent_ratio,
-            time_step,
-            critical_time_step,
-            steps,
-            pause,
-        })
+/// A duration that holds one step at least.
+fn holds_a_step(time_step: f64, duration: f64) -> Result<(), Stop> {
+    if time_step <= duration {
+        return Ok(());
     }
+    let wanted = format!(
+        "no longer than the run, {}",
+        stated(duration, Dimension::TIME)
+    );
+    Err(Stop::BadInput {
+        field: "time_step",
+        value: time_step,
+        dimension: Dimension::TIME,
+        wanted: wanted.into(),
+    })
 }

@@ -1,9 +1,9 @@
-//! What of the program a procedure that integrates goes through, as the self-test names it. In: its stepping. Out: parts.
+//! The parts of the self-test that a procedure that integrates uses. In: its stepping. Out: parts.
 
 use crate::physics::self_test::Part;
 use crate::plan::{Integrator, Mode, Stepping};
 
-/// The integrator with the contact law, and what goes on beside them.
+/// The integrator with the contact law; the I-modification and continuous motion separately.
 pub(crate) fn stepped(stepping: &Stepping, of_a_frame: bool, law: Option<Part>) -> Vec<Vec<Part>> {
     let integrator = match (stepping.integrator, of_a_frame) {
         (Integrator::Tangent, false) => Part::Tangent,

@@ -10,17 +10,17 @@ use crate::rig::{DeclaredNoise, Reading};
 use crate::run::stop::Stop;
 use crate::units::Dimension;
 
-/// What is known when the first step begins.
+/// The state when the first step begins.
 pub(crate) struct Start {
-    /// Where the actuators were sent to, m: X starts there.
+    /// Commanded positions of the actuators, m: X starts there.
     pub commanded: Vec<f64>,
-    /// What was read there, once: R₀ is in it.
+    /// One reading there: it contains R₀.
     pub reading: Reading,
     pub noise: DeclaredNoise,
 }
 
 impl Start {
-    /// What a frame is stepped from, with these loads on its floors (N).
+    /// The initial state of a frame, with these loads on its floors (N).
     pub(crate) fn input<'a>(
         &'a self,
         frame: &'a FrameSteps,
@@ -34,7 +34,7 @@ impl Start {
             integrator: plan.integrator,
             i_modification: plan.i_modification,
             tangents: frame.tangents,
-            time_step: frame.time_step,
+            time_step: frame.steps.time_step,
             initial_displacement: &self.commanded,
             initial_restoring_force: &self.reading.force,
             initial_load: load,
@@ -44,7 +44,7 @@ impl Start {
     }
 }
 
-/// Why a structure that cannot be stepped by `time_step` (s) is not.
+/// The input error of a structure that cannot be integrated with `time_step` (s).
 pub(crate) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
     let wanted = format!("one that can be stepped: {error}").into();
     Stop::BadInput {

@@ -1,9 +1,9 @@
-//! The steps of a structure on a rig, whatever drives it: predict, command, settle, pause, read, feed back; or, continuous, the
-//! actuators follow smooth paths together (`gliding`) and are read as they pass their targets. In: who computes the steps and keeps
-//! them ([`Stepped`]), how they are taken, the rig behind its guard. Out: every step done, judged and reported, or why there are no
-//! more. It knows no ground, no striker and no equation.
+//! The steps of a structure on a rig, whatever excites it: predict, command, settle, pause, read, feed back. In continuous mode the
+//! actuators follow smooth paths together (`continuous_motion`) and are read as they pass their targets. In: a [`Stepped`] that computes
+//! and keeps the steps, the settings of the steps, the rig behind its guard. Out: every step completed, checked and reported, or the
+//! reason of the end. It knows no ground, no striker and no equation.
 //!
-//! Where an actuator stood elsewhere than at its target (lag, resolution) the reading is corrected to it by the I-modification,
+//! If an actuator was not at its target (lag, resolution), the reading is corrected to the target by the I-modification,
 //! r* = `r_m` − `K_I`(`d_m` − d̃). The force of a damper of the specimen is in the reading, at the actuator's velocity:
 //! c·v/`time_scale`.
 
@@ -23,9 +23,9 @@ use crate::run::stop::Stop;
 
 /// The energy of a test at the end of a step, J.
 pub(crate) struct Balance {
-    /// What the balance misses.
+    /// Energy error.
     pub error: f64,
-    /// What the errors are shares of.
+    /// Reference of the relative errors.
     pub input: f64,
 }
 
@@ -34,25 +34,25 @@ pub(crate) trait Stepped {
     /// The end of the last step.
     fn axes(&self) -> AxesState<'_>;
 
-    /// Where each axis is to be at the end of the next step, m. Asked again in the same step, the same again.
+    /// Target of each axis at the end of the next step, m. Within one step it is always the same.
     fn predict(&mut self) -> Vec<f64>;
 
-    /// How fast each axis is predicted to be there, m/s; whether a contact force has its share in it.
+    /// Predicted velocity of each axis at its target, m/s. True if a contact force contributes to it.
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool;
 
-    /// What the recursion takes for the forces at the start, where this is read, N.
+    /// Effective forces of the recursion at the start, N.
     fn taken_at_start(&self, start: &Start) -> Vec<f64>;
 
-    /// What the recursion took for the forces at the targets of the last step, N.
+    /// Effective forces of the recursion at the targets of the last step, N.
     fn taken(&self) -> Vec<f64>;
 
-    /// Ends the step with what was read.
+    /// Ends the step with a reading.
     fn complete(&mut self, reading: &Reading);
 
     /// Whether a contact force acted in the last step.
     fn is_struck(&self) -> bool;
 
-    /// Keeps the end of a step, with how each axis was followed so far.
+    /// Keeps the end of a step, with the tracking of each axis so far.
     fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance;
 
     /// Steps of the procedure done before these.
@@ -60,11 +60,11 @@ pub(crate) trait Stepped {
         0
     }
 
-    /// Whether there is nothing more to follow, before all steps are done.
+    /// Whether the run ends before all steps are done.
     fn over(&self) -> bool;
 }
 
-/// All steps, from where the rig stands.
+/// All steps, from the present position of the rig.
 pub(crate) fn run<S: Stepped>(
     pace: Pace,
     plan: &Stepping,
@@ -141,7 +141,7 @@ pub(crate) fn run<S: Stepped>(
     gliding.map_or(Ok(()), |gliding| gliding.brake(session))
 }
 
-/// Where each axis is to pass in this step, and how fast.
+/// The waypoint of each axis at the end of this step.
 fn passing(stepped: &mut impl Stepped) -> Vec<Passing> {
     let places = stepped.predict();
     let mut velocities = vec![0.0; places.len()];

@@ -1,25 +1,24 @@
-//! How the floors of a frame were followed over a run. In: at every step what each axis has come to, and the energy of the test.
-//! Out: a remark where it is worth one, results of all axes together and of each. It stops nothing: that is the guard's.
+//! The tracking of all axes over a run. In: at every step the tracking of each axis, and the energy of the test. Out: an observation
+//! where the tracking energy is large, results of all axes together and of each. It stops nothing: the guard does.
 
 use super::remarks::Watch;
 use crate::physics::tracking::monitor::Tracking;
-use crate::plan::formula::ResultValue;
-use crate::procedures::results::result;
 use crate::record::NamedResult;
 use crate::run::session::Session;
-use crate::units::Dimension;
+use crate::schema::ResultKind;
+use crate::schema::procedures::tracking as schema;
 
 #[derive(Debug, Default)]
 pub(crate) struct Followed {
     watch: Watch,
     /// At the last step.
     axes: Vec<Tracking>,
-    /// Of each axis, energy error over the energy of the test, the largest by size so far, signed.
+    /// For each axis, the energy error over the energy of the test, signed: the peak absolute value so far.
     worst: Vec<f64>,
 }
 
 impl Followed {
-    /// Takes a step, `energy` (J) that of the test so far; all axes together, and their share of the energy.
+    /// Adds a step, `energy` (J) that of the test so far. Gives all axes together, and their energy error over that energy.
     pub(crate) fn judge(
         &mut self,
         axes: &[Tracking],
@@ -40,60 +39,42 @@ impl Followed {
         (tracking, share)
     }
 
-    /// Energy error of all axes over the energy of the test, the largest by size, signed.
+    /// Energy error of all axes over the energy of the test, signed: the peak absolute value.
     pub(crate) const fn worst(&self) -> Option<f64> {
         self.watch.worst
     }
 
-    /// Of all axes together, in the order of the reference: energies and areas add, of the others the largest counts.
+    /// All axes together, after the last step that was judged.
     pub(crate) fn of_all(&self) -> [NamedResult; 4] {
         let tracking = Some(Tracking::together(&self.axes)).filter(|_| !self.axes.is_empty());
-        let ended = |name, dimension, value: fn(Tracking) -> f64| {
-            result(name, dimension, tracking.map(value))
-        };
-        [
-            result("tracking_energy_error", Dimension::NUMBER, self.worst()),
-            ended("tracking_indicator", Dimension::AREA, |all| all.indicator),
-            ended("nrms_error", Dimension::NUMBER, |all| all.nrms_error),
-            ended("peak_error", Dimension::LENGTH, |all| all.peak_error),
-        ]
+        tracking_results(self.worst(), tracking)
     }
 
-    /// Of each axis, in the order of the reference.
+    /// Each axis, in the order of the reference.
     pub(crate) fn of_each(&self) -> [NamedResult; 4] {
-        let list = |name, dimension, values: Vec<f64>| {
-            if values.is_empty() {
-                return result(name, dimension, None);
-            }
-            NamedResult {
-                name,
-                dimension,
-                value: ResultValue::List(values),
-                contributions: Vec::new(),
-            }
+        let list = |kind: ResultKind, values: Vec<f64>| {
+            kind.found_list(Some(values).filter(|values| !values.is_empty()))
         };
         let ended = |value: fn(&Tracking) -> f64| self.axes.iter().map(value).collect();
         [
+            list(schema::FLOOR_TRACKING_ENERGY_ERROR, self.worst.clone()),
             list(
-                "floor_tracking_energy_error",
-                Dimension::NUMBER,
-                self.worst.clone(),
-            ),
-            list(
-                "floor_tracking_indicator",
-                Dimension::AREA,
+                schema::FLOOR_TRACKING_INDICATOR,
                 ended(|axis| axis.indicator),
             ),
-            list(
-                "floor_nrms_error",
-                Dimension::NUMBER,
-                ended(|axis| axis.nrms_error),
-            ),
-            list(
-                "floor_peak_error",
-                Dimension::LENGTH,
-                ended(|axis| axis.peak_error),
-            ),
+            list(schema::FLOOR_NRMS_ERROR, ended(|axis| axis.nrms_error)),
+            list(schema::FLOOR_PEAK_ERROR, ended(|axis| axis.peak_error)),
         ]
     }
+}
+
+/// Results of all axes together, in the order of the reference: energies and areas add, of the others the largest counts. `worst` is the
+/// largest energy error over the energy of the test.
+pub(crate) fn tracking_results(worst: Option<f64>, tracking: Option<Tracking>) -> [NamedResult; 4] {
+    [
+        schema::TRACKING_ENERGY_ERROR.found(worst),
+        schema::TRACKING_INDICATOR.found(tracking.map(|all| all.indicator)),
+        schema::NRMS_ERROR.found(tracking.map(|all| all.nrms_error)),
+        schema::PEAK_ERROR.found(tracking.map(|all| all.peak_error)),
+    ]
 }

@@ -1,8 +1,8 @@
-//! When an impact stops for a person to look. In: every step. Out: what to look for, if it is time to.
+//! Inspection triggers of a procedure that integrates. In: every step. Out: the reason of an inspection, when one is due.
 
 use crate::plan::InspectTrigger;
 
-/// The plan's triggers, and what each has seen.
+/// The triggers of the plan with their states.
 pub(crate) struct Triggers {
     armed: Vec<Armed>,
 }
@@ -26,7 +26,7 @@ impl Triggers {
         }
     }
 
-    /// What step `step` at virtual time `time` (s) with restoring force `force` (N) calls for: the first reason there is.
+    /// The first reason for an inspection after `step` at virtual time `time` (s) with restoring force `force` (N).
     pub(crate) fn after(&mut self, step: u64, time: f64, force: f64) -> Option<String> {
         let mut reason = None;
         for armed in &mut self.armed {
@@ -46,7 +46,7 @@ impl Armed {
             InspectTrigger::ForceDrop(fraction) => {
                 let size = force.abs();
                 let dropped = size < (1.0 - fraction) * self.largest_force;
-                // After a look, only a further fall from here on is news.
+                // After an inspection, only a further fall from here counts.
                 self.largest_force = if dropped {
                     size
                 } else {

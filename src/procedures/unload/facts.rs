@@ -1,4 +1,4 @@
-//! What the drivers of check and report must know of an unloading without carrying it out. In: it. Out: facts.
+//! The facts about an unloading that the drivers of check and report need without carrying it out. In: nothing. Out: facts.
 
 use crate::procedures::base_excitation::chart;
 use crate::procedures::facts::{Facts, Recorded, Tests};

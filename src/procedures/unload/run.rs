@@ -1,6 +1,6 @@
-//! `unload`: takes the load off, of one degree of freedom or of all floors of a frame together. In: the stiffness with which
-//! the forces are expected to fall. Out: the way there, and where the specimen rests. Each target is on this side of where the forces
-//! are 0, by the slopes that the moves before it showed (`physics/frame/unloading_path.rs`); the guard holds every one against the limits.
+//! `unload`: moves one degree of freedom, or all floors of a frame together, to zero restoring force. In: the stiffness with which the
+//! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
+//! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
 use super::uncertainty::RestUncertainty;
 use crate::physics::frame::{Damping, Loaded, Unloading, UnloadingPath};
@@ -19,13 +19,13 @@ use crate::uncertainty::{Contribution, combined};
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// Targets on the way, at most: a specimen that bends as it is expected to needs three.
+/// Targets of the unloading path, at most: a specimen with the expected stiffness needs three.
 pub(crate) const MOST_TARGETS: u64 = 50;
-/// Of the force at the start: as near to none as is asked for where nothing else bounds it.
+/// Fraction of the force at the start that counts as zero where nothing else bounds it.
 const SMALL: f64 = 1e-3;
-/// Noise of the cell in a reading that is not to be mistaken for load, standard deviations.
+/// Noise of the load cell that is not mistaken for load, standard deviations.
 pub(crate) const NOISE: f64 = 3.0;
-/// Of a place, in units of its last digit: what adding the drifts of storeys up leaves.
+/// Rounding of a position from adding up storey drifts, in units of its last digit.
 const ROUNDING: f64 = 8.0;
 
 pub(crate) fn perform(
@@ -38,8 +38,11 @@ pub(crate) fn perform(
     let outcome = inputs
         .positive("stiffness", &plan.stiffness, Dimension::STIFFNESS)
         .and_then(|stiffness| {
-            asked(
-                (plan.within.as_ref(), plan.speed.as_ref()),
+            unload(
+                &Request {
+                    within: plan.within.as_ref(),
+                    speed: plan.speed.as_ref(),
+                },
                 &Unloading::of_one(stiffness),
                 whole,
                 inputs,
@@ -48,7 +51,7 @@ pub(crate) fn perform(
             )
         });
     let results = of_farthest(outcome.as_ref().ok());
-    // The start is no move.
+    // The start is not a move.
     let moved = steps.iter().skip(1).map(of_one).collect();
     Performed {
         history: History::Move(moved),
@@ -71,7 +74,7 @@ fn of_one(step: &UnloadStep) -> RampStep {
     }
 }
 
-/// The same of a frame.
+/// The unloading of all floors of a frame.
 pub(crate) fn perform_frame(
     plan: &FrameUnload,
     whole: &Plan,
@@ -83,8 +86,11 @@ pub(crate) fn perform_frame(
     let frame = whole.specimens[plan.specimen].frame.as_ref();
     let known = frame.map_or_else(|| Err(Stop::no_frame()), of_frame);
     let outcome = known.and_then(|unloading| {
-        asked(
-            (plan.within.as_ref(), plan.speed.as_ref()),
+        unload(
+            &Request {
+                within: plan.within.as_ref(),
+                speed: plan.speed.as_ref(),
+            },
             &unloading,
             whole,
             inputs,
@@ -100,7 +106,7 @@ pub(crate) fn perform_frame(
     }
 }
 
-/// How the forces of a frame are expected to fall.
+/// The expected unloading of a frame.
 pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
     let unfit = |reason: String| Stop::BadInput {
         field: "specimen",
@@ -115,9 +121,9 @@ pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
         .map_err(|reason| unfit(format!("a stiffness that resists: {reason}")))
 }
 
-/// Where the floor rests that rests farthest out, and what the one still carries that carries most.
+/// The position of the floor that is farthest from 0, and the largest remaining force.
 fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
-    let told = |kind: ResultKind, found: Option<(f64, Vec<Contribution>)>| {
+    let number = |kind: ResultKind, found: Option<(f64, Vec<Contribution>)>| {
         let (value, contributions) = found.unzip();
         let contributions = contributions.unwrap_or_default();
         let result = kind.found_with(value.map(|value| (value, combined(&contributions))));
@@ -126,7 +132,7 @@ fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
             ..result
         }
     };
-    let place = rest.map(|rest| {
+    let position = rest.map(|rest| {
         let [floor, _] = rest.floors_of_largest();
         let [parts, _] = rest.doubts_of(floor);
         (rest.largest().0, parts)
@@ -137,8 +143,8 @@ fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
         (rest.largest().1, parts)
     });
     vec![
-        told(schema::RESIDUAL_DISPLACEMENT, place),
-        told(schema::RESIDUAL_FORCE, force),
+        number(schema::RESIDUAL_DISPLACEMENT, position),
+        number(schema::RESIDUAL_FORCE, force),
     ]
 }
 
@@ -171,25 +177,34 @@ fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
     results
 }
 
-/// Takes the load off as a block asks for it.
-fn asked(
-    (within, speed): (Option<&Formula>, Option<&Formula>),
+/// The fields of a block of either kind.
+struct Request<'a> {
+    /// Largest |R| that counts as zero, N.
+    within: Option<&'a Formula>,
+    /// m/s
+    speed: Option<&'a Formula>,
+}
+
+/// Moves to zero restoring force as a block requests it.
+fn unload(
+    request: &Request<'_>,
     unloading: &Unloading,
     whole: &Plan,
     inputs: &mut Inputs<'_>,
     session: &mut Session<'_>,
     steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
-    let within = within
+    let within = request
+        .within
         .map(|within| inputs.positive("within", within, Dimension::FORCE))
         .transpose()?;
-    let speed = inputs.speed(speed)?;
+    let speed = inputs.speed(request.speed)?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
     RestUncertainty::new(whole, inputs, session).unloaded(&mut rest, unloading, steps);
     Ok(rest)
 }
 
-/// Takes the load off; `before` steps of the procedure are done already. The first of `steps` is where it began.
+/// Moves to zero restoring force; `before` steps of the procedure are done already. The first of `steps` is the start.
 pub(crate) fn to_rest(
     unloading: Unloading,
     within: Option<f64>,
@@ -200,18 +215,13 @@ pub(crate) fn to_rest(
 ) -> Result<Rest, Stop> {
     let mut at = session.guard.read()?;
     let start = session.guard.commanded().to_vec();
-    keep(
-        (before, start),
-        &at,
-        vec![None; at.force.len()],
-        session,
-        steps,
-    );
+    let secants = vec![None; at.force.len()];
+    steps.push(step_of(before, start, &at, secants, session));
     let noise = session.guard.declared_noise();
     let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
-    let tells = (NOISE * noise.force).max(unloading.felt(noise.resolution.max(rounding)));
+    let detectable = (NOISE * noise.force).max(unloading.felt(noise.resolution.max(rounding)));
     let mut left = largest(&at.force);
-    let within = within.unwrap_or_else(|| tells.max(SMALL * left).max(f64::MIN_POSITIVE));
+    let within = within.unwrap_or_else(|| detectable.max(SMALL * left).max(f64::MIN_POSITIVE));
     let mut path = UnloadingPath::new(unloading, (noise.force, noise.resolution), loaded(&at));
     if session.unloads_at_once {
         path = path.at_once();
@@ -220,18 +230,20 @@ pub(crate) fn to_rest(
         if left <= within {
             return Ok(rest(at));
         }
-        let way = path.way(&at.force);
+        let increments = path.way(&at.force);
         let target: Vec<f64> = session
             .guard
             .commanded()
             .iter()
-            .zip(way)
-            .map(|(place, way)| place + way)
+            .zip(increments)
+            .map(|(position, increment)| position + increment)
             .collect();
         session.go_to_all(&target, speed)?;
         let (reached, broken) = session.read_kept()?;
         let secants = path.learn(loaded(&at), loaded(&reached));
-        let wall_time = keep((step, target), &reached, secants, session, steps);
+        let kept = step_of(step, target, &reached, secants, session);
+        let wall_time = kept.wall_time;
+        steps.push(kept);
         if let Some(stop) = broken {
             return Err(stop);
         }
@@ -257,24 +269,22 @@ pub(crate) fn to_rest(
     Ok(rest(at))
 }
 
-/// Keeps a step; gives the rig's time, s.
-fn keep(
-    (step, command): (u64, Vec<f64>),
-    at: &Reading,
+/// A step at the present time of the rig.
+fn step_of(
+    step: u64,
+    command: Vec<f64>,
+    reading: &Reading,
     secants: Vec<Option<f64>>,
     session: &Session<'_>,
-    steps: &mut Vec<UnloadStep>,
-) -> f64 {
-    let wall_time = session.guard.time();
-    steps.push(UnloadStep {
+) -> UnloadStep {
+    UnloadStep {
         step,
-        wall_time,
+        wall_time: session.guard.time(),
         command,
-        displacement: at.displacement.clone(),
-        restoring_force: at.force.clone(),
+        displacement: reading.displacement.clone(),
+        restoring_force: reading.force.clone(),
         tangent_stiffness: secants,
-    });
-    wall_time
+    }
 }
 
 fn loaded(reading: &Reading) -> Loaded<'_> {
@@ -292,7 +302,7 @@ fn rest(reading: Reading) -> Rest {
     }
 }
 
-/// Largest size.
+/// Peak absolute value.
 fn largest(values: &[f64]) -> f64 {
     values
         .iter()

@@ -7,8 +7,8 @@ use super::*;
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Between, BlowOn, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate,
-    Frame, FrameUnload, Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Procedure,
+    Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
+    FrameUnload, Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Procedure,
     ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
     Until, WatchedHold, WatchedModel, ZeroAfter,
 };
@@ -163,10 +163,10 @@ fn escalating() -> Plan {
     };
     yielding(vec![ProcedureKind::Escalate(Escalate {
         own: ProcedureId(0),
-        blow: BlowOn::Specimen(Impact {
+        impact: Impact {
             duration: Constant(0.03),
             ..short(Mode::StepAndPause)
-        }),
+        },
         velocities: [0.2, 0.4, 0.6].map(Constant).to_vec(),
         energies: None,
         condition: vec![below],
@@ -188,7 +188,7 @@ fn unloading() -> Plan {
 /// The upper floor is struck, and the actuators never stop.
 fn struck_on_the_way() -> Plan {
     let mut plan = struck_frame();
-    if let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind {
+    if let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind {
         (blow.stepping.mode, blow.duration) = (CONTINUOUS, Constant(0.05));
     }
     plan
@@ -241,9 +241,7 @@ fn frame_row() -> Plan {
         panic!()
     };
     escalate.inspect_between = true;
-    let BlowOn::Storey(blow) = &mut escalate.blow else {
-        panic!()
-    };
+    let blow = &mut escalate.impact;
     blow.duration = Constant(0.03);
     let unload = ProcedureKind::FrameUnload(FrameUnload {
         specimen: 0,
@@ -384,10 +382,12 @@ fn each_is_played_back_to_the_last_bit_and_told_at_the_same_times_without_a_reco
         ProcedureKind::Inspect {
             note: "look".to_owned(),
         },
-        ProcedureKind::Impact(Impact {
-            stiffness: result_of(0, "stiffness"),
-            ..short(Mode::StepAndPause)
-        }),
+        ProcedureKind::Impact(
+            Impact {
+                ..short(Mode::StepAndPause)
+            }
+            .with_point(|point| point.stiffness = result_of(0, "stiffness")),
+        ),
         to(0.0),
     ];
     for (name, plan) in plans()

@@ -47,14 +47,14 @@ fn a_force_beyond_its_limit_holds_the_rig() {
 /// A blow of 1 kg at some mm/s on 2 kg: outwards at first.
 fn blow(inspect: Vec<InspectTrigger>) -> Plan {
     let strike = Impact {
-        mass: Formula::Constant(500.0),
         stepping: Stepping {
             inspect,
             ..every(0.01)
         },
         duration: Formula::Constant(0.3),
         ..impact(Formula::Constant(STIFFNESS))
-    };
+    }
+    .with_point(|point| point.mass = Formula::Constant(500.0));
     let mut plan = plan_of(vec![ProcedureKind::Impact(strike)]);
     plan.specimens[0].mass = 500.0;
     (plan.strikers[0].mass, plan.strikers[0].velocity) = (500.0, 0.1);

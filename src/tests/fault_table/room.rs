@@ -10,12 +10,12 @@ use crate::tests::testing::{every, impact, ramp, result_of};
 
 fn procedures() -> Vec<ProcedureKind> {
     let blow = Impact {
-        mass: Constant(20.0),
         stepping: every(1e-3),
         duration: Constant(0.1),
         until: Until::Duration,
         ..impact(result_of(0, "stiffness"))
-    };
+    }
+    .with_point(|point| point.mass = Constant(20.0));
     let slow = ProcedureKind::StiffnessRamp(StiffnessRamp {
         samples: 2,
         repeats: 3,

@@ -3,7 +3,7 @@
 use crate::plan::formula::Formula::Constant;
 use crate::plan::{
     Behaviour, Contact, Frame, Impact, Integrator, Move, Plan, Procedure, ProcedureKind, Stepping,
-    Storey, StoreyImpact, Until,
+    Storey, Until,
 };
 use crate::record::{History, ImpactStep, Record, StepState};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
@@ -17,27 +17,27 @@ fn bouncing(contact: &Contact, time_step: f64, framed: bool) -> Plan {
         let mut plan = struck_frame();
         let storey = Storey::new(HEAVY, HEAVY, Behaviour::Elastic { stiffness: HEAVY });
         plan.specimens[0].frame = Some(Frame::of_storeys(vec![storey]));
-        let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind else {
+        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
             panic!()
         };
-        *blow = StoreyImpact {
-            struck: 0,
+        *blow = Impact {
             contact: contact.clone(),
             stepping: every(time_step),
             duration: Constant(0.5),
             until: Until::Duration,
             ..blow.clone()
-        };
+        }
+        .with_storey(|storey| storey.storey = 0);
         plan
     } else {
         let blow = Impact {
-            mass: Constant(HEAVY),
             contact: contact.clone(),
             stepping: every(time_step),
             duration: Constant(0.5),
             until: Until::Duration,
             ..impact(Constant(HEAVY))
-        };
+        }
+        .with_point(|point| point.mass = Constant(HEAVY));
         elastic_plan(HEAVY, vec![ProcedureKind::Impact(blow)])
     };
     plan.strikers[0].gravity = 9.806_65;
@@ -133,7 +133,7 @@ fn steps_in_contact_one_after_the_other_are_one_blow() {
             };
             let alone = run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(blow)]));
             let mut plan = struck_frame();
-            let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind else {
+            let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
                 panic!()
             };
             (blow.contact, blow.stepping) = (contact.clone(), stepping);
@@ -161,12 +161,9 @@ fn at_a_load(mut plan: Plan, to: f64, time_step: f64) -> Plan {
                 stepping,
                 duration: Constant(1.0),
                 until: Until::Duration,
+                contact: Contact::Rigid,
                 ..blow.clone()
             };
-        }
-        ProcedureKind::StoreyImpact(blow) => {
-            blow.contact = Contact::Rigid;
-            (blow.stepping, blow.duration) = (stepping, Constant(1.0));
         }
         other => panic!("{other:?}"),
     }
@@ -200,11 +197,11 @@ fn errors_are_shares_of_all_that_was_put_in() {
         let storey = Storey::new(1.0, stiffness, Behaviour::Elastic { stiffness });
         plan.specimens[0].frame = Some(Frame::of_storeys(vec![storey]));
         plan.specimens[0].behaviour = Some(Behaviour::Elastic { stiffness });
-        let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind else {
+        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
             panic!()
         };
-        blow.struck = 0;
-        blow.damping = crate::plan::ShakeDamping::Rayleigh(Constant(0.0));
+        blow.storey_mut().storey = 0;
+        blow.storey_mut().damping = crate::plan::ShakeDamping::Rayleigh(Constant(0.0));
         plan
     };
     for plan in [&alone as &dyn Fn() -> Plan, &framed] {

@@ -3,8 +3,8 @@
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
-    Behaviour, Between, BlowOn, Comparison, Condition, Escalate, Frame, FrameUnload, Interval,
-    Link, Plan, Procedure, ProcedureKind, Storey, StoreyImpact, Striker, Test, Unload, VirtualLink,
+    Behaviour, Between, Comparison, Condition, Escalate, Frame, FrameUnload, Impact, Interval,
+    Link, Plan, Procedure, ProcedureKind, Storey, Striker, Test, Unload, VirtualLink,
 };
 use crate::procedures::unload::run::{of_frame, to_rest};
 use crate::record::{EscalateHistory, History, Outcome, Record, Rest, UnloadStep};
@@ -308,9 +308,9 @@ fn drifts_below(limit: f64) -> Condition {
     }
 }
 
-fn blow() -> StoreyImpact {
+fn blow() -> Impact {
     match struck_frame().procedures.swap_remove(0).kind {
-        ProcedureKind::StoreyImpact(blow) => blow,
+        ProcedureKind::Impact(blow) => blow,
         other => panic!("{other:?}"),
     }
 }
@@ -337,17 +337,17 @@ pub(crate) fn rising(velocities: &[f64], between: Between) -> Plan {
 
 /// Blows that go on until the frame has turned back, until a storey drifts too far.
 fn within(velocities: &[f64], limit: f64) -> Plan {
-    let whole = StoreyImpact {
+    let whole = Impact {
         duration: Constant(4.0),
         ..blow()
     };
     row(whole, velocities, drifts_below(limit), Between::Unload)
 }
 
-fn row(blow: StoreyImpact, velocities: &[f64], condition: Condition, between: Between) -> Plan {
+fn row(blow: Impact, velocities: &[f64], condition: Condition, between: Between) -> Plan {
     let escalate = Escalate {
         own: ProcedureId(0),
-        blow: BlowOn::Storey(blow),
+        impact: blow,
         velocities: velocities.iter().copied().map(Constant).collect(),
         energies: None,
         condition: vec![condition],
@@ -383,7 +383,7 @@ fn a_row_of_blows_on_a_storey_is_the_blows_written_out() {
         .collect();
     let written = (0..3).flat_map(|striker| {
         [
-            ProcedureKind::StoreyImpact(StoreyImpact { striker, ..blow() }),
+            ProcedureKind::Impact(Impact { striker, ..blow() }),
             rest(None),
         ]
     });

@@ -74,10 +74,9 @@ fn results_stand_in_the_order_of_the_reference_also_when_there_are_none() {
                      restoring_energy, damping_energy, striker_energy, energy_error, tracking_energy_error, tracking_indicator, \
                      nrms_error, peak_error, time_step, critical_time_step, steps";
     for mass in [1.0, -1.0] {
-        let record = run_unwatched(&plan(Impact {
-            mass: constant(mass),
-            ..impact()
-        }));
+        let record = run_unwatched(&plan(
+            Impact { ..impact() }.with_point(|point| point.mass = constant(mass)),
+        ));
         let names: Vec<_> = record.procedures[0]
             .results
             .iter()
@@ -341,10 +340,10 @@ fn an_input_can_be_an_earlier_result_with_its_uncertainty() {
         327.65,
         vec![
             ProcedureKind::StiffnessRamp(crate::tests::testing::ramp(1e-3)),
-            ProcedureKind::Impact(Impact {
-                stiffness: result_of(0, "stiffness"),
-                ..impact()
-            }),
+            ProcedureKind::Impact(
+                Impact { ..impact() }
+                    .with_point(|point| point.stiffness = result_of(0, "stiffness")),
+            ),
         ],
     );
     both.rig.link = Link::Virtual(VirtualLink {

@@ -4,8 +4,8 @@ use crate::plan::formula::Formula;
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Part, ProcedureId, ResultReference};
 use crate::plan::{
-    Behaviour, Between, BlowOn, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind,
-    Requirement, Test, Unload, Until,
+    Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Requirement,
+    Test, Unload, Until,
 };
 use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
 use crate::rig::VirtualRig;
@@ -43,7 +43,7 @@ fn blow() -> Impact {
 fn rising(velocities: &[f64], limit: f64, between: Between) -> Escalate {
     Escalate {
         own: ProcedureId(0),
-        blow: BlowOn::Specimen(blow()),
+        impact: blow(),
         velocities: velocities.iter().copied().map(Constant).collect(),
         energies: None,
         condition: vec![below(limit)],
@@ -81,7 +81,7 @@ fn what_is_so_of_every_blow_is_said_once() {
         };
         // Whatever they come to: a condition on their peak would end the row with the first.
         let row = Escalate {
-            blow: BlowOn::Specimen(short),
+            impact: short,
             condition: Vec::new(),
             ..rising(velocities, 1.0, Between::Home)
         };
@@ -162,7 +162,7 @@ fn it_ends_with_the_first_blow_that_fails() {
     let contact = crate::plan::Contact::Restitution {
         coefficient: Constant(0.0),
     };
-    plan.blow = BlowOn::Specimen(Impact { contact, ..blow() });
+    plan.impact = Impact { contact, ..blow() };
     let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(plan)]));
     let reckoned = |velocity: f64| velocity * 10.0 / (2e4_f64 * 11.0).sqrt();
     let fails = velocities
@@ -291,11 +291,11 @@ fn no_more_steps_come_than_were_foretold() {
         (Between::Stay, true),
     ] {
         let mut rising = rising(&[0.1, 0.2, 0.3], 1.0, between);
-        rising.blow = BlowOn::Specimen(Impact {
+        rising.impact = Impact {
             until: Until::Duration,
             duration: Constant(0.1),
             ..blow()
-        });
+        };
         let plan = yielding(vec![ProcedureKind::Escalate(rising)]);
         let mut counting = Counting::default();
         let record = crate::run::run(&plan, &mut VirtualRig::of_plan(&plan), &mut counting);
@@ -337,10 +337,10 @@ fn a_row_of_cut_blows_decides_nothing_that_whole_ones_do_not() {
     };
     let of = |duration: f64| {
         let mut row = rising(&[0.3, 0.6, 0.9, 1.2], 0.02, Between::Unload);
-        row.blow = BlowOn::Specimen(Impact {
+        row.impact = Impact {
             duration: Constant(duration),
             ..blow()
-        });
+        };
         let mut plan = yielding(vec![ProcedureKind::Escalate(row)]);
         plan.requirements = [0.45, 1.8, 4.05].map(requirement).to_vec();
         let record = run_unwatched(&plan);

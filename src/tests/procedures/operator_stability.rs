@@ -93,7 +93,7 @@ fn a_stiffer_spring_is_told_in_both_modes() {
 fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
     let of = |mode: Mode, upper: f64, link: VirtualLink| {
         let mut plan = struck_frame();
-        if let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind {
+        if let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind {
             blow.stepping = splitting(&blow.stepping, mode);
             blow.contact = Contact::Limit {
                 force: Constant(200.0),

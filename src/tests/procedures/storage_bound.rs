@@ -97,7 +97,7 @@ fn no_procedure_writes_more_than_it_is_reckoned_to() {
         ..impact(Constant(300.0))
     };
     let mut measured = long();
-    measured.stiffness = result_of(0, "stiffness");
+    measured.point_mut().stiffness = result_of(0, "stiffness");
     let continuous = crate::plan::Impact {
         stepping: Stepping {
             mode: Mode::Continuous { time_scale: 100.0 },

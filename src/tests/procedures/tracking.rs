@@ -107,7 +107,7 @@ fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>
         steps: u64::from(per_cycle * CYCLES),
         pause: 0.0,
     };
-    let ProcedureKind::StoreyImpact(blow) = &plan.procedures[0].kind else {
+    let ProcedureKind::Impact(blow) = &plan.procedures[0].kind else {
         panic!("another procedure")
     };
     let stepping = Stepping {
@@ -311,7 +311,7 @@ fn tracking_holds_a_blow_on_a_storey_in_both_modes() {
         let mut plan = struck_frame();
         plan.rig.link = Link::Virtual(link);
         limit(&mut plan);
-        if let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind {
+        if let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind {
             blow.stepping.mode = mode;
         }
         crate::run::run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched).outcome

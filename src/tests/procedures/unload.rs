@@ -5,7 +5,7 @@ use crate::physics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::ProcedureId;
 use crate::plan::{
-    Behaviour, Between, BlowOn, Bolted, Escalate, Impact, Link, Move, Plan, ProcedureKind, Unload,
+    Behaviour, Between, Bolted, Escalate, Impact, Link, Move, Plan, ProcedureKind, Unload,
     VirtualLink,
 };
 use crate::procedures::unload::run::{of_frame, to_rest};
@@ -182,10 +182,10 @@ fn a_row_of_blows_rests_there_too() {
     };
     let row = Escalate {
         own: ProcedureId(0),
-        blow: BlowOn::Specimen(Impact {
+        impact: Impact {
             stepping: testing::every(2e-4),
             ..blow
-        }),
+        },
         velocities: [0.8, 1.0].map(Constant).to_vec(),
         energies: None,
         condition: Vec::new(),

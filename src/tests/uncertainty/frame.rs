@@ -5,7 +5,7 @@ use crate::physics::reintegration::impact::OUTCOMES;
 use crate::plan::formula::{Formula, ResultValue};
 use crate::plan::{
     Behaviour, Calibration, Contact, Frame, Ground, Impact, Link, Plan, ProcedureKind, Shake,
-    ShakeDamping, Stepping, Storey, StoreyImpact, Until, VirtualLink,
+    ShakeDamping, Stepping, Storey, Until, VirtualLink,
 };
 use crate::record::Record;
 use crate::tests::testing::{
@@ -119,11 +119,11 @@ fn one_storey_is_as_uncertain_as_one_degree_of_freedom() {
     };
     let alone = |link| {
         let blow = Impact {
-            mass_uncertainty: 0.02,
             contact: contact.clone(),
             stepping: every(1e-3),
             ..impact(constant(STIFFNESS))
-        };
+        }
+        .with_point(|point| point.mass_uncertainty = 0.02);
         run_unwatched(&uncertain(
             elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]),
             link,
@@ -135,18 +135,20 @@ fn one_storey_is_as_uncertain_as_one_degree_of_freedom() {
             mass_uncertainty: 0.02,
             ..storey(1.0, STIFFNESS)
         }];
-        let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind else {
+        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
             panic!()
         };
-        *blow = StoreyImpact {
-            struck: 0,
-            damping: ShakeDamping::Rayleigh(constant(0.0)),
+        *blow = Impact {
             contact: contact.clone(),
             stepping: every(1e-3),
             duration: constant(0.5),
             until: Until::StrikerStop,
             ..blow.clone()
-        };
+        }
+        .with_storey(|storey| {
+            storey.storey = 0;
+            storey.damping = ShakeDamping::Rayleigh(constant(0.0));
+        });
         run_unwatched(&uncertain(rebuilt(plan), link))
     };
     let of_mass = Source::SpecimenMass(0);
@@ -558,7 +560,7 @@ fn blows_on_a_storey_scatter_as_foretold() {
         storeys(&mut plan)[1].mass = mass;
         plan.strikers[0].velocity = velocity;
         plan.strikers[0].mass = striker;
-        let ProcedureKind::StoreyImpact(blow) = &mut plan.procedures[0].kind else {
+        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
             panic!()
         };
         blow.contact = Contact::Restitution {

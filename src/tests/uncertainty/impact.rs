@@ -66,7 +66,7 @@ fn all_uncertain(mut plan: Plan) -> Plan {
     plan.strikers[0].mass_uncertainty = 0.01 * STRIKER;
     plan.strikers[0].velocity_uncertainty = 0.01;
     if let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind {
-        impact.mass_uncertainty = 0.01 * MASS;
+        impact.point_mut().mass_uncertainty = 0.01 * MASS;
     }
     plan.rig.calibration = Calibration {
         force_uncertainty: 0.01,
@@ -152,9 +152,9 @@ fn an_elastic_blow_comes_out_by_its_closed_form() {
 #[test]
 fn the_critical_step_is_as_uncertain_as_the_ramp() {
     let blow = Impact {
-        mass_uncertainty: 0.02 * MASS,
         ..impact(result_of(0, "stiffness"))
-    };
+    }
+    .with_point(|point| point.mass_uncertainty = 0.02 * MASS);
     let mut plan = elastic_plan(
         STIFFNESS,
         vec![
@@ -268,10 +268,7 @@ fn runs_of_the_true_rig_scatter_as_foretold() {
         ..sticking(2e-3)
     };
     let with = |velocity: f64, mass: f64, force: f64| {
-        let mut plan = plan(Impact {
-            mass: constant(mass),
-            ..blow()
-        });
+        let mut plan = plan(Impact { ..blow() }.with_point(|point| point.mass = constant(mass)));
         plan.strikers[0].velocity = velocity;
         plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
             stiffness: force * STIFFNESS,
@@ -284,7 +281,7 @@ fn runs_of_the_true_rig_scatter_as_foretold() {
     doubtful.strikers[0].velocity_uncertainty = 0.01;
     doubtful.rig.calibration.force_uncertainty = 0.02;
     if let ProcedureKind::Impact(impact) = &mut doubtful.procedures[0].kind {
-        impact.mass_uncertainty = 0.02 * MASS;
+        impact.point_mut().mass_uncertainty = 0.02 * MASS;
     }
     let told = run_unwatched(&doubtful);
     let mut uniform = Uniform(20_060_101);
@@ -356,10 +353,8 @@ fn noise_scatters_runs_as_its_draws_foretell() {
 /// K of a ramp and X of a blow read on one cell: what the cell's factor does to K·X is what it does to either together.
 #[test]
 fn what_is_read_on_one_rig_shares_its_calibration() {
-    let blow = Impact {
-        stiffness: result_of(0, "stiffness"),
-        ..sticking(1e-3)
-    };
+    let blow =
+        Impact { ..sticking(1e-3) }.with_point(|point| point.stiffness = result_of(0, "stiffness"));
     let mut plan = elastic_plan(
         STIFFNESS,
         vec![
@@ -417,7 +412,7 @@ fn what_jumps_is_not_called_smooth() {
 #[test]
 fn a_record_that_does_not_lead_to_its_results_tells_none() {
     use crate::plan::formula::ProcedureId;
-    use crate::procedures::impact::run::Setting;
+    use crate::procedures::impact::setting::Setting;
     use crate::record::History;
     use crate::rig::DeclaredNoise;
     use crate::run::inputs::Inputs;
@@ -431,11 +426,13 @@ fn a_record_that_does_not_lead_to_its_results_tells_none() {
     };
     let mut inputs = Inputs::new(&record, ProcedureId(0));
     let noise = DeclaredNoise::default();
-    let setting = Setting::evaluate(blow, &plan.strikers[0], &mut inputs, noise)
+    let point = blow.point().unwrap();
+    let setting = Setting::of_point(blow, point, &plan.strikers[0], &mut inputs, noise)
         .ok()
         .unwrap();
-    let doubts =
-        crate::procedures::impact::uncertainty::ImpactUncertainty::new(blow, &plan, &inputs, noise);
+    let doubts = crate::procedures::impact::uncertainty::ImpactUncertainty::new(
+        blow, point, &plan, &inputs, noise,
+    );
     let summary = ImpactSummary {
         max_displacement: 0.2,
         time_of_max_displacement: 0.2,
@@ -524,12 +521,12 @@ fn a_guarded_limit_decides_nothing_where_the_blow_is_uncertain() {
 /// Two blows of one striker and one cell share velocity and calibration, and no error of their readings.
 #[test]
 fn blows_of_one_striker_share_what_is_uncertain_of_it() {
-    use crate::plan::{Between, BlowOn, Escalate};
+    use crate::plan::{Between, Escalate};
     let rising = Escalate {
-        blow: BlowOn::Specimen(Impact {
+        impact: Impact {
             until: crate::plan::Until::StrikerStop,
             ..sticking(1e-3)
-        }),
+        },
         velocities: vec![constant(0.5), constant(1.0)],
         energies: None,
         condition: Vec::new(),

@@ -4,7 +4,7 @@
 use super::frame::{constant, entry, from, shaken, storey};
 use crate::plan::formula::ResultValue;
 use crate::plan::{
-    Behaviour, Between, BlowOn, Contact, Frame, Plan, ProcedureKind, ShakeDamping, Stepping,
+    Behaviour, Between, Contact, Frame, Plan, ProcedureKind, ShakeDamping, Stepping,
 };
 use crate::record::Record;
 use crate::rig::virtual_rig;
@@ -96,9 +96,7 @@ fn row(velocities: &[f64], striker: f64) -> Plan {
     let ProcedureKind::Escalate(row) = &mut plan.procedures[0].kind else {
         panic!()
     };
-    let BlowOn::Storey(blow) = &mut row.blow else {
-        panic!()
-    };
+    let blow = &mut row.impact;
     blow.contact = Contact::Restitution {
         coefficient: constant(0.0),
     };

@@ -9,7 +9,7 @@ use crate::plan::{
     Behaviour, Bolted, Calibration, Contact, Impact, Link, Pinching, Plan, ProcedureKind, Until,
     VirtualLink,
 };
-use crate::procedures::impact::run::Setting;
+use crate::procedures::impact::setting::Setting;
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
@@ -194,8 +194,9 @@ fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
     };
     let record = run_unwatched(&plan);
     let mut inputs = Inputs::new(&record, ProcedureId(0));
-    let setting = Setting::evaluate(
+    let setting = Setting::of_point(
         &blow,
+        blow.point().unwrap(),
         &plan.strikers[0],
         &mut inputs,
         DeclaredNoise::default(),
@@ -214,7 +215,7 @@ fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
         truth(
             &input,
             until,
-            setting.steps,
+            setting.steps().count,
             &specimens(force, displacement)[specimen].1,
         )
     };

@@ -154,7 +154,7 @@ fn damped(damping: f64, uncertainty: f64) -> Record {
     let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
         panic!("no impact")
     };
-    blow.damping = Stated {
+    blow.point_mut().damping = Stated {
         source: Source::SpecimenMass(9),
         value: damping,
         uncertainty,

@@ -8,9 +8,9 @@ use psd::physics::tracking::monitor::Tracking;
 use psd::plan::formula::{Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue};
 use psd::plan::{
     Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule, Figure,
-    FigureKind, Impact, InspectTrigger, Integrator, Interval, Limits, Link, Mode, Parameter, Plan,
-    PlanFile, Procedure, ProcedureKind, RampFit, Report, Requirement, RigPlan, Settle, Specimen,
-    Stepping, StiffnessRamp, Striker, Test, Until, VirtualLink,
+    FigureKind, Impact, ImpactTarget, InspectTrigger, Integrator, Interval, Limits, Link, Mode,
+    Parameter, Plan, PlanFile, PointTarget, Procedure, ProcedureKind, RampFit, Report, Requirement,
+    RigPlan, Settle, Specimen, Stepping, StiffnessRamp, Striker, Test, Until, VirtualLink,
 };
 use psd::record::{
     BroughtTogether, Event, EventKind, History, ImpactHistory, ImpactStep, NamedResult, Outcome,
@@ -424,10 +424,12 @@ fn plan() -> Plan {
             ProcedureKind::Impact(Impact {
                 specimen: 0,
                 striker: 0,
-                mass: constant(MASS),
-                mass_uncertainty: 0.0,
-                stiffness: result(0, "stiffness"),
-                damping: constant(0.0),
+                target: ImpactTarget::Point(PointTarget {
+                    mass: constant(MASS),
+                    mass_uncertainty: 0.0,
+                    stiffness: result(0, "stiffness"),
+                    damping: constant(0.0),
+                }),
                 contact: Contact::Rigid,
                 stepping: Stepping {
                     integrator: Integrator::Tangent,

@@ -167,7 +167,7 @@ impl<'a> DryRun<'a> {
                     [impact(history), foretold, energy].concat(),
                 );
             }
-            if let (History::Impact(history), ProcedureKind::StoreyImpact(blow)) =
+            if let (History::Impact(history), ProcedureKind::Impact(blow)) =
                 (&procedure.history, &planned.kind)
                 && let Some(frame) = history
                     .frame
@@ -677,18 +677,20 @@ mod tests {
     fn example(farthest: f64) -> Plan {
         use crate::plan::formula::Formula::Constant;
         use crate::plan::{
-            Behaviour, Contact, Impact, Limits, Procedure, ProcedureKind, RigPlan, Settle,
-            Specimen, Stepping, Striker, Until,
+            Behaviour, Contact, Impact, ImpactTarget, Limits, PointTarget, Procedure,
+            ProcedureKind, RigPlan, Settle, Specimen, Stepping, Striker, Until,
         };
         use crate::tests::testing::every;
         let specimen = Specimen::new("beam", 1.0, Some(Behaviour::Elastic { stiffness: 327.65 }));
         let impact = Impact {
             specimen: 0,
             striker: 0,
-            mass: Constant(1.0),
-            mass_uncertainty: 0.0,
-            stiffness: Constant(327.65),
-            damping: Constant(0.0),
+            target: ImpactTarget::Point(PointTarget {
+                mass: Constant(1.0),
+                mass_uncertainty: 0.0,
+                stiffness: Constant(327.65),
+                damping: Constant(0.0),
+            }),
             contact: Contact::Rigid,
             stepping: Stepping {
                 max_tangent_ratio: Constant(2.0),

@@ -7,7 +7,7 @@
 
 use crate::language::check::warnings::tracking::late;
 use crate::plan::formula::ResultValue;
-use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, StoreyImpact, VirtualLink};
+use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
 use crate::record::{
     Floors, ImpactHistory, Modes, Outcome, ProcedureRecord, Record, ShakeHistory, StruckFrame,
 };
@@ -111,7 +111,7 @@ pub(crate) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> 
 /// The same of a frame that is struck.
 pub(crate) fn storey_rows(
     plan: &Plan,
-    impact: &StoreyImpact,
+    impact: &Impact,
     time_step: f64,
     history: &StruckFrame,
 ) -> Vec<Vec<String>> {

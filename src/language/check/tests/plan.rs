@@ -104,7 +104,9 @@ fn the_whole_plan_of_the_reference_checks_to_si() {
         matches!(hit.contact, Contact::Rigid) && hit.stepping.time_step.reads_critical_time_step()
     );
     assert_eq!(
-        hit.stiffness.as_result().map(|result| result.name),
+        hit.point()
+            .and_then(|point| point.stiffness.as_result())
+            .map(|result| result.name),
         Some("stiffness")
     );
     assert!(matches!(

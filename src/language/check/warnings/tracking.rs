@@ -7,11 +7,11 @@ use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::tracking::monitor;
 use crate::plan::formula::NoResults;
 use crate::plan::{
-    BlowOn, Contact, Frame, Impact, Link, Mode, Plan, ProcedureKind, ShakeDamping, Stepping,
-    StoreyImpact, Striker, VirtualLink,
+    Contact, Frame, Impact, ImpactTarget, Link, Mode, Plan, PointTarget, ProcedureKind,
+    ShakeDamping, Stepping, StoreyTarget, Striker, VirtualLink,
 };
 use crate::procedures;
-use crate::procedures::impact::check::time_step_before_the_run;
+use crate::procedures::impact::check::judge::time_step_before_the_run;
 
 /// Delay of the actuators of a procedure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,15 +74,10 @@ fn of_procedure(plan: &Plan, procedure: usize) -> Option<Delay> {
         ProcedureKind::Impact(impact) => {
             of_impact(plan, impact, plan.strikers.get(impact.striker)?)
         }
-        ProcedureKind::StoreyImpact(impact) => {
-            of_storey_impact(plan, impact, plan.strikers.get(impact.striker)?)
-        }
-        ProcedureKind::Escalate(escalate) => {
-            let fastest = escalate.fastest(plan.strikers.get(escalate.striker())?);
-            match &escalate.blow {
-                BlowOn::Specimen(impact) => of_impact(plan, impact, &fastest),
-                BlowOn::Storey(impact) => of_storey_impact(plan, impact, &fastest),
-            }
+        ProcedureKind::Escalate(series) => {
+            let impact = &series.impact;
+            let fastest = series.fastest(plan.strikers.get(impact.striker)?);
+            of_impact(plan, impact, &fastest)
         }
         ProcedureKind::Shake(shake) => {
             let of_frame = |properties: &FrameProperties| Some(properties.critical_time_step());
@@ -100,9 +95,16 @@ fn of_procedure(plan: &Plan, procedure: usize) -> Option<Delay> {
 }
 
 fn of_impact(plan: &Plan, impact: &Impact, striker: &Striker) -> Option<Delay> {
+    match &impact.target {
+        ImpactTarget::Point(point) => on_point(plan, impact, point, striker),
+        ImpactTarget::Storey(storey) => on_storey(plan, impact, storey, striker),
+    }
+}
+
+fn on_point(plan: &Plan, impact: &Impact, point: &PointTarget, striker: &Striker) -> Option<Delay> {
     let behaviour = plan.specimens.get(impact.specimen)?.behaviour.as_ref()?;
     // The stiffness from an earlier procedure is near the specimen's own.
-    let stiffness = impact
+    let stiffness = point
         .stiffness
         .constant()
         .unwrap_or_else(|| behaviour.initial_stiffness());
@@ -111,11 +113,16 @@ fn of_impact(plan: &Plan, impact: &Impact, striker: &Striker) -> Option<Delay> {
     Some(Delay {
         late,
         time_step,
-        omega: (stiffness / impact.mass.constant()?).sqrt(),
+        omega: (stiffness / point.mass.constant()?).sqrt(),
     })
 }
 
-fn of_storey_impact(plan: &Plan, impact: &StoreyImpact, striker: &Striker) -> Option<Delay> {
+fn on_storey(
+    plan: &Plan,
+    impact: &Impact,
+    target: &StoreyTarget,
+    striker: &Striker,
+) -> Option<Delay> {
     let stiffness = match &impact.contact {
         Contact::Hertz { stiffness, .. } => Some(stiffness.constant()?),
         _ => None,
@@ -123,10 +130,10 @@ fn of_storey_impact(plan: &Plan, impact: &StoreyImpact, striker: &Striker) -> Op
     of_frame_in_steps(
         plan,
         impact.specimen,
-        &impact.damping,
+        &target.damping,
         &impact.stepping,
         |properties| {
-            Some(properties.critical_on_impact(impact.struck, &striker.approach(stiffness)))
+            Some(properties.critical_on_impact(target.storey, &striker.approach(stiffness)))
         },
     )
 }

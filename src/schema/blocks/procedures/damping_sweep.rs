@@ -1,6 +1,7 @@
 //! `damping sweep`: its block and its results.
 
-use super::SPECIMEN;
+use crate::plan::procedure::damping_sweep::damping_sweep_fields;
+use crate::plan::procedure::declaration::fields;
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
 use crate::units::Dimension;
 
@@ -48,27 +49,7 @@ pub(crate) const BLOCK: BlockKind = BlockKind {
     keyword: &["damping", "sweep"],
     naming: Naming::Named,
     procedure: true,
-    fields: &[
-        SPECIMEN,
-        Field::quantities("velocities", Dimension::VELOCITY, "speeds of the ramps")
-            .required("velocities = [0.5, 1, 2, 5, 10] mm/s")
-            .above_zero(),
-        Field::quantity("stroke", Dimension::LENGTH, "length of each ramp")
-            .required("stroke = 1 mm")
-            .above_zero(),
-        Field::quantity("about", Dimension::LENGTH, "the middle of the strokes")
-            .or_said("they begin where the actuator is"),
-        Field::quantity(
-            "stiffness",
-            Dimension::STIFFNESS,
-            "K of the damping force R − K·X",
-        )
-        .required("stiffness = 300 kN/m")
-        .above_zero(),
-        Field::quantity("rate", Dimension::FREQUENCY, "sampling rate")
-            .above_zero()
-            .or_said("at least 50 samples on the steady part"),
-    ],
+    fields: damping_sweep_fields!(fields),
     exports: &[],
     results: RESULTS,
     example: "damping sweep c {\n  velocities = [1, 2, 5] mm/s\n  stroke = 1 mm\n  stiffness = 300 kN/m\n}",

@@ -14,12 +14,23 @@ pub(crate) mod unload;
 use crate::schema::types::{Field, Kind, Variant};
 use crate::units::Dimension;
 
-pub(crate) const SPECIMEN: Field =
-    Field::reference("specimen", Kind::Specimen, "what is tested").or_said("the only one declared");
+pub(crate) const SPECIMEN: Field = Field::specimen("specimen");
 
-pub(crate) const SPEED: Field = Field::quantity("speed", Dimension::VELOCITY, "actuator speed")
-    .above_zero()
-    .or_said("the rig's own");
+pub(crate) const SPEED: Field = Field::speed("speed");
+
+impl Field {
+    /// The specimen that a procedure tests.
+    pub(crate) const fn specimen(name: &'static str) -> Self {
+        Self::reference(name, Kind::Specimen, "what is tested").or_said("the only one declared")
+    }
+
+    /// The speed of the actuators.
+    pub(crate) const fn speed(name: &'static str) -> Self {
+        Self::quantity(name, Dimension::VELOCITY, "actuator speed")
+            .above_zero()
+            .or_said("the rig's own")
+    }
+}
 
 pub(crate) const INSPECT_TRIGGERS: &[Variant] = &[
     Variant::with(

@@ -1,6 +1,7 @@
 //! `move`: its block.
 
-use super::SPEED;
+use crate::plan::procedure::declaration::fields;
+use crate::plan::procedure::move_to::move_fields;
 use crate::schema::types::{BlockKind, Field, Kind, Naming};
 use crate::units::Dimension;
 
@@ -9,10 +10,7 @@ pub(crate) const BLOCK: BlockKind = BlockKind {
     keyword: &["move"],
     naming: Naming::Named,
     procedure: true,
-    fields: &[
-        Field::quantity("to", Dimension::LENGTH, "absolute target").required("to = 0 mm"),
-        SPEED,
-    ],
+    fields: move_fields!(fields),
     exports: &[],
     results: &[],
     example: "move home { to = 0 mm }",

@@ -1,15 +1,18 @@
-//! The figures of an impact: which there are, what each shows, and its curve on a chart of several impacts. In: a history. Out:
-//! [`Chart`]s in SI with their captions.
+//! The figures of an impact with their captions, and its curve on a chart of several impacts. In: a history. Out: [`Chart`]s in SI.
 
-use super::{figures, storey_figures};
+pub(crate) mod charts;
+pub(crate) mod storey;
+
 use crate::plan::{Figure, FigureKind};
+use crate::procedures::limit_lines::limits_on;
 use crate::record::ImpactHistory;
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
+use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 
-/// Those of an impact on one degree of freedom, in the order of a report.
+/// Figures of an impact on one degree of freedom, in the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::Displacement,
     FigureKind::Velocity,
@@ -20,7 +23,7 @@ pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::Tracking,
 ];
 
-/// Those of an impact on a storey.
+/// Figures of an impact on a storey.
 pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
     FigureKind::Modes,
     FigureKind::Displacement,
@@ -34,7 +37,7 @@ pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
     FigureKind::Tracking,
 ];
 
-/// Those that several impacts on one degree of freedom share: one curve of each.
+/// Figures that several impacts on one degree of freedom share: one curve of each.
 pub(crate) const SHARED: &[FigureKind] = &[
     FigureKind::Displacement,
     FigureKind::Velocity,
@@ -43,7 +46,7 @@ pub(crate) const SHARED: &[FigureKind] = &[
     FigureKind::ForceDisplacement,
 ];
 
-/// A figure of an impact and its caption; None before the first step, and of what it does not draw.
+/// A figure of an impact and its caption; None before the first step, or if it is no figure of an impact.
 pub(crate) fn chart(
     run: &Run<'_>,
     name: &str,
@@ -51,50 +54,50 @@ pub(crate) fn chart(
     figure: &Figure,
 ) -> Option<(Chart, String)> {
     if let Some(struck) = &history.frame {
-        return storey_figures::chart(run, name, history, struck, figure, figure.kind);
+        return storey::chart(run, name, history, struck, figure);
     }
     if history.steps.is_empty() {
         return None;
     }
     Some(match figure.kind {
         FigureKind::Displacement => (
-            figures::displacement(
+            charts::displacement(
                 history,
-                &figures::limits_on(run, figure.procedure, "max_displacement"),
+                &limits_on(run, figure.procedure, schema::MAX_DISPLACEMENT),
             ),
             format!(
                 "{name}: displacement of the structure and of the striker against virtual time."
             ),
         ),
         FigureKind::Velocity => (
-            figures::velocity(history),
+            charts::velocity(history),
             format!("{name}: velocity of the structure and of the striker against virtual time."),
         ),
         FigureKind::StrikerVelocity => (
-            figures::striker_velocity(history),
+            charts::striker_velocity(history),
             format!("{name}: velocity of the striker against virtual time; each fall is a blow."),
         ),
         FigureKind::ContactForce => (
-            figures::contact_force(
+            charts::contact_force(
                 history,
-                &figures::limits_on(run, figure.procedure, "max_contact_force"),
+                &limits_on(run, figure.procedure, schema::MAX_CONTACT_FORCE),
             ),
             format!("{name}: contact force, mean over each step, against virtual time."),
         ),
         FigureKind::ForceDisplacement => (
-            figures::force_displacement(history),
+            charts::force_displacement(history),
             format!(
                 "{name}: restoring force against computed displacement; the area below is the absorbed energy."
             ),
         ),
         FigureKind::Energy => (
-            figures::energy(history, figures::taken_by_contact(run, figure.procedure)),
+            charts::energy(history, charts::energy_of_contact(run, figure.procedure)),
             format!(
                 "{name}: where the energy of the striker went; the total of the parts stays level where the balance closes."
             ),
         ),
         FigureKind::Tracking => (
-            figures::tracking(history),
+            charts::tracking(history),
             if history
                 .steps
                 .iter()
@@ -111,7 +114,7 @@ pub(crate) fn chart(
     })
 }
 
-/// The curve that stands for this history on a chart of several; None of a figure that is not shared.
+/// The curve of this history on a chart of several; None for a figure that is not shared.
 pub(crate) fn shared(kind: FigureKind, history: &ImpactHistory) -> Option<SharedCurve> {
     if history.frame.is_some() {
         return None;

@@ -1,33 +1,36 @@
 //! Charts of an impact on one storey of a frame: those of an impact for striker and contact, those of a frame for floors and
 //! storeys, with the contact shaded in all that run over time. In: a history. Out: [`Chart`]s in SI with their captions.
 
+use super::charts;
 use crate::plan::{Figure, FigureKind};
-use crate::procedures::{base_excitation, impact};
+use crate::procedures::base_excitation;
+use crate::procedures::limit_lines::limits_on;
 use crate::record::{ImpactHistory, StruckFrame};
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
+use crate::schema::ResultKind;
+use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 
-/// None before the first step, and of what this procedure does not draw.
+/// A figure and its caption; None before the first step, or if it is no figure of an impact on a storey.
 pub(crate) fn chart(
     run: &Run<'_>,
     name: &str,
     history: &ImpactHistory,
     frame: &StruckFrame,
     figure: &Figure,
-    kind: FigureKind,
 ) -> Option<(Chart, String)> {
     if frame.floors.is_empty() {
         return None;
     }
-    let limits = |result| impact::figures::limits_on(run, figure.procedure, result);
+    let limits = |result: ResultKind| limits_on(run, figure.procedure, result);
     let chosen = if base_excitation::figures::is_chosen(&frame.floors) {
         "; not every one is drawn"
     } else {
         ""
     };
     let struck = frame.struck + 1;
-    Some(match kind {
+    Some(match figure.kind {
         FigureKind::Modes => (
             base_excitation::figures::modes(frame.modes.as_ref()?),
             format!(
@@ -40,7 +43,7 @@ pub(crate) fn chart(
                 base_excitation::figures::displacement(&frame.floors),
             );
             chart.series.push(striker(history, frame));
-            chart.references = limits("max_displacement");
+            chart.references = limits(schema::MAX_DISPLACEMENT);
             let caption = format!(
                 "{name}: displacement of each floor, and of the striker on floor {struck} while it is near, against virtual \
                  time{chosen}."
@@ -50,7 +53,7 @@ pub(crate) fn chart(
         FigureKind::Drift => (
             shaded(
                 history,
-                base_excitation::figures::drift(&frame.floors, &limits("max_drift")),
+                base_excitation::figures::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
             ),
             format!("{name}: drift of each storey against virtual time{chosen}."),
         ),
@@ -63,27 +66,28 @@ pub(crate) fn chart(
         FigureKind::BaseShear => (
             shaded(
                 history,
-                base_excitation::figures::base_shear(&frame.floors, &limits("max_base_shear")),
+                base_excitation::figures::base_shear(
+                    &frame.floors,
+                    &limits(schema::MAX_BASE_SHEAR),
+                ),
             ),
             format!(
                 "{name}: base shear, the sum of the measured restoring forces, against virtual time."
             ),
         ),
         FigureKind::Velocity => {
-            let mut chart = impact::figures::against_time(
-                history,
-                Quantity::of("Velocity", Dimension::VELOCITY),
-            );
+            let mut chart =
+                charts::against_time(history, Quantity::of("Velocity", Dimension::VELOCITY));
             let floor = Style::line(palette::BLUE, 1.6, SOLID);
             let striker = Style::line(palette::VERMILION, 2.0, DASHED);
             chart.series = vec![
-                impact::figures::series(
+                charts::series(
                     history,
                     &format!("floor {struck}"),
                     |step| step.velocity,
                     floor,
                 ),
-                impact::figures::series(history, "striker", |step| step.striker_velocity, striker),
+                charts::series(history, "striker", |step| step.striker_velocity, striker),
             ];
             (
                 chart,
@@ -93,18 +97,15 @@ pub(crate) fn chart(
             )
         }
         FigureKind::StrikerVelocity => (
-            impact::figures::striker_velocity(history),
+            charts::striker_velocity(history),
             format!("{name}: velocity of the striker against virtual time; each fall is a blow."),
         ),
         FigureKind::ContactForce => (
-            impact::figures::contact_force(history, &limits("max_contact_force")),
+            charts::contact_force(history, &limits(schema::MAX_CONTACT_FORCE)),
             format!("{name}: contact force, mean over each step, against virtual time."),
         ),
         FigureKind::Energy => (
-            impact::figures::energy(
-                history,
-                impact::figures::taken_by_contact(run, figure.procedure),
-            ),
+            charts::energy(history, charts::energy_of_contact(run, figure.procedure)),
             format!(
                 "{name}: where the energy of the striker went, all storeys together; the total of the parts stays level where \
                  the balance closes."
@@ -118,17 +119,17 @@ pub(crate) fn chart(
     })
 }
 
-/// Where the striker is, as long as it is near the floors.
+/// The position of the striker, as long as it is near the floors.
 fn striker(history: &ImpactHistory, frame: &StruckFrame) -> Series {
-    let places = frame
+    let positions = frame
         .floors
         .iter()
         .flat_map(|floors| floors.computed.iter().copied());
-    impact::figures::striker_near(history, places, Style::line(palette::BLACK, 1.4, DASHED))
+    charts::striker_near(history, positions, Style::line(palette::BLACK, 1.4, DASHED))
 }
 
 /// The contact behind a chart over virtual time.
 fn shaded(history: &ImpactHistory, chart: Chart) -> Chart {
-    let bands = impact::figures::against_time(history, Quantity::time()).bands;
+    let bands = charts::against_time(history, Quantity::time()).bands;
     Chart { bands, ..chart }
 }

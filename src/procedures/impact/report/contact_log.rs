@@ -1,16 +1,16 @@
-//! The contact log of an impact: every blow with its time, impulse and largest force. In: the steps. Out: a table.
+//! The contact log of an impact: every contact with its time, impulse and largest force. In: the steps. Out: a table.
 
 use crate::record::{ImpactHistory, ImpactStep, StepState};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::units::Dimension;
 
-/// Blows printed; the tables hold every step.
+/// Contacts printed; the tables hold every step.
 const PRINTED: usize = 24;
 
-/// A run of steps in contact or at the limit force.
+/// Consecutive steps in contact or at the limit force.
 #[derive(Debug, PartialEq)]
-struct Blow {
+struct Contact {
     start: f64,
     end: f64,
     impulse: f64,
@@ -21,24 +21,28 @@ struct Blow {
 
 /// The log, shortened where it is long.
 pub(crate) fn table(history: &ImpactHistory, body: &mut Vec<Block>) {
-    let blows = blows(&history.steps);
-    if blows.is_empty() {
+    let contacts = contacts(&history.steps);
+    if contacts.is_empty() {
         body.push(Block::paragraph("Striker and structure did not touch."));
         return;
     }
     let end = history.steps.last().map_or(0.0, |step| step.time);
-    let row = |(index, blow): (usize, &Blow)| -> Vec<Text> {
-        let limited = if blow.limited { " (limit force)" } else { "" };
+    let row = |(index, contact): (usize, &Contact)| -> Vec<Text> {
+        let limited = if contact.limited {
+            " (limit force)"
+        } else {
+            ""
+        };
         vec![
             format!(
                 "blow {} at {}{limited}",
                 index + 1,
-                number::text_beside(blow.start, end, Dimension::TIME)
+                number::text_beside(contact.start, end, Dimension::TIME)
             )
             .into(),
-            number::text(blow.end - blow.start, Dimension::TIME).into(),
-            number::text(blow.impulse, Dimension::IMPULSE).into(),
-            number::text(blow.largest_force, Dimension::FORCE).into(),
+            number::text(contact.end - contact.start, Dimension::TIME).into(),
+            number::text(contact.impulse, Dimension::IMPULSE).into(),
+            number::text(contact.largest_force, Dimension::FORCE).into(),
         ]
     };
     let columns = vec![
@@ -49,19 +53,19 @@ pub(crate) fn table(history: &ImpactHistory, body: &mut Vec<Block>) {
     ];
     body.push(Block::Table(Table {
         columns,
-        rows: blows.iter().take(PRINTED).enumerate().map(row).collect(),
+        rows: contacts.iter().take(PRINTED).enumerate().map(row).collect(),
     }));
-    if blows.len() > PRINTED {
+    if contacts.len() > PRINTED {
         body.push(Block::note(format!(
             "{} more blows are in the table of this procedure.",
-            blows.len() - PRINTED
+            contacts.len() - PRINTED
         )));
     }
 }
 
 /// A step's force is its mean over the time since the step before; step 0 has none.
-fn blows(steps: &[ImpactStep]) -> Vec<Blow> {
-    let mut blows: Vec<Blow> = Vec::new();
+fn contacts(steps: &[ImpactStep]) -> Vec<Contact> {
+    let mut contacts: Vec<Contact> = Vec::new();
     let mut touching = false;
     for pair in steps.windows(2) {
         let (before, step) = (&pair[0], &pair[1]);
@@ -71,14 +75,14 @@ fn blows(steps: &[ImpactStep]) -> Vec<Blow> {
         }
         let impulse = step.contact_force * (step.time - before.time);
         let limited = step.state == StepState::Limit;
-        match blows.last_mut().filter(|_| touched) {
-            Some(blow) => {
-                blow.end = step.time;
-                blow.impulse += impulse;
-                blow.largest_force = blow.largest_force.max(step.contact_force);
-                blow.limited |= limited;
+        match contacts.last_mut().filter(|_| touched) {
+            Some(contact) => {
+                contact.end = step.time;
+                contact.impulse += impulse;
+                contact.largest_force = contact.largest_force.max(step.contact_force);
+                contact.limited |= limited;
             }
-            None => blows.push(Blow {
+            None => contacts.push(Contact {
                 start: before.time,
                 end: step.time,
                 impulse,
@@ -87,7 +91,7 @@ fn blows(steps: &[ImpactStep]) -> Vec<Blow> {
             }),
         }
     }
-    blows
+    contacts
 }
 
 #[cfg(test)]
@@ -97,7 +101,7 @@ mod tests {
     use crate::physics::tracking::monitor::Tracking;
 
     #[test]
-    fn neighbouring_steps_of_contact_are_one_blow() {
+    fn consecutive_steps_in_contact_are_one_contact() {
         let step = |index: u32, state, contact_force| ImpactStep {
             step: u64::from(index),
             time: f64::from(index),
@@ -124,18 +128,18 @@ mod tests {
             step(3, StepState::Free, 0.0),
             step(4, StepState::Contact, 5.0),
         ];
-        let found = blows(&steps);
+        let found = contacts(&steps);
         assert_eq!(
             found,
             [
-                Blow {
+                Contact {
                     start: 0.0,
                     end: 2.0,
                     impulse: 12.0,
                     largest_force: 9.0,
                     limited: true
                 },
-                Blow {
+                Contact {
                     start: 3.0,
                     end: 4.0,
                     impulse: 5.0,

@@ -1,5 +1,5 @@
-//! Whether a striker arrives at all: its gap against the time an impact has. In: striker and duration, SI. Out: a fault where the
-//! blow is over before it begins. It knows neither specimen nor contact.
+//! Whether a striker arrives at all: the time to cross its gap against the duration of the impact. In: striker and duration, SI. Out: an
+//! error where the impact is over before the contact begins. It knows neither specimen nor contact.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::whole as fault;
@@ -13,8 +13,8 @@ fn time_to_arrive(striker: &Striker) -> f64 {
     2.0 * striker.gap / (striker.velocity + reached)
 }
 
-/// Holds the gap of a striker against the `duration` (s) of the impact `block`.
-pub fn hold(checker: &mut Checker, block: usize, striker: &Striker, duration: Option<f64>) {
+/// Refuses a striker that does not cross its gap within the `duration` (s) of the impact `block`.
+pub(crate) fn check(checker: &mut Checker, block: usize, striker: &Striker, duration: Option<f64>) {
     let arrives = time_to_arrive(striker);
     let Some(duration) = duration.filter(|duration| arrives >= *duration) else {
         return;
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_gap_takes_the_time_of_its_way() {
+    fn the_time_to_arrive_is_that_of_uniform_acceleration() {
         let striker = |velocity, gap, gravity| Striker {
             name: String::new(),
             mass: 1.0,
@@ -55,7 +55,7 @@ mod tests {
         };
         assert_eq!(time_to_arrive(&striker(2.0, 3.0, 0.0)), 1.5);
         assert_eq!(time_to_arrive(&striker(2.0, 0.0, 9.81)), 0.0);
-        // 1 m/s and 10 m/s²: after 1 s it has gone 1 m + 5 m.
+        // 1 m/s and 10 m/s²: after 1 s it has moved 1 m + 5 m.
         assert!((time_to_arrive(&striker(1.0, 6.0, 10.0)) - 1.0).abs() < 1e-12);
     }
 }

@@ -1,7 +1,7 @@
-//! Warnings of one blow: its step against eq. 7 and against what the limit force needs, its force against the mechanism of a portal.
-//! In: a blow, its striker and specimen. Out: warnings with the numbers.
+//! Warnings on one impact: its time step against eq. 7 and against the one that a limit force needs, its force against the mechanism of
+//! a portal. In: an impact, its striker and specimen. Out: warnings with the numbers.
 
-use super::check::{critical_foreseen, time_step_before_the_run};
+use super::judge::{predicted_critical, time_step_before_the_run};
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{specimens, whole as fault};
 use crate::physics::structure::portal_limit::mechanism_limit;
@@ -9,8 +9,8 @@ use crate::plan::formula::NoResults;
 use crate::plan::{Behaviour, Contact, Impact, Specimen, Striker};
 use crate::text::source::Span;
 
-/// Warnings of one impact: its step against eq. 7, unless more was said of it, and against what the limit force needs.
-pub fn impact(
+/// Warns of a time step above eq. 7, unless it is beyond the stability limit already, and above the one that a limit force needs.
+pub(crate) fn time_step(
     checker: &mut Checker,
     block: usize,
     impact: &Impact,
@@ -22,8 +22,8 @@ pub fn impact(
     let at = checker
         .field(block, "time_step")
         .map_or(head, |(_, entry)| entry.value.span);
-    let critical = critical_foreseen(checker, impact, striker, specimen);
-    if let Some((critical, foreseen)) = critical
+    let critical = predicted_critical(checker, impact, striker, specimen);
+    if let Some((critical, predicted)) = critical
         && let Ok(step) = impact
             .stepping
             .time_step
@@ -31,7 +31,7 @@ pub fn impact(
         && step.value > critical
         && !allowed_beyond_stability
     {
-        let fault = if foreseen {
+        let fault = if predicted {
             fault::step_above_predicted
         } else {
             fault::step_above_critical
@@ -41,15 +41,16 @@ pub fn impact(
     let Some(step) = time_step_before_the_run(impact, striker) else {
         return;
     };
-    if let (Contact::Limit { force }, Some(mass)) = (&impact.contact, impact.mass.constant())
+    let mass = impact.point().and_then(|point| point.mass.constant());
+    if let (Contact::Limit { force }, Some(mass)) = (&impact.contact, mass)
         && let Some(force) = force.constant()
     {
-        limit_force(checker, at, step, (mass, force), striker);
+        limit_force(checker, at, step, mass, force, striker);
     }
 }
 
-/// A contact force that may grow beyond what the mechanism of a portal follows.
-pub fn mechanism(
+/// Warns of a contact force that may exceed the mechanism load of a portal.
+pub(crate) fn mechanism(
     checker: &mut Checker,
     block: usize,
     impact: &Impact,
@@ -72,20 +73,20 @@ pub fn mechanism(
     {
         checker.diagnostics.push(specimens::beyond_mechanism(
             portal.mechanism(),
-            force,
-            most,
+            (force, most),
             entry.value.span,
         ));
     }
 }
 
-/// What a limit force (N) needs of the time step, on a structure of `mass` (kg): Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and
+/// Warns of a time step, s, that does not resolve a limit force (N) on a structure of `mass` (kg): Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and
 /// Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
-pub fn limit_force(
+pub(crate) fn limit_force(
     checker: &mut Checker,
     at: Span,
     step: f64,
-    (mass, force): (f64, f64),
+    mass: f64,
+    force: f64,
     striker: &Striker,
 ) {
     let first =

@@ -1,18 +1,21 @@
-//! An impact on one degree of freedom as a report gives it: what a reader of its peak force must know, how it was integrated, the
-//! energy balance, the contact log. In: a plan and a record. Out: blocks.
+//! An impact on one degree of freedom, as a report states it: the limits of its peak force, the integration, the energy balance, the
+//! contact log. In: a plan and a record. Out: blocks.
 
-use super::contact_log;
-use crate::plan::{Contact, Impact, Integrator, ProcedureKind};
+pub(crate) mod contact_log;
+pub(crate) mod storey;
+
+use crate::plan::{Contact, Impact, Integrator, PointTarget, ProcedureKind};
 use crate::procedures;
+use crate::procedures::stepping::energy;
 use crate::record::{ImpactHistory, ProcedureRecord};
 use crate::report::content::method;
-use crate::report::document::{Block, Column, Table, Text};
-use crate::report::number::percent;
+use crate::report::document::Block;
 use crate::report::{Run, number};
+use crate::schema::procedures::{damping_sweep, impact as schema};
 use crate::units::Dimension;
 
-/// Results that are worth a budget where no requirement reads any.
-pub(crate) const BUDGET: &[&str] = &["max_displacement", "absorbed_energy"];
+/// Results that have a budget where no requirement reads any.
+pub(crate) const BUDGET: &[&str] = &[schema::MAX_DISPLACEMENT.name, schema::ABSORBED_ENERGY.name];
 
 /// The blocks below its results.
 pub(crate) fn report(
@@ -28,7 +31,7 @@ pub(crate) fn report(
     contact_log::table(history, body);
 }
 
-/// What a reader of a peak contact force must know: the impulse, the step, and what the law makes of them.
+/// The peak contact force with its impulse, time step and contact law.
 fn force_note(
     run: &Run<'_>,
     index: usize,
@@ -41,11 +44,12 @@ fn force_note(
     else {
         return;
     };
+    let Some(point) = impact.point() else { return };
     let step = number::text(history.time_step, Dimension::TIME);
     let critical = number::text(history.critical_time_step, Dimension::TIME);
     let forces = match (
-        procedure.number("max_contact_force"),
-        procedure.number("impulse"),
+        procedure.number(schema::MAX_CONTACT_FORCE.name),
+        procedure.number(schema::IMPULSE.name),
     ) {
         (Some(peak), Some(impulse)) => format!(
             "Peak contact force {} with an impulse of {} at a time step of {step}.",
@@ -65,27 +69,27 @@ fn force_note(
              blow, the peak is not."
                 .to_owned(),
         );
-        sentences.extend(implied_restitution(run, procedure, impact));
+        sentences.extend(implied_restitution(run, procedure, impact, point));
     }
-    sentences.extend(damping_range(run, procedure, impact));
+    sentences.extend(damping_range(run, procedure, point));
     body.push(Block::paragraph(sentences.join(" ")));
 }
 
-/// How far the damping of a sweep is carried beyond the velocities it was measured at: an extrapolation.
-fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) -> Vec<String> {
+/// The extrapolation of the damping of a sweep beyond the velocities at which it was measured.
+fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, point: &PointTarget) -> Vec<String> {
     let mut references = Vec::new();
-    impact.damping.collect_references(&mut references);
+    point.damping.collect_references(&mut references);
     let swept = references
         .iter()
         .filter_map(|reference| run.record.procedures.get(reference.procedure.0));
     let ranges = swept.filter_map(|sweep| {
         Some((
             &sweep.name,
-            sweep.number("max_velocity")?,
-            procedure.number("max_velocity")?,
+            sweep.number(damping_sweep::MAX_VELOCITY.name)?,
+            procedure.number(schema::MAX_VELOCITY.name)?,
         ))
     });
-    let told = ranges.filter(|(_, _, used)| *used > 0.0).map(|(name, measured, used)| {
+    let sentences = ranges.filter(|(_, _, used)| *used > 0.0).map(|(name, measured, used)| {
         format!(
             "The damping of {name} was measured up to {}, {}\u{a0}% of the largest velocity of the structure here ({}){}",
             number::text(measured, Dimension::VELOCITY),
@@ -94,7 +98,7 @@ fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, impact: &Impact) ->
             if used > measured { ": it is an extrapolation." } else { "." }
         )
     });
-    told.collect()
+    sentences.collect()
 }
 
 /// The law of contact as the plan chose it, in words.
@@ -107,11 +111,12 @@ pub(crate) fn contact_law(contact: &Contact) -> &'static str {
     }
 }
 
-/// e = Ms/(Ms + 2M): what the rigid law is as the time step goes to zero.
+/// e = Ms/(Ms + 2M): the limit of the rigid law as the time step goes to zero.
 fn implied_restitution(
     run: &Run<'_>,
     procedure: &ProcedureRecord,
     impact: &Impact,
+    point: &PointTarget,
 ) -> Option<String> {
     let mass = procedure
         .inputs
@@ -123,7 +128,7 @@ fn implied_restitution(
         .strikers
         .get(impact.striker)
         .map(|striker| striker.mass);
-    let (mass, striker) = (mass.or_else(|| impact.mass.constant())?, striker?);
+    let (mass, striker) = (mass.or_else(|| point.mass.constant())?, striker?);
     let restitution = striker / (striker + 2.0 * mass);
     Some(format!(
         "It implies a coefficient of restitution e = Ms/(Ms + 2M) = {} (Ms striker mass, M equivalent mass of the structure).",
@@ -131,7 +136,7 @@ fn implied_restitution(
     ))
 }
 
-/// How it was integrated and followed.
+/// The integration and the tracking.
 fn method_note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut Vec<Block>) {
     let Some(ProcedureKind::Impact(impact)) =
         run.plan.procedures.get(index).map(|planned| &planned.kind)
@@ -177,7 +182,7 @@ fn tracking(history: &ImpactHistory) -> Option<String> {
     ))
 }
 
-/// What the contact took, as it is summed over the steps: from the forces at their ends, or within them.
+/// The energy that the contact took, as it is summed over the steps: from the forces at their ends, or within them.
 pub(crate) fn contact_work(run: &Run<'_>, index: usize) -> &'static str {
     let planned = run.plan.procedures.get(index);
     match planned.and_then(|planned| procedures::facts_of(&planned.kind).contact) {
@@ -188,7 +193,7 @@ pub(crate) fn contact_work(run: &Run<'_>, index: usize) -> &'static str {
     }
 }
 
-/// Where the striker's energy was at the end of the run.
+/// The balance of the striker's energy at the end of the run.
 pub(crate) fn energy_balance(
     contact_work: &'static str,
     history: &ImpactHistory,
@@ -207,37 +212,12 @@ pub(crate) fn energy_balance(
         (contact_work, e.contact_loss),
         ("integration error", e.error),
     ];
-    let row = |(name, energy): (&str, f64)| -> Vec<Text> {
-        let share = if input > 0.0 {
-            percent(energy / input)
-        } else {
-            "—".to_owned()
-        };
-        vec![
-            name.into(),
-            number::part_of(energy, input, 5, Dimension::ENERGY).into(),
-            share.into(),
-        ]
-    };
-    let given = if e.weight == 0.0 {
+    let name = if e.weight == 0.0 {
         "input, ½MsV₀²"
     } else {
         "input, ½MsV₀² and the work of the weight"
     };
-    let input_row = vec![
-        given.into(),
-        number::part_of(input, input, 5, Dimension::ENERGY).into(),
-        "100\u{a0}%".into(),
-    ];
-    let columns = vec![
-        Column::words("Energy balance at the end of the run", 1),
-        Column::numbers("Energy"),
-        Column::numbers("Of the input"),
-    ];
-    body.push(Block::Table(Table {
-        columns,
-        rows: std::iter::once(input_row).chain(parts.map(row)).collect(),
-    }));
+    body.push(energy::balance_table((name, input), &parts));
     if e.indentation > 0.0 {
         body.push(Block::note(format!(
             "Indentation energy F·Δδp, an indicator and no part of the balance: {}. It equals the work lost in the contact only as the time \

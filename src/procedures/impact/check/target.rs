@@ -1,23 +1,21 @@
-//! `impact NAME { storey = 2 … }`: a striker on one floor of a frame. In: a block whose specimen is a frame. Out: the impact,
-//! and what its time step must be held against.
+//! The structure that a striker hits: the fields of one degree of freedom, or of one floor of a frame. In: a block. Out: the target, or
+//! errors where a field belongs to the other one.
 
 use std::rc::Rc;
 
 use crate::language::check::checker::Checker;
-use crate::language::check::declarations::specimen::frame;
+use crate::language::check::declarations::specimen::{self, frame};
 use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::frames as fault;
-use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::formula::Formula;
-use crate::plan::{Contact, Frame, StoreyImpact, Striker};
-use crate::procedures::impact::warnings;
-use crate::procedures::stepping::check::FrameSteps;
-use crate::procedures::stepping::integrator_check;
-use crate::procedures::{base_excitation, impact, stepping};
-use crate::schema::Kind;
+use crate::plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
+use crate::procedures::base_excitation;
 
-/// The frame that a block strikes one storey of; None where it strikes one degree of freedom, or nothing that is known.
-pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Option<Rc<Frame>>)> {
+/// The block of the frame whose storey is struck, and the frame; None where one degree of freedom is struck, or no known specimen.
+pub(crate) fn struck_frame(
+    checker: &mut Checker,
+    block: usize,
+) -> Option<(usize, Option<Rc<Frame>>)> {
     let specimen = checker
         .tested(block)
         .filter(|specimen| frame::is_frame(checker, *specimen))?;
@@ -28,16 +26,43 @@ pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Optio
     (several || checker.field(block, "storey").is_some()).then_some((specimen, frame))
 }
 
-pub fn storey_impact(
+/// One degree of freedom, of the specimen at the block `tested`.
+pub(crate) fn point(
     checker: &mut Checker,
     block: usize,
-    specimen: usize,
+    tested: Option<usize>,
+) -> Option<ImpactTarget> {
+    let head = checker.scope.blocks[block].block.head;
+    let fields_of_a_frame = no_frame(checker, block, tested);
+    let mass = match checker.field(block, "mass") {
+        Some(_) => checker.quantity(block, "mass"),
+        None => tested
+            .and_then(|tested| specimen::export(checker, tested, "mass", head))
+            .map(Formula::Constant),
+    };
+    let mass_uncertainty = match checker.field(block, "mass") {
+        Some(_) => Some(0.0),
+        None => tested.and_then(|tested| specimen::mass_uncertainty(checker, tested)),
+    };
+    let stiffness = checker.stiffness_or_specimens(block, tested);
+    let damping = checker.quantity(block, "damping");
+    fields_of_a_frame?;
+    Some(ImpactTarget::Point(PointTarget {
+        mass: mass?,
+        mass_uncertainty: mass_uncertainty?,
+        stiffness: stiffness?,
+        damping: damping?,
+    }))
+}
+
+/// One floor of the frame that the block `tested` declares.
+pub(crate) fn storey(
+    checker: &mut Checker,
+    block: usize,
+    tested: usize,
     frame: Option<&Rc<Frame>>,
-) -> Option<StoreyImpact> {
-    let striker = checker.reference(block, "striker", Kind::Striker);
-    // Named or the only one: what is wrong with the name was not said before.
-    let named = checker.specimen_block(block);
-    let struck = storey(checker, block, specimen, frame);
+) -> Option<ImpactTarget> {
+    let storey = struck_storey(checker, block, tested, frame);
     let own = [
         (
             "mass",
@@ -68,36 +93,18 @@ pub fn storey_impact(
     let damping = base_excitation::check::damping(checker, block);
     let damping_uncertainty =
         base_excitation::check::damping_uncertainty(checker, block, damping.as_ref());
-    let contact = impact::check::contact(checker, block);
-    let stepping =
-        stepping::check::stepping(checker, block, contact.as_ref(), impact::check::FINER);
-    let duration = checker.quantity(block, "duration");
-    let until = impact::check::until(checker, block);
     if foreign {
         return None;
     }
-    let impact = StoreyImpact {
-        specimen: checker.scope.index_in_kind(named?),
-        striker: checker.scope.index_in_kind(striker?),
-        struck: struck?,
+    Some(ImpactTarget::Storey(StoreyTarget {
+        storey: storey?,
         damping: damping?,
         damping_uncertainty: damping_uncertainty?,
-        contact: contact?,
-        stepping: stepping?,
-        duration: duration?,
-        until: until?,
-    };
-    integrator_check::meets_the_contact(
-        checker,
-        block,
-        impact.stepping.integrator,
-        &impact.contact,
-    )?;
-    Some(impact)
+    }))
 }
 
 /// The struck floor, from 0.
-fn storey(
+fn struck_storey(
     checker: &mut Checker,
     block: usize,
     specimen: usize,
@@ -124,55 +131,8 @@ fn storey(
     storey.checked_sub(1)
 }
 
-/// What the time step must be held against, as far as it is known before the run: what that of any frame must be, and what a
-/// limit force needs.
-pub fn judge(
-    checker: &mut Checker,
-    block: usize,
-    impact: &StoreyImpact,
-    frame: &Frame,
-    striker: &Striker,
-) {
-    let StoreyImpact {
-        specimen,
-        damping,
-        stepping,
-        ..
-    } = impact;
-    impact::check::returns(checker, block, impact.until, striker);
-    let steps = FrameSteps {
-        specimen: *specimen,
-        frame,
-        damping,
-        stepping,
-        duration: impact.duration.constant(),
-    };
-    let critical = |properties: &FrameProperties| {
-        let approach = impact.contact.approach(striker, Formula::constant);
-        approach.map(|approach| properties.critical_on_impact(impact.struck, &approach))
-    };
-    let Some((properties, step)) = stepping::check::judge(checker, block, &steps, critical) else {
-        return;
-    };
-    if let Contact::Limit { force } = &impact.contact
-        && let Some(force) = force.constant()
-    {
-        let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, "time_step")
-            .map_or(head, |(_, entry)| entry.value.span);
-        warnings::limit_force(
-            checker,
-            at,
-            step,
-            (properties.struck_mass(impact.struck), force),
-            striker,
-        );
-    }
-}
-
-/// In an impact on one degree of freedom: what only a frame has.
-pub fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) -> Option<()> {
+/// Refuses the fields of a frame in an impact on one degree of freedom.
+fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) -> Option<()> {
     let mut sound = Some(());
     let hints = [
         ("damping_ratio", "write `damping = 50 N*s/m`"),

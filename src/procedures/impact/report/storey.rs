@@ -1,19 +1,20 @@
-//! An impact on one storey of a frame, as a report tells it: the contact, the modes, what each storey went through and took,
-//! the energy, the blows. In: a plan and a record. Out: blocks.
+//! An impact on one storey of a frame, as a report states it: the contact, the modes, the response and the energy of each
+//! storey, the energy balance, the contact log. In: a plan and a record. Out: blocks.
 
-use super::contact_log;
-use super::report::{contact_law, contact_work, energy_balance};
+use super::{contact_law, contact_log, contact_work, energy_balance};
 use crate::plan::formula::ResultValue;
-use crate::plan::{Contact, Mode, ProcedureKind, StoreyImpact};
+use crate::plan::{Contact, Impact, Mode, ProcedureKind, StoreyTarget};
 use crate::procedures::base_excitation;
+use crate::procedures::stepping::energy;
 use crate::record::{ImpactHistory, ProcedureRecord, StruckFrame};
 use crate::report::content::tracking;
 use crate::report::document::{Block, Column, Table, Text};
-use crate::report::number::percent;
 use crate::report::{Run, number};
+use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 
-pub(crate) fn struck(
+/// The blocks below its results.
+pub(crate) fn report(
     run: &Run<'_>,
     index: usize,
     procedure: &ProcedureRecord,
@@ -21,15 +22,20 @@ pub(crate) fn struck(
     struck: &StruckFrame,
     body: &mut Vec<Block>,
 ) {
-    let Some(ProcedureKind::StoreyImpact(impact)) =
+    let Some(ProcedureKind::Impact(impact)) =
         run.plan.procedures.get(index).map(|planned| &planned.kind)
     else {
         return;
     };
+    let Some(target) = impact.storey() else {
+        return;
+    };
     let Some(modes) = &struck.modes else { return };
-    body.push(Block::paragraph(told(
-        run, impact, procedure, history, struck,
-    )));
+    let mut sentences = method(run, impact, target, history, struck);
+    sentences.extend(peak_force(impact, procedure));
+    sentences.extend(struck_mass(run, impact, target));
+    sentences.extend(tracking::sentence(procedure));
+    body.push(Block::paragraph(sentences.join(" ")));
     body.push(base_excitation::report::mode_table(
         modes,
         &struck.damping_ratios,
@@ -46,7 +52,7 @@ pub(crate) fn struck(
         procedure,
         &struck.floors,
         frame,
-        "floor_displacement",
+        schema::FLOOR_DISPLACEMENT,
     ));
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure));
@@ -54,14 +60,14 @@ pub(crate) fn struck(
     contact_log::table(history, body);
 }
 
-/// What was struck, how it was integrated, and what a reader of the peak force must know.
-fn told(
+/// Where the frame was struck, and how it was integrated.
+fn method(
     run: &Run<'_>,
-    impact: &StoreyImpact,
-    procedure: &ProcedureRecord,
+    impact: &Impact,
+    target: &StoreyTarget,
     history: &ImpactHistory,
     struck: &StruckFrame,
-) -> String {
+) -> Vec<String> {
     let time = |value| number::text(value, Dimension::TIME);
     let step = time(history.time_step);
     let critical = match impact.contact {
@@ -80,7 +86,7 @@ fn told(
         base_excitation::report::integrated(
             base_excitation::report::frame_of(run, impact.specimen),
             impact.stepping.integrator,
-            &impact.damping,
+            &target.damping,
             &struck.damping_ratios,
         ),
         format!(
@@ -102,9 +108,15 @@ fn told(
             number::text(time_scale, Dimension::NUMBER)
         ));
     }
+    sentences
+}
+
+/// The peak contact force with its impulse, and its limits under the rigid law.
+fn peak_force(impact: &Impact, procedure: &ProcedureRecord) -> Vec<String> {
+    let mut sentences = Vec::new();
     if let (Some(peak), Some(impulse)) = (
-        procedure.number("max_contact_force"),
-        procedure.number("impulse"),
+        procedure.number(schema::MAX_CONTACT_FORCE.name),
+        procedure.number(schema::IMPULSE.name),
     ) {
         sentences.push(format!(
             "Peak contact force {} with an impulse of {} at this time step.",
@@ -119,16 +131,14 @@ fn told(
                 .to_owned(),
         );
     }
-    sentences.extend(met(run, impact));
-    sentences.extend(tracking::sentence(procedure));
-    sentences.join(" ")
+    sentences
 }
 
-/// What a blow of no duration meets: the mass of that floor alone, and under the rigid law e = Ms/(Ms + 2M) with it.
-fn met(run: &Run<'_>, impact: &StoreyImpact) -> Option<String> {
+/// The mass that an impact of no duration meets: that of the floor alone; under the rigid law, e = Ms/(Ms + 2M) with it.
+fn struck_mass(run: &Run<'_>, impact: &Impact, target: &StoreyTarget) -> Option<String> {
     let frame = run.plan.specimens.get(impact.specimen)?.frame.as_ref()?;
     let striker = run.plan.strikers.get(impact.striker)?.mass;
-    let floor = frame.storeys.get(impact.struck)?.mass;
+    let floor = frame.storeys.get(target.storey)?.mass;
     let mass = number::stated(floor, Dimension::MASS);
     let implied = matches!(impact.contact, Contact::Rigid).then(|| {
         let restitution = number::text(striker / (striker + 2.0 * floor), Dimension::NUMBER);
@@ -140,26 +150,21 @@ fn met(run: &Run<'_>, impact: &StoreyImpact) -> Option<String> {
     ))
 }
 
-/// What each storey took of the energy: its shear over its drift, to the end of the run.
+/// The energy that each storey absorbed: its shear over its drift, to the end of the run.
 fn storey_energies(procedure: &ProcedureRecord) -> Block {
-    let Some(result) = procedure.result("storey_energy") else {
+    let Some(result) = procedure.result(schema::STOREY_ENERGY.name) else {
         return Block::note(String::new());
     };
     let energies = match &result.value {
         ResultValue::List(energies) => energies.as_slice(),
         ResultValue::Number { .. } => &[],
     };
-    let input = procedure.number("striker_energy").unwrap_or(0.0);
+    let input = procedure.number(schema::STRIKER_ENERGY.name).unwrap_or(0.0);
     let row = |(storey, energy): (usize, &f64)| -> Vec<Text> {
-        let share = if input > 0.0 {
-            percent(energy / input)
-        } else {
-            "—".to_owned()
-        };
         vec![
             format!("storey {}", storey + 1).into(),
             base_excitation::report::entry(result, storey),
-            share.into(),
+            energy::fraction(*energy, input).into(),
         ]
     };
     let columns = vec![

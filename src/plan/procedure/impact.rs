@@ -1,0 +1,130 @@
+//! A checked `impact`: a computed striker meets a structure on the rig, one degree of freedom or one floor of a frame. In: formulas
+//! from the check. Out: SI numbers, and the critical time step as far as they are known. It integrates nothing.
+
+use crate::physics::contact::contact_time_step::Approach;
+use crate::plan::formula::Formula;
+use crate::plan::{ShakeDamping, Stepping, Striker, Until};
+
+/// A striker, which is computed, meets a structure, which is on the rig (Melo et al. 2006, eqs. 4 and 5).
+#[derive(Clone, Debug)]
+pub struct Impact {
+    /// Index into `Plan::specimens`.
+    pub specimen: usize,
+    /// Index into `Plan::strikers`.
+    pub striker: usize,
+    pub target: ImpactTarget,
+    pub contact: Contact,
+    pub stepping: Stepping,
+    /// Upper bound of virtual time, s.
+    pub duration: Formula,
+    pub until: Until,
+}
+
+/// The part of the specimen that the striker meets.
+#[derive(Clone, Debug)]
+pub enum ImpactTarget {
+    /// A specimen of one degree of freedom.
+    Point(PointTarget),
+    /// One floor of a frame.
+    Storey(StoreyTarget),
+}
+
+/// A struck degree of freedom.
+#[derive(Clone, Debug)]
+pub struct PointTarget {
+    /// M, kg
+    pub mass: Formula,
+    /// Standard uncertainty of a mass that is the specimen's, kg; 0 where none is stated, or the mass is another.
+    pub mass_uncertainty: f64,
+    /// K0, N/m
+    pub stiffness: Formula,
+    /// C of eqs. 4–5, N·s/m
+    pub damping: Formula,
+}
+
+/// A struck floor; the specimen has a frame.
+#[derive(Clone, Debug)]
+pub struct StoreyTarget {
+    /// The struck floor, from 0.
+    pub storey: usize,
+    pub damping: ShakeDamping,
+    /// Standard, of each damping ratio; 0 where none is stated.
+    pub damping_uncertainty: f64,
+}
+
+impl Impact {
+    /// The struck degree of freedom; None where a floor is struck.
+    #[must_use]
+    pub const fn point(&self) -> Option<&PointTarget> {
+        match &self.target {
+            ImpactTarget::Point(point) => Some(point),
+            ImpactTarget::Storey(_) => None,
+        }
+    }
+
+    /// The struck floor; None where one degree of freedom is struck.
+    #[must_use]
+    pub const fn storey(&self) -> Option<&StoreyTarget> {
+        match &self.target {
+            ImpactTarget::Point(_) => None,
+            ImpactTarget::Storey(storey) => Some(storey),
+        }
+    }
+
+    /// Critical time step of an impact of this striker on one degree of freedom, s, as far as `known` knows mass and stiffnesses; None
+    /// where a floor is struck.
+    pub fn critical_time_step(
+        &self,
+        striker: &Striker,
+        known: impl Fn(&Formula) -> Option<f64>,
+    ) -> Option<f64> {
+        let PointTarget {
+            mass, stiffness, ..
+        } = self.point()?;
+        let approach = self.contact.approach(striker, &known)?;
+        Some(approach.critical_time_step(known(mass)?, known(stiffness)?))
+    }
+}
+
+/// The contact law of striker and structure.
+#[derive(Clone, Debug)]
+pub enum Contact {
+    Rigid,
+    /// N
+    Limit {
+        force: Formula,
+    },
+    Restitution {
+        coefficient: Formula,
+    },
+    /// k in N/m^1.5; `loss` is the Hunt–Crossley factor in s/m: F = k δ^1.5 (1 + loss·δ̇).
+    Hertz {
+        stiffness: Formula,
+        loss: Formula,
+        force_limit: Option<Formula>,
+    },
+}
+
+impl Contact {
+    /// k of a contact of finite stiffness, N/m^1.5; None of a law that has none.
+    #[must_use]
+    pub const fn stiffness(&self) -> Option<&Formula> {
+        match self {
+            Self::Hertz { stiffness, .. } => Some(stiffness),
+            Self::Rigid | Self::Limit { .. } | Self::Restitution { .. } => None,
+        }
+    }
+
+    /// How this striker arrives, as far as `known` knows the stiffness it meets.
+    pub fn approach(
+        &self,
+        striker: &Striker,
+        known: impl Fn(&Formula) -> Option<f64>,
+    ) -> Option<Approach> {
+        let hertz = match self.stiffness() {
+            Some(stiffness) => Some(known(stiffness)?),
+            None => None,
+        };
+        Some(striker.approach(hertz))
+    }
+}

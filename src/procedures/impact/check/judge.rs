@@ -1,0 +1,217 @@
+//! The check of an impact against striker and specimen: its time step, its end, whether the striker arrives. In: an impact and the
+//! declarations of the plan. Out: errors and warnings.
+
+use super::{arrival, warnings};
+use crate::language::check::checker::Checker;
+use crate::language::check::declared::Declared;
+use crate::language::check::messages::values;
+use crate::physics::structure::frame_properties::FrameProperties;
+use crate::plan::formula::{Formula, NoResults, Part, ResultReference, ResultValue, Results};
+use crate::plan::{
+    Contact, Frame, Impact, ImpactTarget, MOST_STEPS, PointTarget, Specimen, StoreyTarget, Striker,
+    Until, steps_in,
+};
+use crate::procedures::stepping;
+use crate::procedures::stepping::check::{FrameSteps, beyond_duration};
+use crate::procedures::stepping::{integrator_check, mode_check};
+use crate::schema::procedures::{cycle, stiffness_ramp};
+use crate::text::diagnostic::Code;
+
+/// The slowest striker must arrive, the time step must follow the fastest.
+pub(crate) struct Strikers<'a> {
+    pub slowest: &'a Striker,
+    pub fastest: &'a Striker,
+}
+
+/// Judges an impact of these strikers.
+pub(crate) fn judge(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    strikers: &Strikers<'_>,
+    declared: &Declared<'_>,
+) {
+    match &impact.target {
+        ImpactTarget::Point(point) => {
+            let specimen = declared.specimen(impact.specimen);
+            on_point(checker, block, impact, point, strikers.fastest, specimen);
+        }
+        ImpactTarget::Storey(target) => {
+            let Some(frame) = declared.frame(impact.specimen) else {
+                return;
+            };
+            on_storey(checker, block, impact, target, frame, strikers.fastest);
+        }
+    }
+    arrival::check(checker, block, strikers.slowest, impact.duration.constant());
+}
+
+/// An impact on one degree of freedom, as far as its quantities are known before the run; a stiffness that is yet to be measured is
+/// predicted. Checks the number of steps, stability, the critical time step and the time step of a limit force.
+fn on_point(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    point: &PointTarget,
+    striker: &Striker,
+    specimen: Option<&Specimen>,
+) {
+    let critical =
+        predicted_critical(checker, impact, striker, specimen).map(|(critical, _)| critical);
+    let time_step = impact
+        .stepping
+        .time_step
+        .evaluate(&NoResults, critical)
+        .ok()
+        .map(|step| step.value);
+    if let (Some(time_step), Some(duration)) = (time_step, impact.duration.constant())
+        && steps_in(duration, time_step) > MOST_STEPS
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker
+            .field(block, "duration")
+            .map_or(head, |(_, entry)| entry.value.span);
+        let steps = steps_in(duration, time_step);
+        let help = "shorten `duration` or take a longer `time_step`";
+        checker
+            .diagnostics
+            .push(values::too_many("steps", steps, MOST_STEPS, at, help));
+        return;
+    }
+    returns(checker, block, impact.until, striker);
+    beyond_duration(checker, block, time_step, impact.duration.constant());
+    let before = checker.diagnostics.len();
+    mode_check::damping_twice(checker, block, impact, point, specimen);
+    integrator_check::stable(checker, block, impact, point, striker, specimen);
+    let allowed = checker.diagnostics[before..]
+        .iter()
+        .any(|fault| fault.code == Code::BeyondStability);
+    warnings::time_step(checker, block, impact, striker, specimen, allowed);
+    warnings::mechanism(checker, block, impact, specimen);
+}
+
+/// An impact on a floor, as far as its quantities are known before the run: the checks of any frame, and the time step of a limit
+/// force.
+fn on_storey(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    target: &StoreyTarget,
+    frame: &Frame,
+    striker: &Striker,
+) {
+    returns(checker, block, impact.until, striker);
+    let steps = FrameSteps {
+        specimen: impact.specimen,
+        frame,
+        damping: &target.damping,
+        stepping: &impact.stepping,
+        duration: impact.duration.constant(),
+    };
+    let critical = |properties: &FrameProperties| {
+        let approach = impact.contact.approach(striker, Formula::constant);
+        approach.map(|approach| properties.critical_on_impact(target.storey, &approach))
+    };
+    let Some((properties, step)) = stepping::check::judge(checker, block, &steps, critical) else {
+        return;
+    };
+    if let Contact::Limit { force } = &impact.contact
+        && let Some(force) = force.constant()
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker
+            .field(block, "time_step")
+            .map_or(head, |(_, entry)| entry.value.span);
+        warnings::limit_force(
+            checker,
+            at,
+            step,
+            properties.struck_mass(target.storey),
+            force,
+            striker,
+        );
+    }
+}
+
+/// Warns of a run that waits until the striker has left for good: a striker that falls always comes back.
+fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Striker) {
+    if let (Until::Rebound, true, Some((_, entry))) =
+        (until, striker.gravity > 0.0, checker.field(block, "until"))
+    {
+        let message =
+            "a striker that falls always comes back: `rebound` never ends this run".to_owned();
+        let help = "write `until = striker_stop` or `until = duration`, or leave `gravity` out";
+        checker.diagnostics.push(values::no_effect(
+            message,
+            entry.value.span,
+            "goes on to its `duration`",
+            help,
+        ));
+    }
+}
+
+/// Δtc of an impact of this striker on one degree of freedom, s, where all its quantities are known before the run.
+pub(crate) fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
+    impact.critical_time_step(striker, Formula::constant)
+}
+
+/// Δtc, s, with a predicted stiffness where an earlier procedure is to measure it: the initial one of the specimen of a virtual rig.
+/// The second value is true if Δtc is such a prediction.
+pub(crate) fn predicted_critical(
+    checker: &Checker,
+    impact: &Impact,
+    striker: &Striker,
+    specimen: Option<&Specimen>,
+) -> Option<(f64, bool)> {
+    if let Some(critical) = critical_before_the_run(impact, striker) {
+        return Some((critical, false));
+    }
+    let behaviour = specimen
+        .filter(|_| checker.real_rig.is_none())?
+        .behaviour
+        .as_ref()?;
+    let predicted = Predicted {
+        stiffness: behaviour.initial_stiffness(),
+    };
+    let known = |formula: &Formula| {
+        formula
+            .evaluate(&predicted, None)
+            .ok()
+            .map(|estimate| estimate.value)
+    };
+    Some((impact.critical_time_step(striker, known)?, true))
+}
+
+/// The results that ramps and cycles will find for a declared specimen.
+struct Predicted {
+    /// N/m
+    stiffness: f64,
+}
+
+/// Results that the initial stiffness predicts.
+const PREDICTED: [&str; 3] = [
+    stiffness_ramp::STIFFNESS.name,
+    stiffness_ramp::SECANT_STIFFNESS.name,
+    cycle::STIFFNESS.name,
+];
+
+impl Results for Predicted {
+    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
+        let found = PREDICTED.contains(&reference.name) && reference.part == Part::Value;
+        found.then_some(ResultValue::Number {
+            value: Some(self.stiffness),
+            uncertainty: None,
+        })
+    }
+}
+
+/// Δt, s, where it is known before the run.
+pub(crate) fn time_step_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
+    let critical = critical_before_the_run(impact, striker);
+    impact
+        .stepping
+        .time_step
+        .evaluate(&NoResults, critical)
+        .ok()
+        .map(|estimate| estimate.value)
+}

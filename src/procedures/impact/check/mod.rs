@@ -1,0 +1,88 @@
+//! `impact NAME { … }`: the fields that an impact and a series of impacts share. In: a block. Out: the impact, or errors.
+
+pub(crate) mod arrival;
+pub(crate) mod judge;
+pub(crate) mod target;
+pub(crate) mod warnings;
+
+use crate::language::check::checker::Checker;
+use crate::plan::{Contact, Impact, ProcedureKind, Until};
+use crate::procedures::stepping;
+use crate::procedures::stepping::integrator_check;
+use crate::schema::Kind;
+
+/// The time step of an impact that names none: the critical one over this.
+const FINER: f64 = 20.0;
+
+pub(crate) fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    fields(checker, block).map(ProcedureKind::Impact)
+}
+
+/// The impact that the fields of a block specify.
+pub(crate) fn fields(checker: &mut Checker, block: usize) -> Option<Impact> {
+    let struck_frame = target::struck_frame(checker, block);
+    let striker = checker.reference(block, "striker", Kind::Striker);
+    let specimen = checker.specimen_block(block);
+    let target = match &struck_frame {
+        Some((frame_block, frame)) => target::storey(checker, block, *frame_block, frame.as_ref()),
+        None => target::point(checker, block, specimen),
+    };
+    let contact = contact(checker, block);
+    let stepping = stepping::check::stepping(checker, block, contact.as_ref(), FINER);
+    let duration = checker.quantity(block, "duration");
+    let until = until(checker, block);
+    let impact = Impact {
+        specimen: checker.scope.index_in_kind(specimen?),
+        striker: checker.scope.index_in_kind(striker?),
+        target: target?,
+        contact: contact?,
+        stepping: stepping?,
+        duration: duration?,
+        until: until?,
+    };
+    integrator_check::meets_the_contact(
+        checker,
+        block,
+        impact.stepping.integrator,
+        &impact.contact,
+    )?;
+    Some(impact)
+}
+
+fn until(checker: &mut Checker, block: usize) -> Option<Until> {
+    Some(match checker.word(block, "until", "striker_stop")? {
+        "duration" => Until::Duration,
+        "rebound" => Until::Rebound,
+        _ => Until::StrikerStop,
+    })
+}
+
+fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
+    let Some((entry, _)) = checker.field(block, "contact") else {
+        return Some(Contact::Rigid);
+    };
+    let place = checker.context_of(block, entry);
+    let chosen = checker.choice(block, "contact")?;
+    Some(match chosen.variant.name {
+        "limit" => Contact::Limit {
+            force: checker.argument(&chosen, "force", place)?,
+        },
+        "restitution" => Contact::Restitution {
+            coefficient: checker.argument(&chosen, "coefficient", place)?,
+        },
+        "hertz" => {
+            let stiffness = checker.argument(&chosen, "stiffness", place);
+            let loss = checker.argument(&chosen, "loss", place);
+            let force_limit = match chosen.find("force_limit") {
+                Some((_, Some(_))) => checker.argument(&chosen, "force_limit", place).map(Some),
+                _ => Some(None),
+            };
+            Contact::Hertz {
+                stiffness: stiffness?,
+                loss: loss?,
+                force_limit: force_limit?,
+            }
+        }
+        _ => Contact::Rigid,
+    })
+}

@@ -1,0 +1,229 @@
+//! The quantities of an impact that are known before the first step. In: an impact of the plan, its formulas, a striker. Out: numbers,
+//! each inside its domain, and the steps that they lead to. It moves nothing.
+
+use crate::physics::contact::contact_time_step::Approach;
+use crate::physics::contact::state::ContactLaw;
+use crate::physics::impact::ImpactInput;
+use crate::physics::integrator::stability::{Met, longest_stable_step};
+use crate::plan::formula::Estimate;
+use crate::plan::{
+    Contact, Frame, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Structure,
+};
+use crate::procedures::stepping;
+use crate::procedures::stepping::run::{FrameSteps, Steps, frame_of, stable};
+use crate::rig::DeclaredNoise;
+use crate::run::inputs::Inputs;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+use crate::units::{Dimension, Exponent};
+
+/// Everything known before the first step.
+pub(crate) struct Setting {
+    /// The striker and the struck degree of freedom; for a struck floor, that floor alone.
+    pub input: ImpactInput,
+    /// The approach that the critical time step belongs to: in a series of impacts, that of the fastest.
+    pub approach: Approach,
+    /// Velocity of its striker at the start, before the gap, m/s.
+    pub fastest: f64,
+    pub structure: StruckStructure,
+}
+
+/// The structure on the rig, and its steps.
+pub(crate) enum StruckStructure {
+    /// One degree of freedom.
+    Point(Steps),
+    /// A frame, one floor of which is struck.
+    Storey(FrameSteps),
+}
+
+impl Setting {
+    pub(crate) fn evaluate(
+        plan: &Impact,
+        whole: &Plan,
+        striker: &Striker,
+        inputs: &mut Inputs<'_>,
+        session: &Session<'_>,
+    ) -> Result<Self, Stop> {
+        match &plan.target {
+            ImpactTarget::Point(point) => {
+                let noise = session.guard.declared_noise();
+                Self::of_point(plan, point, striker, inputs, noise)
+            }
+            ImpactTarget::Storey(storey) => {
+                let frame = frame_of(whole, plan.specimen)?;
+                Self::of_storey(plan, storey, frame, striker, inputs, session)
+            }
+        }
+    }
+
+    /// An impact on one degree of freedom.
+    pub(crate) fn of_point(
+        plan: &Impact,
+        point: &PointTarget,
+        striker: &Striker,
+        inputs: &mut Inputs<'_>,
+        noise: DeclaredNoise,
+    ) -> Result<Self, Stop> {
+        let mass = inputs.positive("mass", &point.mass, Dimension::MASS)?;
+        inputs.also_uncertain(point.mass_uncertainty);
+        let stiffness =
+            inputs.positive_estimate("stiffness", &point.stiffness, Dimension::STIFFNESS, None)?;
+        let (stiffness, operator_stiffness) = (stiffness.value, upper_end(stiffness));
+        let damping = inputs.damping("damping", &point.damping, Dimension::DAMPING)?;
+        let law = contact_law(&plan.contact, inputs)?;
+        let approach = striker.approach(law.stiffness());
+        let critical = approach.critical_time_step(mass, stiffness);
+        let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
+        let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
+        let steps = Steps::evaluate(&plan.stepping, time_step, critical, duration, 1, inputs)?;
+        // `check` cannot know the stability limit where the stiffness is a result of an earlier procedure.
+        let limit = longest_stable_step(
+            plan.stepping.integrator,
+            &Met::one(mass, damping, stiffness, stiffness),
+        );
+        stable(&plan.stepping, time_step, limit)?;
+        let structure = Structure {
+            mass,
+            damping,
+            stiffness,
+            operator_stiffness,
+            law,
+            time_step,
+            max_tangent_ratio: steps.max_tangent_ratio,
+            force_noise: noise.force,
+            resolution: noise.resolution,
+        };
+        Ok(Self {
+            input: structure.struck_by(striker, &plan.stepping),
+            approach,
+            fastest: striker.velocity,
+            structure: StruckStructure::Point(steps),
+        })
+    }
+
+    /// An impact on one floor of a frame.
+    fn of_storey(
+        plan: &Impact,
+        target: &StoreyTarget,
+        frame: &Frame,
+        striker: &Striker,
+        inputs: &mut Inputs<'_>,
+        session: &Session<'_>,
+    ) -> Result<Self, Stop> {
+        let properties = stepping::run::properties(frame, &target.damping, inputs)?;
+        let law = contact_law(&plan.contact, inputs)?;
+        let approach = striker.approach(law.stiffness());
+        let critical = properties.critical_on_impact(target.storey, &approach);
+        let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
+        stepping::run::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
+        let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
+        let floors = properties.matrices.order();
+        let steps = Steps::evaluate(
+            &plan.stepping,
+            time_step,
+            critical,
+            duration,
+            floors,
+            inputs,
+        )?;
+        let noise = session.guard.declared_noise();
+        let stiffness = frame.stiffness[target.storey][target.storey];
+        let floor = Structure {
+            mass: properties.struck_mass(target.storey),
+            damping: 0.0,
+            stiffness,
+            operator_stiffness: stiffness,
+            law,
+            time_step,
+            max_tangent_ratio: steps.max_tangent_ratio,
+            force_noise: noise.force,
+            resolution: noise.resolution,
+        };
+        Ok(Self {
+            input: floor.struck_by(striker, &plan.stepping),
+            approach,
+            fastest: striker.velocity,
+            structure: StruckStructure::Storey(FrameSteps::new(
+                properties,
+                plan.stepping.integrator,
+                steps,
+            )),
+        })
+    }
+
+    pub(crate) const fn steps(&self) -> &Steps {
+        match &self.structure {
+            StruckStructure::Point(steps) => steps,
+            StruckStructure::Storey(frame) => &frame.steps,
+        }
+    }
+
+    /// The frame whose floor is struck; None for one degree of freedom.
+    pub(crate) const fn frame(&self) -> Option<&FrameSteps> {
+        match &self.structure {
+            StruckStructure::Point(_) => None,
+            StruckStructure::Storey(frame) => Some(frame),
+        }
+    }
+
+    /// Adds mass to a struck degree of freedom, kg; the critical time step follows.
+    pub(crate) fn add_mass(&mut self, mass: f64) {
+        self.input.mass += mass;
+        if let StruckStructure::Point(steps) = &mut self.structure {
+            steps.critical_time_step = self
+                .approach
+                .critical_time_step(self.input.mass, self.input.stiffness);
+        }
+    }
+}
+
+/// `K_I`: the upper end of the interval of the stiffness (two standard uncertainties). α-OS is stable only as long as the specimen is
+/// not stiffer (physics, section 11; never a noisy secant).
+fn upper_end(stiffness: Estimate) -> f64 {
+    stiffness.value + 2.0 * stiffness.uncertainty.unwrap_or(0.0)
+}
+
+/// The contact law with its numbers.
+pub(crate) fn contact_law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
+    Ok(match contact {
+        Contact::Rigid => ContactLaw::Rigid,
+        Contact::Limit { force } => ContactLaw::Limit {
+            force: inputs.positive("force_limit", force, Dimension::FORCE)?,
+        },
+        Contact::Restitution { coefficient } => {
+            let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
+            if coefficient > 1.0 {
+                return Err(Stop::BadInput {
+                    field: "restitution",
+                    value: coefficient,
+                    dimension: Dimension::NUMBER,
+                    wanted: "at most 1".into(),
+                });
+            }
+            ContactLaw::Restitution { coefficient }
+        }
+        Contact::Hertz {
+            stiffness,
+            loss,
+            force_limit,
+        } => ContactLaw::Hertz {
+            stiffness: inputs.positive(
+                "contact_stiffness",
+                stiffness,
+                Dimension::HERTZ_STIFFNESS,
+            )?,
+            loss: inputs.not_negative("loss", loss, SECONDS_PER_METRE)?,
+            force_limit: match force_limit {
+                Some(force) => Some(inputs.positive("force_limit", force, Dimension::FORCE)?),
+                None => None,
+            },
+        },
+    })
+}
+
+/// The dimension of the Hunt–Crossley loss factor.
+const SECONDS_PER_METRE: Dimension = Dimension {
+    length: Exponent::whole(-1),
+    mass: Exponent::ZERO,
+    time: Exponent::whole(1),
+};

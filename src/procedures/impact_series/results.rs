@@ -1,0 +1,268 @@
+//! The results of a series of impacts: those of each impact, their maxima and sums. In: its history. Out: results in the order of the
+//! reference, with their contributions. It moves nothing.
+
+use crate::plan::Between;
+use crate::record::{Blow, EscalateHistory, NamedResult};
+use crate::schema::ResultKind;
+use crate::schema::procedures::{impact, impact_series as schema};
+use crate::uncertainty::{Contribution, Source, combined, share};
+
+/// In the order of the reference.
+pub(crate) fn results(history: &EscalateHistory, between: Between) -> Vec<NamedResult> {
+    let blows = &history.blows;
+    let left = Left::of(between);
+    let mut results = of_series(blows, &left);
+    results.extend(of_impacts(blows, &left));
+    if blows.iter().any(|blow| blow.storey().is_some()) {
+        results.extend(of_storeys(blows, &left));
+    }
+    results
+}
+
+/// The results for the position in which an impact leaves the specimen: residual only where it is unloaded.
+pub(crate) struct Left {
+    pub displacement: ResultKind,
+    pub displacements: ResultKind,
+    pub drift: ResultKind,
+}
+
+impl Left {
+    pub(crate) const fn of(between: Between) -> Self {
+        match between {
+            Between::Unload => Self {
+                displacement: schema::RESIDUAL_DISPLACEMENT,
+                displacements: schema::RESIDUAL_DISPLACEMENTS,
+                drift: schema::RESIDUAL_DRIFT,
+            },
+            Between::Home | Between::Stay => Self {
+                displacement: schema::FINAL_DISPLACEMENT,
+                displacements: schema::FINAL_DISPLACEMENTS,
+                drift: schema::FINAL_DRIFT,
+            },
+        }
+    }
+}
+
+/// Results of the series as a whole.
+fn of_series(blows: &[Blow], left: &Left) -> Vec<NamedResult> {
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_IMPACTS")]
+    let count = |held: Option<bool>| {
+        blows
+            .iter()
+            .filter(|blow| held.is_none() || blow.held == held)
+            .count() as f64
+    };
+    let energy = |kind, blow: Option<&Blow>, without: Option<f64>| {
+        let parts = blow.map_or_else(Vec::new, |blow| contributions(blow, impact::STRIKER_ENERGY));
+        number(kind, blow.map(|blow| blow.energy).or(without), parts)
+    };
+    let passed = blows.iter().rev().find(|blow| blow.held == Some(true));
+    let failed = blows.iter().find(|blow| blow.held == Some(false));
+    // If the condition fails after the first impact, no energy was withstood; if that is inconclusive, the energy is not known.
+    let nothing = blows
+        .first()
+        .filter(|first| first.held == Some(false))
+        .map(|_| 0.0);
+    let last = blows.last();
+    let absorbed = of_each(blows, impact::ABSORBED_ENERGY)
+        .into_iter()
+        .filter(|energy| energy.is_finite())
+        .reduce(|sum, energy| sum + energy);
+    vec![
+        schema::BLOWS.found(Some(count(None))),
+        schema::PASSED.found(Some(count(Some(true)))),
+        energy(schema::LAST_PASSED_ENERGY, passed, nothing),
+        energy(schema::FIRST_FAILED_ENERGY, failed, None),
+        largest(blows, schema::MAX_DISPLACEMENT, impact::MAX_DISPLACEMENT),
+        number(
+            left.displacement,
+            last.and_then(position),
+            last.map_or_else(Vec::new, contributions_to_position),
+        ),
+        number(
+            schema::ABSORBED_ENERGY,
+            absorbed,
+            contributions_to_sum(blows, impact::ABSORBED_ENERGY),
+        ),
+    ]
+}
+
+/// Lists with an entry for each impact.
+fn of_impacts(blows: &[Blow], left: &Left) -> Vec<NamedResult> {
+    let known = |kind: ResultKind, of_impact: ResultKind| {
+        let parts = by_impact(blows, |blow| contributions(blow, of_impact));
+        list(kind, of_each(blows, of_impact), parts)
+    };
+    let rests = blows
+        .iter()
+        .map(|blow| position(blow).unwrap_or(f64::NAN))
+        .collect();
+    vec![
+        list(
+            schema::VELOCITIES,
+            blows.iter().map(|blow| blow.velocity).collect(),
+            by_impact(blows, contributions_to_velocity),
+        ),
+        list(
+            schema::BLOW_ENERGIES,
+            blows.iter().map(|blow| blow.energy).collect(),
+            by_impact(blows, |blow| contributions(blow, impact::STRIKER_ENERGY)),
+        ),
+        known(schema::MAX_DISPLACEMENTS, impact::MAX_DISPLACEMENT),
+        list(
+            left.displacements,
+            rests,
+            by_impact(blows, contributions_to_position),
+        ),
+        known(schema::ABSORBED_ENERGIES, impact::ABSORBED_ENERGY),
+        known(schema::IMPULSES, impact::IMPULSE),
+        list(
+            schema::ENERGY_ERRORS,
+            of_each(blows, impact::ENERGY_ERROR),
+            Vec::new(),
+        ),
+    ]
+}
+
+/// Lists with an entry for each storey.
+fn of_storeys(blows: &[Blow], left: &Left) -> [NamedResult; 3] {
+    let rest = blows.last().and_then(|blow| blow.rest.as_ref());
+    let (drift, parts) = rest
+        .map(|rest| (rest.drift(), rest.doubts_of_drifts()))
+        .unwrap_or_default();
+    [
+        largest_of_storeys(blows),
+        list(left.drift, drift, parts),
+        sum_of_storeys(blows),
+    ]
+}
+
+/// The displacement of the struck degree of freedom after an impact, m.
+fn position(blow: &Blow) -> Option<f64> {
+    blow.rest_of_struck().map(|(displacement, _)| displacement)
+}
+
+fn contributions_to_position(blow: &Blow) -> Vec<Contribution> {
+    blow.doubts_of_rest()
+        .map_or_else(Vec::new, |[position, _]| position)
+}
+
+/// A number of every impact; NaN where an impact does not have it.
+fn of_each(blows: &[Blow], kind: ResultKind) -> Vec<f64> {
+    blows
+        .iter()
+        .map(|blow| blow.number(kind.name).unwrap_or(f64::NAN))
+        .collect()
+}
+
+/// The contributions to a list with an entry for each impact.
+fn by_impact(blows: &[Blow], of_impact: impl Fn(&Blow) -> Vec<Contribution>) -> Vec<Contribution> {
+    let of_entry = |(entry, blow)| {
+        of_impact(blow)
+            .into_iter()
+            .map(move |part| Contribution { entry, ..part })
+    };
+    blows.iter().enumerate().flat_map(of_entry).collect()
+}
+
+/// E = ½ Ms V0²: the relative contribution of the velocity to the energy is twice that to the velocity.
+fn contributions_to_velocity(blow: &Blow) -> Vec<Contribution> {
+    let parts = contributions(blow, impact::STRIKER_ENERGY).into_iter();
+    let of_speed = parts.filter(|part| matches!(part.source, Source::StrikerVelocity(_)));
+    of_speed
+        .map(|part| Contribution {
+            amount: part.amount * 0.5 * blow.velocity / blow.energy,
+            ..part
+        })
+        .collect()
+}
+
+/// The largest drift of each storey over all impacts, with the uncertainty of its impact.
+fn largest_of_storeys(blows: &[Blow]) -> NamedResult {
+    let lists: Vec<(&[f64], &Blow)> = blows
+        .iter()
+        .filter_map(|blow| Some((blow.list(impact::MAX_DRIFT.name)?, blow)))
+        .collect();
+    let storeys = lists.first().map_or(0, |(values, _)| values.len());
+    let (mut values, mut parts) = (Vec::new(), Vec::new());
+    for storey in 0..storeys {
+        let largest = lists.iter().reduce(|most, next| {
+            if next.0[storey] > most.0[storey] {
+                next
+            } else {
+                most
+            }
+        });
+        let Some((found, blow)) = largest else {
+            continue;
+        };
+        values.push(found[storey]);
+        parts.extend(
+            contributions(blow, impact::MAX_DRIFT)
+                .into_iter()
+                .filter(|part| part.entry == storey),
+        );
+    }
+    list(schema::MAX_DRIFT, values, parts)
+}
+
+/// The energy of each storey, summed over all impacts.
+fn sum_of_storeys(blows: &[Blow]) -> NamedResult {
+    let lists = blows
+        .iter()
+        .filter_map(|blow| blow.list(impact::STOREY_ENERGY.name));
+    let sum = lists
+        .map(<[f64]>::to_vec)
+        .reduce(|sum, next| sum.iter().zip(next).map(|(sum, next)| sum + next).collect());
+    let parts = contributions_to_sum(blows, impact::STOREY_ENERGY);
+    list(schema::STOREY_ENERGY, sum.unwrap_or_default(), parts)
+}
+
+/// The largest value of a result over all impacts, with the uncertainty of its impact.
+fn largest(blows: &[Blow], kind: ResultKind, of_impact: ResultKind) -> NamedResult {
+    let found = blows
+        .iter()
+        .filter_map(|blow| Some((blow.number(of_impact.name)?, blow)))
+        .filter(|(value, _)| value.is_finite());
+    let most = found.reduce(|most, next| if next.0 > most.0 { next } else { most });
+    let parts = most.map_or_else(Vec::new, |(_, blow)| contributions(blow, of_impact));
+    number(kind, most.map(|(value, _)| value), parts)
+}
+
+/// The contributions to the sum of a result over all impacts: those from a shared source are added before they are squared.
+fn contributions_to_sum(blows: &[Blow], of_impact: ResultKind) -> Vec<Contribution> {
+    let mut parts: Vec<Contribution> = Vec::new();
+    for part in blows.iter().flat_map(|blow| contributions(blow, of_impact)) {
+        share(&mut parts, part);
+    }
+    parts
+}
+
+fn contributions(blow: &Blow, kind: ResultKind) -> Vec<Contribution> {
+    let found = blow.results.iter().find(|result| result.name == kind.name);
+    found.map_or_else(Vec::new, |result| result.contributions.clone())
+}
+
+/// A number with the uncertainty that its contributions combine to.
+pub(crate) fn number(
+    kind: ResultKind,
+    value: Option<f64>,
+    contributions: Vec<Contribution>,
+) -> NamedResult {
+    let result = kind.found_with(value.map(|value| (value, combined(&contributions))));
+    NamedResult {
+        contributions,
+        ..result
+    }
+}
+
+pub(crate) fn list(
+    kind: ResultKind,
+    values: Vec<f64>,
+    contributions: Vec<Contribution>,
+) -> NamedResult {
+    NamedResult {
+        contributions,
+        ..kind.found_list(Some(values))
+    }
+}

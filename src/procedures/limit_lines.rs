@@ -1,0 +1,129 @@
+//! Bounds of requirements as lines of a chart. In: a run, a result of a procedure. Out: reference lines with their labels. It draws
+//! nothing.
+
+use crate::plan::formula::{Formula, Function, Part, ProcedureId};
+use crate::report::Run;
+use crate::report::figures::chart::Reference;
+use crate::report::number;
+use crate::schema::ResultKind;
+use crate::verdict::Bound;
+
+/// Bounds that a requirement sets on a result of one procedure, for that result's figure.
+pub(crate) fn limits_on(
+    run: &Run<'_>,
+    procedure: ProcedureId,
+    result: ResultKind,
+) -> Vec<Reference> {
+    let mut lines = Vec::new();
+    for (requirement, outcome) in run
+        .plan
+        .requirements
+        .iter()
+        .zip(&run.assessment.requirements)
+    {
+        for (condition, held) in requirement.conditions.iter().zip(&outcome.conditions) {
+            if !reads(&condition.value, procedure, result.name) {
+                continue;
+            }
+            // A band is two lines with one text, so that two texts never stand on each other.
+            let entry =
+                entry(&condition.value).map_or_else(String::new, |entry| format!(" ({entry})"));
+            let label = format!(
+                "{}{entry}: {}",
+                short(&requirement.label),
+                number::bound(held)
+            );
+            match held.bound {
+                Some(Bound::Compare { limit, .. }) => lines.push(Reference { label, y: limit }),
+                Some(Bound::Within { target, tolerance }) => {
+                    lines.push(Reference {
+                        label,
+                        y: target - tolerance,
+                    });
+                    lines.push(Reference {
+                        label: String::new(),
+                        y: target + tolerance,
+                    });
+                }
+                None => {}
+            }
+        }
+    }
+    lines.retain(|line| line.y.is_finite());
+    lines
+}
+
+/// Which entry of a list a condition is on, from 1; none where it is on all of them.
+fn entry(value: &Formula) -> Option<usize> {
+    if let Formula::Index(_, index) = value {
+        Some(index + 1)
+    } else {
+        None
+    }
+}
+
+/// Whether a condition is on the value of this result, or on the largest entry of it where it is a list. A bound on its
+/// uncertainty is none on what is drawn.
+fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
+    let is = |formula: &Formula| {
+        formula
+            .as_result()
+            .is_some_and(|r| r.procedure == procedure && r.name == result && r.part == Part::Value)
+    };
+    match value {
+        Formula::Call(Function::Max, arguments) => arguments.iter().all(is),
+        Formula::Index(list, _) => is(list),
+        other => is(other),
+    }
+}
+
+/// A label that fits into a picture, on one line.
+fn short(label: &str) -> String {
+    const LONGEST: usize = 40;
+    // As it is drawn, so that its room is that of what is drawn.
+    let label = crate::text::glyphs::shown(label);
+    let mut text: String = label
+        .chars()
+        .take(LONGEST)
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    if label.chars().count() > LONGEST {
+        text.push('…');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::formula::ResultReference;
+
+    #[test]
+    fn a_bound_on_an_uncertainty_is_no_line_among_the_values() {
+        let (procedure, name) = (ProcedureId(0), "max_drift");
+        let result = |part| {
+            Formula::Result(ResultReference {
+                procedure,
+                name,
+                part,
+            })
+        };
+        assert!(reads(&result(Part::Value), procedure, name));
+        assert!(!reads(&result(Part::Uncertainty), procedure, name));
+        assert!(
+            !reads(&result(Part::Value), ProcedureId(1), name)
+                && !reads(&result(Part::Value), procedure, "periods")
+        );
+        let second = Formula::Index(Box::new(result(Part::Value)), 1);
+        assert!(
+            reads(&second, procedure, name)
+                && entry(&second) == Some(2)
+                && entry(&result(Part::Value)).is_none()
+        );
+        assert!(!reads(
+            &Formula::Index(Box::new(result(Part::Uncertainty)), 1),
+            procedure,
+            name
+        ));
+    }
+}

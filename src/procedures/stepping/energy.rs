@@ -1,0 +1,96 @@
+//! The energy balance of a procedure that integrates: an observation where it does not close, its curves, its table. In: energies.
+//! Out: an event, series of a chart, a table of a report. It knows no procedure.
+
+use crate::physics::impact::energy::UNBALANCED;
+use crate::record::EventKind;
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::figures::chart::{Series, Style};
+use crate::report::number;
+use crate::report::number::percent;
+use crate::run::session::Session;
+use crate::units::Dimension;
+use crate::units::display::significant;
+
+/// Records an energy error, over the input energy, that is large enough to be mistaken for a property of the specimen.
+pub(crate) fn observe_imbalance(energy_error: f64, session: &mut Session<'_>) {
+    if energy_error.is_nan() || energy_error.abs() > UNBALANCED {
+        let off = if energy_error.is_nan() {
+            "the energy balance cannot be computed: its energies are not finite".to_owned()
+        } else {
+            format!(
+                "the energy balance is off by {} % of the energy put in",
+                significant(100.0 * energy_error, 3)
+            )
+        };
+        let text = format!("{off}: a shorter time step is needed");
+        session.event(EventKind::Remark, text);
+    }
+}
+
+/// One energy of a step over virtual time.
+pub(crate) struct EnergyCurve<S> {
+    pub label: &'static str,
+    /// J
+    pub read: fn(&S) -> f64,
+    pub style: Style,
+}
+
+/// The curves of the energies that are not 0 throughout; `time` gives the virtual time of a step, s.
+pub(crate) fn nonzero_curves<S>(
+    steps: &[S],
+    time: fn(&S) -> f64,
+    curves: impl IntoIterator<Item = EnergyCurve<S>>,
+) -> Vec<Series> {
+    curves
+        .into_iter()
+        .filter(|curve| steps.iter().any(|step| (curve.read)(step) != 0.0))
+        .map(|curve| Series {
+            label: curve.label.to_owned(),
+            points: steps
+                .iter()
+                .map(|step| (time(step), (curve.read)(step)))
+                .collect(),
+            style: curve.style,
+        })
+        .collect()
+}
+
+/// An energy of the balance, J, by its name.
+pub(crate) type NamedEnergy = (&'static str, f64);
+
+/// The balance at the end of a run: the input, and each part as a fraction of it.
+pub(crate) fn balance_table(input: NamedEnergy, parts: &[NamedEnergy]) -> Block {
+    let (name, input) = input;
+    let row = |(name, energy): &NamedEnergy| -> Vec<Text> {
+        vec![
+            (*name).into(),
+            number::part_of(*energy, input, 5, Dimension::ENERGY).into(),
+            fraction(*energy, input).into(),
+        ]
+    };
+    let input_row = vec![
+        name.into(),
+        number::part_of(input, input, 5, Dimension::ENERGY).into(),
+        "100\u{a0}%".into(),
+    ];
+    let columns = vec![
+        Column::words("Energy balance at the end of the run", 1),
+        Column::numbers("Energy"),
+        Column::numbers("Of the input"),
+    ];
+    Block::Table(Table {
+        columns,
+        rows: std::iter::once(input_row)
+            .chain(parts.iter().map(row))
+            .collect(),
+    })
+}
+
+/// An energy as a fraction of the input; a dash where there is no input.
+pub(crate) fn fraction(energy: f64, input: f64) -> String {
+    if input > 0.0 {
+        percent(energy / input)
+    } else {
+        "—".to_owned()
+    }
+}
