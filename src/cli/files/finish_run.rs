@@ -7,25 +7,25 @@ use std::path::Path;
 use super::loader::plain;
 use super::provenance;
 use super::record_file::{self, journal_of};
-use super::run_folder::{FolderShelf, write_new};
-use super::writing::Telling;
+use super::run_folder::{FolderSink, write_new};
+use super::writing::ProgressSink;
 use crate::cli::commands::rehearse;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::held;
-use crate::cli::output::{tell, tell_words};
+use crate::cli::output::{print_message, print_wrapped};
 use crate::cli::settings::Settings;
 use crate::evidence::Folder;
 use crate::plan::Plan;
 use crate::record::remote::DrivenStep;
 use crate::record::{EventKind, Outcome, Record};
 use crate::report;
-use crate::report::{Listed, OutputError, Provenance, Run, Shelf};
+use crate::report::{FileDigest, OutputError, OutputSink, Provenance, Run};
 use crate::run::replay::Recorded;
 use crate::text::diagnostic::excerpt::escape;
 use crate::verdict::{self, Assessment};
 
 /// Tells the verdict and writes every result into the run's own folder.
-pub fn conclude(
+pub fn finish_run(
     folder: &Path,
     plan: &Plan,
     provenance: &Provenance,
@@ -34,7 +34,7 @@ pub fn conclude(
 ) -> Result<Exit, Failure> {
     let provenance = &as_recorded(folder, plan, provenance, recorded).inspect_err(|_| {
         // Without a report, but not without where the rig stands.
-        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+        print_message(&how_it_stands(folder, plan, &recorded.record, settings));
     })?;
     let assessment = verdict::assess(plan, &recorded.record);
     let run = Run {
@@ -45,32 +45,32 @@ pub fn conclude(
     };
     if !held::is_held(&recorded.record) {
         // Nothing comes before it, and nothing beside it says how to go on.
-        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+        print_message(&how_it_stands(folder, plan, &recorded.record, settings));
     }
-    tell_words(
+    print_wrapped(
         &report::console::verdict_text(&run, settings.color),
         settings,
     );
     if held::is_held(&recorded.record) {
-        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+        print_message(&how_it_stands(folder, plan, &recorded.record, settings));
     }
-    tell(&into(folder));
+    print_message(&into(folder));
     let kept = Folder::digests(folder)?.kept();
-    write_made(FolderShelf::new(folder), &kept, |shelf| {
-        let shelf = &mut Telling::over(shelf, settings);
-        made_of(plan, &recorded.record, &assessment, provenance, None, shelf)
+    write_made(FolderSink::new(folder), &kept, |sink| {
+        let sink = &mut ProgressSink::new(sink, settings);
+        made_of(plan, &recorded.record, &assessment, provenance, None, sink)
     })?;
     let exit = Exit::from(assessment.verdict);
     match (&recorded.fault, &recorded.mismatch) {
         (None, None) => Ok(exit),
         (Some(fault), _) => {
-            tell(&format!(
+            print_message(&format!(
                 "  the record could not be kept to its end: {fault}\n"
             ));
             Ok(exit.max(Exit::Fault))
         }
         (None, Some(mismatch)) => {
-            tell(&format!("  the record does not fit the plan: {mismatch}\n"));
+            print_message(&format!("  the record does not fit the plan: {mismatch}\n"));
             Ok(exit.max(Exit::Fault))
         }
     }
@@ -107,7 +107,7 @@ fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings
     text
 }
 
-/// Puts every file that a run gives on a shelf; not the manifest, which also lists what lies beside them. A rig that a client
+/// Puts every file that a run gives on a sink; not the manifest, which also lists what lies beside them. A rig that a client
 /// drove gives the table of its steps alone.
 pub fn made_of(
     plan: &Plan,
@@ -115,14 +115,14 @@ pub fn made_of(
     assessment: &Assessment,
     provenance: &Provenance,
     driven: Option<&[DrivenStep]>,
-    shelf: &mut dyn Shelf,
-) -> Result<Vec<Listed>, OutputError> {
+    sink: &mut dyn OutputSink,
+) -> Result<Vec<FileDigest>, OutputError> {
     if matches!(record.outcome, Outcome::NotReleased { .. }) {
         // Nothing moved: there is the record, and nothing to report.
         return Ok(Vec::new());
     }
     if let Some(steps) = driven {
-        return report::put_driven(steps, record.drift.as_ref(), shelf);
+        return report::put_driven(steps, record.drift.as_ref(), sink);
     }
     let prediction = rehearse::prediction(plan, record);
     let provenance = &Provenance {
@@ -136,23 +136,23 @@ pub fn made_of(
             assessment,
             provenance,
         },
-        shelf,
+        sink,
     )
 }
 
 /// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest. The manifest is the
 /// last: results without one are none that came to their end.
 pub fn write_made(
-    mut shelf: FolderShelf<'_>,
-    beside: &[Listed],
-    make: impl FnOnce(&mut dyn Shelf) -> Result<Vec<Listed>, OutputError>,
+    mut sink: FolderSink<'_>,
+    beside: &[FileDigest],
+    make: impl FnOnce(&mut dyn OutputSink) -> Result<Vec<FileDigest>, OutputError>,
 ) -> Result<(), Failure> {
-    let folder = shelf.folder();
-    let listed = match make(&mut shelf) {
+    let folder = sink.folder();
+    let listed = match make(&mut sink) {
         Ok(listed) => listed,
-        Err(error) => return Err(shelf.failed(error)),
+        Err(error) => return Err(sink.failed(error)),
     };
-    let all: Vec<Listed> = listed.into_iter().chain(beside.iter().cloned()).collect();
+    let all: Vec<FileDigest> = listed.into_iter().chain(beside.iter().cloned()).collect();
     write_new(folder, &report::manifest_with(&[], &all))
 }
 

@@ -8,7 +8,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::loader::plain;
 use crate::cli::exit::Failure;
-use crate::report::{OutputError, OutputFile, Shelf};
+use crate::report::{OutputError, OutputFile, OutputSink};
 use crate::text::sanitize;
 
 /// An empty folder that belongs to this run.
@@ -138,7 +138,7 @@ const MODE: u32 = 0o600;
 const WRITE_BYTES: usize = 64 * 1024;
 
 /// Files put into a folder as they are made.
-pub struct FolderShelf<'a> {
+pub struct FolderSink<'a> {
     folder: &'a Path,
     /// What lies at a file's place is a piece of results that did not come to their end.
     replaces: bool,
@@ -146,7 +146,7 @@ pub struct FolderShelf<'a> {
     failure: Option<Failure>,
 }
 
-impl<'a> FolderShelf<'a> {
+impl<'a> FolderSink<'a> {
     pub const fn new(folder: &'a Path) -> Self {
         Self {
             folder,
@@ -181,7 +181,7 @@ impl<'a> FolderShelf<'a> {
     }
 }
 
-impl Shelf for FolderShelf<'_> {
+impl OutputSink for FolderSink<'_> {
     fn put(
         &mut self,
         path: &str,
@@ -257,44 +257,41 @@ mod tests {
     #[test]
     fn what_could_not_all_be_made_leaves_nothing_and_what_could_not_be_kept_names_its_file() {
         let root = tempfile::tempdir().unwrap();
-        let mut shelf = FolderShelf::new(root.path());
-        shelf
-            .put("tables/a.csv", &mut |out| out.write_all(b"x"))
+        let mut sink = FolderSink::new(root.path());
+        sink.put("tables/a.csv", &mut |out| out.write_all(b"x"))
             .unwrap();
-        let failure = shelf.failed(OutputError::Pdf("no such font".to_owned()));
+        let failure = sink.failed(OutputError::Pdf("no such font".to_owned()));
         assert!(
             failure.to_string().contains("no such font")
                 && !root.path().join("tables/a.csv").exists()
         );
 
-        let mut shelf = FolderShelf::new(root.path());
-        shelf
-            .put("tables/a.csv", &mut |out| out.write_all(b"x"))
+        let mut sink = FolderSink::new(root.path());
+        sink.put("tables/a.csv", &mut |out| out.write_all(b"x"))
             .unwrap();
-        let told = shelf
+        let told = sink
             .put("tables/a.csv", &mut |out| out.write_all(b"y"))
             .unwrap_err()
             .to_string();
-        let failure = shelf.failed(OutputError::Pdf(told)).to_string();
+        let failure = sink.failed(OutputError::Pdf(told)).to_string();
         assert!(
             failure.contains("tables/a.csv")
                 && std::fs::read(root.path().join("tables/a.csv")).unwrap() == b"x",
             "{failure}"
         );
-        let mut shelf = FolderShelf::new(root.path());
-        assert!(shelf.put("../a.csv", &mut |_| Ok(())).is_err());
+        let mut sink = FolderSink::new(root.path());
+        assert!(sink.put("../a.csv", &mut |_| Ok(())).is_err());
 
         std::os::unix::fs::symlink(root.path().join("tables/a.csv"), root.path().join("link"))
             .unwrap();
-        let mut shelf = FolderShelf::replacing(root.path());
-        shelf.put("link", &mut |out| out.write_all(b"z")).unwrap();
+        let mut sink = FolderSink::replacing(root.path());
+        sink.put("link", &mut |out| out.write_all(b"z")).unwrap();
         assert_eq!(
             std::fs::read(root.path().join("tables/a.csv")).unwrap(),
             b"x",
             "what a link leads to stays"
         );
-        shelf
-            .put("tables/a.csv", &mut |out| out.write_all(b"z"))
+        sink.put("tables/a.csv", &mut |out| out.write_all(b"z"))
             .unwrap();
         assert_eq!(
             std::fs::read(root.path().join("tables/a.csv")).unwrap(),

@@ -5,10 +5,12 @@ use crate::physics::frame::{SymmetricBand, storeys_of};
 use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
-use crate::report::content::{budget, described, method, tracking};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
-use crate::report::{Run, number, specimen_text};
+use crate::report::sections::described;
+use crate::report::sections::results::{actuators, budget_table, tracking};
+use crate::report::wording::specimen as specimen_text;
+use crate::report::{Run, number};
 use crate::units::Dimension;
 use crate::units::display::significant;
 
@@ -156,7 +158,7 @@ fn told(
             time(history.critical_time_step)
         ),
     ];
-    sentences.extend(method::driven(
+    sentences.extend(actuators::motion(
         shake.stepping.i_modification,
         shake.stepping.mode,
     ));
@@ -330,10 +332,10 @@ pub(crate) fn entry(result: &NamedResult, place: usize) -> Text {
         return "—".into();
     };
     if let Some(Some(u)) = result.entry_uncertainties().get(place) {
-        let mark = if budget::is_sure(result, place) {
+        let mark = if budget_table::is_reliable(result, place) {
             ""
         } else {
-            budget::MARK
+            budget_table::MARK
         };
         return (number::with_uncertainty(*value, Some(*u), result.dimension) + mark).into();
     }

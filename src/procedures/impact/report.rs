@@ -5,9 +5,9 @@ use super::contact_log;
 use crate::plan::{Contact, Impact, Integrator, ProcedureKind};
 use crate::procedures;
 use crate::record::{ImpactHistory, ProcedureRecord};
-use crate::report::content::method;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
+use crate::report::sections::results::actuators;
 use crate::report::{Run, number};
 use crate::units::Dimension;
 
@@ -139,7 +139,7 @@ fn method_note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut 
         return;
     };
     let mut sentences = vec![integrator(impact)];
-    sentences.extend(method::driven(
+    sentences.extend(actuators::motion(
         impact.stepping.i_modification,
         impact.stepping.mode,
     ));
@@ -170,7 +170,7 @@ fn integrator(impact: &Impact) -> String {
 
 fn tracking(history: &ImpactHistory) -> Option<String> {
     let (first, last) = (history.steps.first()?, history.steps.last()?);
-    Some(method::followed(
+    Some(actuators::tracking_error(
         last.tracking,
         last.tracking.share_of(first.energies.striker),
         "The actuator",

@@ -7,9 +7,9 @@ use crate::plan::formula::ResultValue;
 use crate::plan::{Contact, Mode, ProcedureKind, StoreyImpact};
 use crate::procedures::base_excitation;
 use crate::record::{ImpactHistory, ProcedureRecord, StruckFrame};
-use crate::report::content::tracking;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
+use crate::report::sections::results::tracking;
 use crate::report::{Run, number};
 use crate::units::Dimension;
 

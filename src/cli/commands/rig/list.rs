@@ -9,7 +9,7 @@ use serialport::{SerialPortInfo, SerialPortType};
 
 use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::text::diagnostic::excerpt::escape;
 
 /// Where the system keeps names made of maker and serial number, each a link to its port.
@@ -24,9 +24,11 @@ pub fn list(format: Format) -> Result<Exit, Failure> {
     match format {
         Format::Human => {
             if ports.is_empty() {
-                tell("no serial port was found: is the device plugged in and switched on?\n");
+                print_message(
+                    "no serial port was found: is the device plugged in and switched on?\n",
+                );
             }
-            give(
+            print_result(
                 &ports
                     .iter()
                     .map(|port| lines(port, &names))
@@ -35,7 +37,7 @@ pub fn list(format: Format) -> Result<Exit, Failure> {
         }
         Format::Json => {
             let ports: Vec<Value> = ports.iter().map(|port| entry(port, &names)).collect();
-            give(&format!("{:#}\n", Value::from(ports)))?;
+            print_result(&format!("{:#}\n", Value::from(ports)))?;
         }
     }
     Ok(Exit::Met)

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::screen::{Screen, is_large_enough};
 use crate::cli::operator::watch::Signals;
-use crate::cli::output::give_on;
+use crate::cli::output::print_while_read;
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
 use crate::rig::{Reading, Rig, Wish};
@@ -37,7 +37,7 @@ pub fn monitor(
     if let Some(screen) = &mut screen {
         screen.procedure_started("readings", "monitor", None);
     } else {
-        give_on(&header(rig.degrees_of_freedom()))?;
+        print_while_read(&header(rig.degrees_of_freedom()))?;
     }
     let mut number = 0;
     while !wish.wants_end() && count.is_none_or(|count| number < count) {
@@ -52,7 +52,7 @@ pub fn monitor(
         let reading = rig.read().map_err(Failure::Rig)?;
         match &mut screen {
             Some(screen) => screen.step_done(&step(number, &reading)),
-            None if give_on(&line(&reading))? => {}
+            None if print_while_read(&line(&reading))? => {}
             None => break,
         }
     }

@@ -4,7 +4,7 @@
 use super::Stay;
 use super::typed::{Heard, Typed};
 use crate::cli::operator::question::{After, Choice, Kind, Question, WHY_RESUME};
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::rig::Wish;
 use crate::run::Inspection;
 use crate::text::diagnostic::excerpt::escape;
@@ -48,7 +48,7 @@ impl Person {
         match self.typed().hear() {
             Heard::Nothing => Inspection::Wait,
             Heard::Ready => {
-                tell(&prompt(kind));
+                print_message(&prompt(kind));
                 Inspection::Wait
             }
             Heard::Line(line) => self.heard(&line, operator),
@@ -109,13 +109,13 @@ impl Person {
     /// Shows what may be chosen, or looks for the choice.
     fn choose(&mut self, after: After, told: &[String]) {
         if ![State::Choosing(after), State::Resuming(after)].contains(&self.state) {
-            tell(&format!("\n  {}\n", told.join("\n  ")));
+            print_message(&format!("\n  {}\n", told.join("\n  ")));
             self.typed().begin();
             self.state = State::Choosing(after);
         }
         match self.typed().hear() {
             Heard::Nothing => {}
-            Heard::Ready => tell(&choices(after)),
+            Heard::Ready => print_message(&choices(after)),
             Heard::End => self.leave(),
             Heard::Line(line) if self.state == State::Resuming(after) => {
                 match escape(line.trim()) {
@@ -128,12 +128,12 @@ impl Person {
                 Some(Choice::Leave) => self.leave(),
                 Some(Choice::Unload) => self.unload = true,
                 Some(Choice::Resume) => {
-                    tell(&format!(
+                    print_message(&format!(
                         "  {WHY_RESUME}\n  type the reason, or nothing: back > "
                     ));
                     self.state = State::Resuming(after);
                 }
-                None => tell(&format!("  {}\n{}", told.join("\n  "), choices(after))),
+                None => print_message(&format!("  {}\n{}", told.join("\n  "), choices(after))),
             },
         }
     }
@@ -143,7 +143,7 @@ impl Person {
     }
 
     fn show(&mut self, question: &Question) {
-        tell(&shown(question));
+        print_message(&shown(question));
         self.typed().begin();
     }
 
@@ -166,7 +166,7 @@ impl Person {
                     self.remark = Some(escape(remark));
                 }
                 let Some(yes) = kind.answer(line) else {
-                    tell(&prompt(kind));
+                    print_message(&prompt(kind));
                     return Inspection::Wait;
                 };
                 (kind, yes)
@@ -174,7 +174,7 @@ impl Person {
             _ => return Inspection::Wait,
         };
         let Some(by) = operator.clone() else {
-            tell("  your name? ");
+            print_message("  your name? ");
             self.state = State::Naming(kind, yes);
             return Inspection::Wait;
         };
@@ -246,14 +246,14 @@ pub fn agrees<E>(
     wish: &Wish,
     mut meanwhile: impl FnMut() -> Result<(), E>,
 ) -> Result<bool, E> {
-    tell(&shown(question));
+    print_message(&shown(question));
     typed.begin();
     loop {
         match typed.hear() {
-            Heard::Ready => tell(&prompt(question.kind)),
+            Heard::Ready => print_message(&prompt(question.kind)),
             Heard::Line(line) => match question.kind.answer(&line) {
                 Some(yes) => return Ok(yes),
-                None => tell(&prompt(question.kind)),
+                None => print_message(&prompt(question.kind)),
             },
             Heard::End => return Ok(false),
             Heard::Nothing if wish.wants_end() => return Ok(false),
