@@ -7,7 +7,7 @@ use super::check::Finding;
 use super::folder::Folder;
 use super::issues::{IssueFile, apply};
 use super::standing;
-use crate::cli::files::finish_run::made_of;
+use crate::cli::files::finish_run::put_results;
 use crate::cli::files::provenance::BUILD;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::{JOURNAL, ReadRecord};
@@ -70,7 +70,7 @@ impl PlayedBack {
 
     /// Puts every file of the results into a sink; not the manifest.
     pub fn results(&self, sink: &mut dyn OutputSink) -> Result<Vec<FileDigest>, OutputError> {
-        made_of(
+        put_results(
             &self.plan,
             &self.record,
             &self.assessment,

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::issue::amend;
 use crate::cli::args::ReportArguments;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::{into, write_made};
+use crate::cli::files::finish_run::{folder_message, write_made};
 use crate::cli::files::loader::plain;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::journal_of;
@@ -96,7 +96,7 @@ pub fn finish_replayed(
             settings,
         );
     }
-    print_message(&into(folder));
+    print_message(&folder_message(folder));
     write_made(FolderSink::replacing(folder), beside, |sink| {
         played.results(&mut ProgressSink::new(sink, settings))
     })?;

@@ -63,7 +63,7 @@ impl Summary {
             drift: record.drift.as_ref().map(DriftSummary::of),
             verdict: assessment.verdict.name(),
             decision_rule: assessment.rule.name(),
-            standing: ReportStatus::of(run).name(),
+            report_status: ReportStatus::of(run).name(),
             missing: report_status::missing_fields(run)
                 .into_iter()
                 .chain(report_status::missing_particulars(run))

@@ -51,7 +51,8 @@ pub struct Summary {
     pub decision_rule: &'static str,
     /// What the report may be taken for: its gravest ground against a certificate.
     #[schemars(extend("enum" = ["certifiable", "rehearsal", "incomplete", "not certifiable", "particulars missing"]))]
-    pub standing: &'static str,
+    #[serde(rename = "standing")]
+    pub report_status: &'static str,
     /// What the certificate of a real rig must state and does not: of how it was measured, then particulars.
     pub missing: Vec<String>,
     pub outcome: OutcomeSummary,

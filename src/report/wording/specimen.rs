@@ -1,5 +1,5 @@
-//! What a virtual specimen is, in words: one text a behaviour, with its parameters. In: a behaviour and how a number is shown.
-//! Out: labelled texts, for the certificate and for `psd check --explain`.
+//! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a behaviour, and a
+//! function that prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
 use crate::physics::structure::beam::first_mode_mass_factor;
 use crate::physics::structure::portal_limit::mechanism_limit;
@@ -10,14 +10,14 @@ use crate::plan::{
 };
 use crate::units::Dimension;
 
-/// Shows a number that somebody stated, or that follows from such.
-pub type Shown<'s> = &'s dyn Fn(f64, Dimension) -> String;
+/// Prints a stated number, or one that follows from stated numbers.
+pub type Printed<'s> = &'s dyn Fn(f64, Dimension) -> String;
 
-/// Rows that tell a behaviour: what it is first, then what follows from it.
+/// The rows of a behaviour: its model and parameters, then derived values.
 #[must_use]
-pub fn rows(behaviour: &Behaviour, shown: Shown<'_>) -> Vec<(&'static str, String)> {
+pub fn rows(behaviour: &Behaviour, shown: Printed<'_>) -> Vec<(&'static str, String)> {
     let mut rows = vec![("virtual behaviour", words(behaviour, shown))];
-    follow(behaviour, shown, &mut rows);
+    derived(behaviour, shown, &mut rows);
     if !behaviour.parts().is_empty()
         || matches!(
             behaviour,
@@ -38,14 +38,14 @@ pub fn rows(behaviour: &Behaviour, shown: Shown<'_>) -> Vec<(&'static str, Strin
     rows
 }
 
-/// A behaviour in one text.
+/// A behaviour with its parameters as one string.
 #[must_use]
-pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
+pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
     use Dimension as Of;
     let list = |name: &str, values: &[(&str, f64, Dimension)]| {
         let values: Vec<String> = values
             .iter()
-            .map(|(name, value, of)| format!(", {name} {}", shown(*value, *of)))
+            .map(|(name, value, dimension)| format!(", {name} {}", shown(*value, *dimension)))
             .collect();
         format!("{name}{}", values.concat())
     };
@@ -84,7 +84,7 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
                 hardening: *hardening,
             };
             words(&plain, shown)
-                + &worn(*deterioration, yield_force * yield_force / stiffness, shown)
+                + &deteriorating(*deterioration, yield_force * yield_force / stiffness, shown)
         }
         Behaviour::Multilinear { corners } => {
             let corners: Vec<String> = corners
@@ -116,7 +116,7 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
             ],
         ),
         Behaviour::Pinching(pinching) => {
-            let told = list(
+            let model = list(
                 "pinching",
                 &[
                     ("stiffness", pinching.stiffness, Of::STIFFNESS),
@@ -136,10 +136,11 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
                 ],
             );
             let unit = pinching.yield_force * pinching.yield_force / pinching.stiffness;
-            told + &capped(pinching, shown)
+            model
+                + &capped(pinching, shown)
                 + &pinching
                     .deterioration
-                    .map_or_else(String::new, |lost| worn(lost, unit, shown))
+                    .map_or_else(String::new, |lost| deteriorating(lost, unit, shown))
         }
         Behaviour::Degrading {
             stiffness,
@@ -165,7 +166,7 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
         Behaviour::Table(table) => {
             let ends = [table.points.first(), table.points.last()]
                 .map(|point| point.map_or(0.0, |[x, _]| *x));
-            let back = match table.unloading {
+            let unloading = match table.unloading {
                 Unloading::InitialStiffness => "unloading parallel to its steepest stretch",
                 Unloading::AlongTheCurve => "unloading along the curve",
             };
@@ -176,7 +177,7 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
             };
             let (low, high) = (shown(ends[0], Of::LENGTH), shown(ends[1], Of::LENGTH));
             format!(
-                "table {}, {} points over {low} to {high}, {back}{scale}",
+                "table {}, {} points over {low} to {high}, {unloading}{scale}",
                 table.file,
                 table.points.len()
             )
@@ -236,19 +237,19 @@ pub fn words(behaviour: &Behaviour, shown: Shown<'_>) -> String {
     }
 }
 
-fn capped(pinching: &Pinching, shown: Shown<'_>) -> String {
+fn capped(pinching: &Pinching, shown: Printed<'_>) -> String {
     pinching.capping.map_or_else(String::new, |capping| {
-        let place = shown(capping.displacement, Dimension::LENGTH);
+        let displacement = shown(capping.displacement, Dimension::LENGTH);
         let [slope, residual] =
             [capping.slope, capping.residual].map(|number| shown(number, Dimension::NUMBER));
         format!(
-            ", falling from {place} on with {slope} of its stiffness, to {residual} of its strength"
+            ", falling from {displacement} on with {slope} of its stiffness, to {residual} of its strength"
         )
     })
 }
 
-/// What is lost with energy, mode by mode; `unit` is `F_y` `x_y`, J.
-fn worn(lost: Deterioration, unit: f64, shown: Shown<'_>) -> String {
+/// Cyclic deterioration, mode by mode; `unit` is `F_y` `x_y` \[J\].
+fn deteriorating(lost: Deterioration, unit: f64, shown: Printed<'_>) -> String {
     let residual = shown(lost.residual, Dimension::NUMBER);
     let modes = [
         (
@@ -259,7 +260,7 @@ fn worn(lost: Deterioration, unit: f64, shown: Shown<'_>) -> String {
         ("unloading stiffness".to_owned(), lost.unloading),
         ("reloading stiffness".to_owned(), lost.reloading),
     ];
-    let told = modes
+    let active = modes
         .into_iter()
         .filter(|(_, capacity)| capacity.is_finite())
         .map(|(words, capacity)| {
@@ -270,18 +271,18 @@ fn worn(lost: Deterioration, unit: f64, shown: Shown<'_>) -> String {
         });
     format!(
         "{}, exponent {}",
-        told.collect::<String>(),
+        active.collect::<String>(),
         shown(lost.exponent, Dimension::NUMBER)
     )
 }
 
-fn beam_words(beam: &Beam, shown: Shown<'_>) -> String {
+fn beam_words(beam: &Beam, shown: Printed<'_>) -> String {
     let shear = beam.shear.map_or_else(String::new, |shear| {
         format!(", shear stiffness {}", shown(shear, Dimension::FORCE))
     });
     format!(
         "beam, {}, length {}, modulus {}, second moment {}{shear}: stiffness {}",
-        held(beam.ends, shown),
+        support(beam.ends, shown),
         shown(beam.length, Dimension::LENGTH),
         shown(beam.youngs_modulus, Dimension::PRESSURE),
         shown(beam.second_moment, Dimension::SECOND_MOMENT),
@@ -289,7 +290,7 @@ fn beam_words(beam: &Beam, shown: Shown<'_>) -> String {
     )
 }
 
-fn held(ends: Ends, shown: Shown<'_>) -> String {
+fn support(ends: Ends, shown: Printed<'_>) -> String {
     match ends {
         Ends::Cantilever => "cantilever".to_owned(),
         Ends::SimplySupported => "simply supported".to_owned(),
@@ -303,8 +304,8 @@ fn held(ends: Ends, shown: Shown<'_>) -> String {
     }
 }
 
-fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
-    let of_both = |sections: Sections, unit: &str| {
+fn portal_words(portal: &Portal, shown: Printed<'_>) -> String {
+    let beam_and_columns = |sections: Sections, unit: &str| {
         let one = |value: f64| shown(value, Dimension::ENERGY).replace('J', unit);
         if sections.are_same() {
             one(sections.beam)
@@ -316,13 +317,13 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
             )
         }
     };
-    // N·m² has no name among the dimensions: shown as what bends a beam of 1 m.
+    // N·m² is not among the dimensions: printed as an energy, with its unit replaced.
     let section = portal
         .bending_stiffness
         .map_or_else(String::new, |bending| {
-            format!(", EI {}", of_both(bending, "N·m²"))
+            format!(", EI {}", beam_and_columns(bending, "N·m²"))
         });
-    let weighs = portal
+    let masses = portal
         .masses
         .map_or_else(String::new, |masses| frame_words(masses, shown));
     let loads = match portal.loads {
@@ -338,15 +339,15 @@ fn portal_words(portal: &Portal, shown: Shown<'_>) -> String {
         ),
     };
     format!(
-        "portal, fixed feet, span {}, height {}, plastic moment {}{section}{weighs}, {loads}: stiffness {}",
+        "portal, fixed feet, span {}, height {}, plastic moment {}{section}{masses}, {loads}: stiffness {}",
         shown(portal.span, Dimension::LENGTH),
         shown(portal.height, Dimension::LENGTH),
-        of_both(portal.plastic_moment, "N·m"),
+        beam_and_columns(portal.plastic_moment, "N·m"),
         shown(portal.stiffness, Dimension::STIFFNESS)
     )
 }
 
-fn frame_words(masses: FrameMasses, shown: Shown<'_>) -> String {
+fn frame_words(masses: FrameMasses, shown: Printed<'_>) -> String {
     let FrameMasses {
         per_length,
         midspan,
@@ -362,9 +363,9 @@ fn frame_words(masses: FrameMasses, shown: Shown<'_>) -> String {
             one(per_length.column)
         ),
     };
-    let lump = |mass: f64, place: &str| {
+    let lump = |mass: f64, position: &str| {
         if mass > 0.0 {
-            format!(", {} {place}", shown(mass, Dimension::MASS))
+            format!(", {} {position}", shown(mass, Dimension::MASS))
         } else {
             String::new()
         }
@@ -372,14 +373,14 @@ fn frame_words(masses: FrameMasses, shown: Shown<'_>) -> String {
     members + &lump(midspan, "at midspan") + &lump(corner, "at each corner")
 }
 
-/// Equivalent masses of a frame, each with the shape that it is of and the share of the whole that it is.
+/// Equivalent masses of a frame, each with its shape function and its fraction of the total mass.
 fn portal_masses(
     masses: EquivalentMasses,
-    shown: Shown<'_>,
+    shown: Printed<'_>,
     rows: &mut Vec<(&'static str, String)>,
 ) {
     let all = shown(masses.whole, Dimension::MASS);
-    let of = |mass: f64, shape: &str| {
+    let equivalent = |mass: f64, shape: &str| {
         format!(
             "{} ({:.4} of the frame's {all}, {shape})",
             shown(mass, Dimension::MASS),
@@ -388,25 +389,25 @@ fn portal_masses(
     };
     rows.push((
         "elastic equivalent mass",
-        of(masses.elastic, "static deflection as the shape"),
+        equivalent(masses.elastic, "static deflection as the shape"),
     ));
     rows.extend(masses.plastic.map(|plastic| {
         (
             "plastic equivalent mass",
-            of(plastic, "the mechanism as the shape"),
+            equivalent(plastic, "the mechanism as the shape"),
         )
     }));
     rows.push((
         "lumped equivalent mass",
-        of(
+        equivalent(
             masses.lumped,
             "half of each member at its ends, as the paper's Fig. 5",
         ),
     ));
 }
 
-/// What follows from a geometry: a beam's own mass in its first mode, a portal's mechanism and masses.
-fn follow(behaviour: &Behaviour, shown: Shown<'_>, rows: &mut Vec<(&'static str, String)>) {
+/// Values derived from a geometry: the mass of a beam in its first mode, mechanism and masses of a portal.
+fn derived(behaviour: &Behaviour, shown: Printed<'_>, rows: &mut Vec<(&'static str, String)>) {
     match behaviour {
         Behaviour::Beam(beam) => {
             let factor = first_mode_mass_factor(beam);
@@ -421,10 +422,10 @@ fn follow(behaviour: &Behaviour, shown: Shown<'_>, rows: &mut Vec<(&'static str,
             rows.push(("first-mode equivalent mass", text));
         }
         Behaviour::Portal(portal) => {
-            let governs = portal.mechanism();
+            let mechanism = portal.mechanism();
             rows.push((
                 "mechanism",
-                format!("{}: {}", governs.name(), governs.hinges()),
+                format!("{}: {}", mechanism.name(), mechanism.hinges()),
             ));
             let loads = Mechanism::ALL
                 .into_iter()
@@ -454,6 +455,6 @@ fn follow(behaviour: &Behaviour, shown: Shown<'_>, rows: &mut Vec<(&'static str,
         _ => behaviour
             .parts()
             .iter()
-            .for_each(|part| follow(part, shown, rows)),
+            .for_each(|part| derived(part, shown, rows)),
     }
 }

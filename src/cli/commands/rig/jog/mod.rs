@@ -5,7 +5,7 @@ mod session;
 
 use std::path::Path;
 
-use super::typed::{number, places};
+use super::typed::{number, positions};
 use crate::cli::args::JogArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::write_made;
@@ -51,7 +51,7 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
         to: arguments
             .to
             .as_deref()
-            .map(|to| places(to, plan.degrees_of_freedom(), "--to"))
+            .map(|to| positions(to, plan.degrees_of_freedom(), "--to"))
             .transpose()?,
         speed: arguments
             .speed

@@ -1,7 +1,7 @@
 //! A session of moves by hand: question, moves, readings. In: the plan, the operator and a connected rig. Out: the exit, and
 //! messages to the operator. It opens no folder.
 
-use super::super::typed::places;
+use super::super::typed::positions;
 use super::Wanted;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::question::{Kind, Question};
@@ -97,7 +97,7 @@ impl JogSession<'_> {
             match line.trim() {
                 "" => {}
                 "q" | "quit" => return Ok(if refused { Exit::Stopped } else { Exit::Met }),
-                typed => match places(typed, specimen.degrees_of_freedom(), "the place") {
+                typed => match positions(typed, specimen.degrees_of_freedom(), "the place") {
                     Ok(to) => refused |= self.move_to(&to, specimen)? != Exit::Met,
                     Err(failure) => print_message(&failure.report(self.settings)),
                 },
