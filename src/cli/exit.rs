@@ -1,4 +1,4 @@
-//! How the program ends: the exit codes of the language's reference, and the failures that are not the plan's.
+//! The end of the program: the exit codes of the language reference, and failures that are not errors of the plan.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -22,14 +22,14 @@ pub enum Exit {
     Wrong,
     /// 3: the rig or a file failed.
     Fault,
-    /// 4: stopped by a limit or by a person.
+    /// 4: stopped by a limit or by the operator.
     Stopped,
-    /// 5: results differ from the blessed ones.
+    /// 5: results differ from the accepted ones.
     Differs,
 }
 
 impl Exit {
-    /// The number the shell sees.
+    /// The exit code of the process.
     #[must_use]
     pub const fn code(self) -> u8 {
         match self {
@@ -60,7 +60,7 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Why a command could not do its work. Faults in a plan are diagnostics, not these.
+/// The reason why a command failed. Errors of a plan are diagnostics instead.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     #[error("{message}")]
@@ -107,8 +107,9 @@ pub enum Failure {
     Signals(std::io::Error),
 }
 
-/// What a device is told to be that does not answer, and what that may come from.
+/// Part of the message of a device that does not answer.
 const SILENT: &str = "no usable answer";
+/// Possible causes of a silent device.
 const LOOK_FOR: &str = "the baud rate, the dialect, crossed wires, or a device that still starts; `psd rig simulate` in its place shows\n       \
     whether the plan is right";
 
@@ -128,7 +129,7 @@ impl Failure {
         }
     }
 
-    /// Where in a file its text could not be read.
+    /// The position in a file at which its text could not be read.
     pub const fn place(&self) -> Option<Position> {
         match self {
             Self::NotAPlan { at, .. } => *at,
@@ -136,7 +137,7 @@ impl Failure {
         }
     }
 
-    /// The same failure with a way out.
+    /// The same failure with advice.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         if let Self::CommandLine { help, .. } | Self::File { help, .. } = &mut self {
@@ -145,7 +146,7 @@ impl Failure {
         self
     }
 
-    /// A rig that cannot be opened, with the place in the plan that says how.
+    /// A rig that cannot be opened, with the position in the plan that specifies it.
     #[must_use]
     pub fn in_the_plan(self, place: impl FnOnce(&str) -> Option<String>) -> Self {
         match self {
@@ -178,7 +179,7 @@ impl Failure {
         }
     }
 
-    /// As told to the person.
+    /// The message for the operator.
     pub fn report(&self, settings: Settings) -> String {
         let (head, help) = match self {
             Self::CommandLine { help, .. } | Self::File { help, .. } => {
@@ -186,9 +187,9 @@ impl Failure {
             }
             Self::NoRoom(fault) => (format!("error[{}]", NoRoom::CODE), Some(fault.help())),
             Self::NotOpened {
-                fault: RigFault::Device(told),
+                fault: RigFault::Device(message),
                 ..
-            } if told.contains(SILENT) => ("error:".to_owned(), Some(LOOK_FOR.to_owned())),
+            } if message.contains(SILENT) => ("error:".to_owned(), Some(LOOK_FOR.to_owned())),
             _ => ("error:".to_owned(), None),
         };
         let mut text = format!(

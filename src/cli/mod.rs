@@ -53,7 +53,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
         args::Command::Rig { command } => commands::rig::rig(command, settings),
     };
     outcome.unwrap_or_else(|failure: Failure| {
-        output::tell(&failure.report(settings));
+        output::print_message(&failure.report(settings));
         failure.exit()
     })
 }

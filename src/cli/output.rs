@@ -1,5 +1,5 @@
-//! The two streams: what is told to a person goes to standard error, results to standard output. A reader that went
-//! away (`psd explain | head`, a terminal that was closed) is no failure; a full disk behind standard output is.
+//! The two streams: messages to the operator go to standard error, results to standard output. A reader that has gone
+//! (`psd explain | head`, a closed terminal) is not an error; a full disk behind standard output is.
 
 use std::io::{Error, ErrorKind, Stdout, Write as _};
 
@@ -11,30 +11,30 @@ use super::exit::Failure;
 use super::settings::Settings;
 use crate::text::sanitize;
 
-/// Tells a person. Nobody listening is no reason to fail. Nothing but colours reaches a terminal as a command.
-pub fn tell(text: &str) {
+/// Prints a message to the operator. A closed stream is not an error. Control sequences other than colours are removed.
+pub fn print_message(text: &str) {
     let _ = std::io::stderr()
         .lock()
         .write_all(sanitize::terminal(text).as_bytes());
 }
 
-/// Tells a person lines of words: on a terminal none is broken at its edge.
-pub fn tell_words(text: &str, settings: Settings) {
+/// Prints lines of text; on a terminal they are wrapped between words.
+pub fn print_wrapped(text: &str, settings: Settings) {
     let columns = settings
         .stderr_terminal
         .then(|| size().ok())
         .flatten()
         .map(|(columns, _)| usize::from(columns));
     match columns {
-        Some(columns) if columns > 2 * INDENT => tell(&wrapped(text, columns)),
-        _ => tell(text),
+        Some(columns) if columns > 2 * INDENT => print_message(&wrapped(text, columns)),
+        _ => print_message(text),
     }
 }
 
-/// How far what goes on from the line above is set in.
+/// Indent of a continued line, in columns.
 const INDENT: usize = 8;
 
-/// Every line broken at its blanks where it is longer than `width`; what only colours takes no room.
+/// Every line longer than `width` broken between words. Colour codes have no width.
 fn wrapped(text: &str, width: usize) -> String {
     let mut all = String::new();
     for line in text.split_inclusive('\n') {
@@ -54,24 +54,24 @@ fn wrapped(text: &str, width: usize) -> String {
     all
 }
 
-/// How many letters a terminal shows of it.
+/// Number of characters that a terminal shows.
 fn letters(text: &str) -> usize {
     let mut colours = false;
-    let seen = text.chars().filter(|letter| {
+    let shown = text.chars().filter(|letter| {
         let hidden = colours || *letter == '\u{1b}';
         colours = hidden && *letter != 'm';
         !hidden
     });
-    seen.count()
+    shown.count()
 }
 
-/// Gives a result, as [`tell`] does.
-pub fn give(text: &str) -> Result<(), Failure> {
-    give_on(text).map(drop)
+/// Prints a result to standard output, without control sequences other than colours.
+pub fn print_result(text: &str) -> Result<(), Failure> {
+    print_while_read(text).map(drop)
 }
 
-/// [`give`], and whether anybody reads on: what would never end by itself ends with its reader.
-pub fn give_on(text: &str) -> Result<bool, Failure> {
+/// As [`print_result`]; returns whether the reader is still there, so that an endless output ends with its reader.
+pub fn print_while_read(text: &str) -> Result<bool, Failure> {
     let stdout = std::io::stdout();
     let mut locked = stdout.lock();
     match locked
@@ -86,7 +86,7 @@ pub fn give_on(text: &str) -> Result<bool, Failure> {
     }
 }
 
-/// Whether this is what a terminal says whose window is gone. A disk that fails says the same, and is none.
+/// Whether this is the error of a terminal whose window is closed. A failing disk gives the same error, but is not a terminal.
 fn is_closed(stdout: &Stdout, error: &Error) -> bool {
     let device = || {
         fstat(stdout)

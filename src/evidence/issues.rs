@@ -8,7 +8,7 @@ use serde_json::json;
 use super::folder::{Folder, Held};
 use crate::language::syntax::limits::TEXT_BYTES;
 use crate::plan::Plan;
-use crate::report::days::{day, days_after, last_day};
+use crate::report::status::days::{day, days_after, last_day};
 use crate::report::{Change, Issue, IssueKind, Issues, Provenance};
 use crate::schema::{self, FieldType, Kind};
 use crate::text::digest::sha256;

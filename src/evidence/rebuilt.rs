@@ -7,7 +7,7 @@ use super::check::Finding;
 use super::folder::Folder;
 use super::issues::{IssueFile, apply};
 use super::standing;
-use crate::cli::files::finish_run::made_of;
+use crate::cli::files::finish_run::put_results;
 use crate::cli::files::provenance::BUILD;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::{JOURNAL, ReadRecord};
@@ -15,7 +15,7 @@ use crate::plan::Plan;
 use crate::record::journal::EntryKind;
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
-use crate::report::{Issue, IssueKind, Listed, Nowhere, OutputError, Provenance, Shelf};
+use crate::report::{FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Provenance};
 use crate::run::replay;
 use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
 use crate::verdict::{self, Assessment};
@@ -68,15 +68,15 @@ impl PlayedBack {
         })
     }
 
-    /// Puts every file of the results on a shelf; not the manifest.
-    pub fn results(&self, shelf: &mut dyn Shelf) -> Result<Vec<Listed>, OutputError> {
-        made_of(
+    /// Puts every file of the results into a sink; not the manifest.
+    pub fn results(&self, sink: &mut dyn OutputSink) -> Result<Vec<FileDigest>, OutputError> {
+        put_results(
             &self.plan,
             &self.record,
             &self.assessment,
             &self.provenance,
             self.steps.as_deref(),
-            shelf,
+            sink,
         )
     }
 }
@@ -98,7 +98,7 @@ pub struct Report {
     /// Who signs it, as the plan says.
     pub roles: Vec<String>,
     /// Path and SHA-256 of every file of the results, in hex; not the manifest.
-    pub files: Vec<Listed>,
+    pub files: Vec<FileDigest>,
     /// Which program made the run, where it was another.
     pub other_build: Option<String>,
     /// The record came to its end.
@@ -230,7 +230,7 @@ impl Rebuilt {
         other_build: Option<String>,
         ended: bool,
     ) -> Self {
-        let files = match played.results(&mut Nowhere) {
+        let files = match played.results(&mut NullSink) {
             Ok(files) => files,
             Err(error) => {
                 findings.push(Finding::wrong("results", error.to_string()));

@@ -1,16 +1,18 @@
-//! The verdict for a person at a terminal. In: a run. Out: text for stderr, aligned; plain or coloured, as the caller says.
+//! The verdict on a terminal. In: a run. Out: aligned text for stderr, plain or coloured as the caller chooses.
 
 use std::fmt::Write as _;
 
-use super::report_status::Standing;
-use super::{Run, coverage_factor, deviations, number, report_status, summary};
+use super::budget::coverage_factor;
+use super::run::Run;
+use super::status::{ReportStatus, deviations};
+use super::{number, summary};
 use crate::plan::DecisionRule;
 use crate::record::Outcome;
 use crate::run::rehearsal;
 use crate::text::sanitize::one_line;
 use crate::verdict::{ConditionOutcome, Verdict};
 
-/// The verdict, each requirement with value, limit and margin, and what a reader must know before trusting them.
+/// The verdict, each requirement with value, limit and margin, the decision rule and the deviations.
 #[must_use]
 pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
     if let Outcome::NotReleased { reason } = &run.record.outcome {
@@ -30,8 +32,8 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
             &run.assessment.verdict.name().to_uppercase()
         ),
         one_line(&run.plan.title),
-        standing_text(
-            &report_status::of(run),
+        status_text(
+            &ReportStatus::of(run),
             rehearsal::told(run.plan).is_some(),
             &one_line(&run.plan.rig.name)
         )
@@ -45,7 +47,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         .iter()
         .map(|requirement| {
             let name = one_line(&requirement.label);
-            let Some(deciding) = summary::governing(requirement) else {
+            let Some(governing) = summary::governing(requirement) else {
                 return [
                     requirement.verdict.name().to_owned(),
                     name,
@@ -54,16 +56,16 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
                     String::new(),
                 ];
             };
-            let value = number::value(deciding).unwrap_or_else(|| "no value".to_owned());
-            let margin = number::margin(deciding).map_or_else(
-                || deciding.reason.clone().unwrap_or_default(),
-                |margin| format!("margin {margin}{}", band(deciding, run.assessment.rule)),
+            let value = number::value(governing).unwrap_or_else(|| "no value".to_owned());
+            let margin = number::margin(governing).map_or_else(
+                || governing.reason.clone().unwrap_or_default(),
+                |margin| format!("margin {margin}{}", band(governing, run.assessment.rule)),
             );
             [
                 requirement.verdict.name().to_owned(),
                 name,
                 value,
-                number::bound(deciding),
+                number::bound(governing),
                 one_line(&margin),
             ]
         })
@@ -83,8 +85,8 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         let line = format!("  {verdict}  {}  {}", cells.join("  "), row[4]);
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    text.push_str(&rule(run));
-    for deviation in deviations::of(run) {
+    text.push_str(&decision_rule(run));
+    for deviation in deviations::of_run(run) {
         let _ = writeln!(text, "  note: {}", one_line(&deviation));
     }
     let report = run.provenance.report_id();
@@ -97,16 +99,16 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
     text
 }
 
-/// What must be left between value and limit, where the rule wants that.
+/// The guard band; under simple acceptance the probability of conformity where U exceeds the tolerance.
 fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
     match (rule, number::guard_band(condition)) {
         (DecisionRule::Simple, _) => match condition
             .conforms
             .filter(|_| condition.wider_than_tolerance)
         {
-            Some(share) => format!(
+            Some(probability) => format!(
                 ", U exceeds the tolerance: probability of conformity {}",
-                number::probability(share)
+                number::probability(probability)
             ),
             None => String::new(),
         },
@@ -118,9 +120,9 @@ fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
     }
 }
 
-/// The rule of decision, where a U is printed that it regards or not.
-fn rule(run: &Run<'_>) -> String {
-    let told = match coverage_factor::largest(run.assessment) {
+/// The decision rule, where a U is printed.
+fn decision_rule(run: &Run<'_>) -> String {
+    let expanded = match coverage_factor::largest(run.assessment) {
         Some(factor) => {
             format!("± is U = k·u (about 95 %; k up to {factor}, of few degrees of freedom)")
         }
@@ -133,31 +135,33 @@ fn rule(run: &Run<'_>) -> String {
         .flat_map(|requirement| &requirement.conditions);
     match run.assessment.rule {
         DecisionRule::Guarded => format!(
-            "  decision rule: guarded; {told}, and a limit nearer than that decides nothing\n"
+            "  decision rule: guarded; {expanded}, and a limit nearer than that decides nothing\n"
         ),
         DecisionRule::Simple
             if uncertain
                 .into_iter()
                 .any(|condition| condition.conforms.is_some()) =>
         {
-            format!("  decision rule: simple; {told}, the value alone decides\n")
+            format!("  decision rule: simple; {expanded}, the value alone decides\n")
         }
         DecisionRule::Simple => String::new(),
     }
 }
 
-/// What the report may be taken for, where it is no certificate.
-fn standing_text(standing: &Standing, rehearsed: bool, rig: &str) -> String {
-    match standing {
-        Standing::Certifiable => String::new(),
-        Standing::Rehearsal if rehearsed => "  (REHEARSAL: not the test of the plan)".to_owned(),
-        Standing::Rehearsal => format!("  (rig `{rig}`, simulated: a rehearsal)"),
-        Standing::Incomplete => "  (INCOMPLETE)".to_owned(),
-        Standing::NotCertifiable { missing } => format!(
+/// The status of the report, where it is not certifiable.
+fn status_text(status: &ReportStatus, rehearsed: bool, rig: &str) -> String {
+    match status {
+        ReportStatus::Certifiable => String::new(),
+        ReportStatus::Rehearsal if rehearsed => {
+            "  (REHEARSAL: not the test of the plan)".to_owned()
+        }
+        ReportStatus::Rehearsal => format!("  (rig `{rig}`, simulated: a rehearsal)"),
+        ReportStatus::Incomplete => "  (INCOMPLETE)".to_owned(),
+        ReportStatus::NotCertifiable { missing } => format!(
             "  (NOT CERTIFIABLE: lacks {})",
             one_line(&missing.join(", "))
         ),
-        Standing::ParticularsMissing { missing } => {
+        ReportStatus::ParticularsMissing { missing } => {
             format!(
                 "  (PARTICULARS MISSING: {}; see `psd issue`)",
                 one_line(&missing.join(", "))

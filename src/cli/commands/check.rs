@@ -4,7 +4,7 @@ use super::explain_plan;
 use crate::cli::args::{CheckArguments, Format};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::text::diagnostic::excerpt::one_line;
 use crate::text::diagnostic::json;
@@ -18,7 +18,7 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
             Ok(checked) => checked,
             // One file that cannot be read does not hide what is wrong with the others.
             Err(failure) => {
-                tell(&failure.report(settings));
+                print_message(&failure.report(settings));
                 found.push(json::unreadable(
                     &path.display().to_string(),
                     &failure.to_string(),
@@ -40,19 +40,19 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
             let dry = explain_plan::Explained::of(plan);
             exit = exit.max(dry.exit());
             match arguments.format {
-                Format::Human => give(&dry.text(settings))?,
-                Format::Json => tell(&dry.text(settings)),
+                Format::Human => print_result(&dry.text(settings))?,
+                Format::Json => print_message(&dry.text(settings)),
             }
         } else if arguments.format == Format::Human {
             let name = one_line(&path.display().to_string());
-            tell(&format!(
+            print_message(&format!(
                 "{name}: {}\n",
                 settings.paint_note("the plan is sound")
             ));
         }
     }
     if arguments.format == Format::Json {
-        give(&json::text(&found))?;
+        print_result(&json::text(&found))?;
     }
     Ok(exit)
 }

@@ -9,7 +9,7 @@ use crate::cli::files::accepted::truth_in;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::journal_of;
 use crate::cli::files::run_folder::{RunFolder, write_new};
-use crate::cli::output::give;
+use crate::cli::output::print_result;
 use crate::evidence::{Folder, IssueFile, PlayedBack};
 use crate::golden::comparison;
 use crate::golden::comparison::{Comparison, Side};
@@ -31,7 +31,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {
         .map(|out| RunFolder::create(Some(out), out))
         .transpose()?;
     let compared = Comparison::of(&sides);
-    give(&comparison::told(&compared))?;
+    print_result(&comparison::told(&compared))?;
     let Some(folder) = folder else {
         return Ok(Exit::Met);
     };
@@ -64,7 +64,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {
         folder.path(),
         &file("comparison.html", page(&compared, &drawn)),
     )?;
-    give(&format!("{}\n", folder.path().display()))?;
+    print_result(&format!("{}\n", folder.path().display()))?;
     Ok(Exit::Met)
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::give;
+use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::text::diagnostic::Code;
 use crate::text::suggest::nearest;
@@ -21,7 +21,7 @@ pub fn explain(code: Option<&str>, settings: Settings) -> Result<Exit, Failure> 
             page(*known, settings)
         }
     };
-    give(&text)?;
+    print_result(&text)?;
     Ok(Exit::Met)
 }
 

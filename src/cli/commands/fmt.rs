@@ -10,7 +10,7 @@ use crate::cli::args::FmtArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::loader::{plain, read_plan};
 use crate::cli::files::plan_file::name_of;
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::language::syntax;
 use crate::text::diagnostic::excerpt::one_line;
@@ -22,7 +22,7 @@ pub fn fmt(arguments: &FmtArguments, settings: Settings) -> Result<Exit, Failure
     let mut exit = Exit::Met;
     for path in plans(&arguments.paths)? {
         let done = one(&path, arguments.check, settings).unwrap_or_else(|failure| {
-            tell(&failure.report(settings));
+            print_message(&failure.report(settings));
             failure.exit()
         });
         exit = exit.max(done);
@@ -41,7 +41,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     if check {
         let name = one_line(&path.display().to_string());
         let diff = TextDiff::from_lines(&text, &formatted);
-        give(
+        print_result(
             &diff
                 .unified_diff()
                 .context_radius(3)
@@ -58,7 +58,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
         ));
     }
     replace(path, &formatted).map_err(|error| Failure::file(path, plain(&error)))?;
-    tell(&format!(
+    print_message(&format!(
         "formatted {}\n",
         one_line(&path.display().to_string())
     ));
@@ -74,7 +74,7 @@ fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
         .iter()
         .any(crate::text::diagnostic::Diagnostic::is_error)
     {
-        tell(&render_all(&faults, &sources, &settings.appearance(path)));
+        print_message(&render_all(&faults, &sources, &settings.appearance(path)));
         return None;
     }
     Some(syntax::format(&ast, text))

@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::report::conclude_played;
+use super::report::finish_replayed;
 use super::verify::refuse_unproven;
 use crate::cli::args::{IssueArguments, ReportArguments};
 use crate::cli::exit::{Exit, Failure};
@@ -12,7 +12,7 @@ use crate::cli::files::loader::plain;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::JOURNAL;
 use crate::cli::files::run_folder::{RunFolder, write_new};
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::{
     Folder, ISSUE, IssueFile, MANIFEST, One, OneKind, PlayedBack, Rebuilt, examine, may_be_stated,
@@ -142,17 +142,17 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
         .listed()
         .map(|(name, held)| (name.clone(), held.digest.clone()))
         .collect();
-    conclude_played(place.path(), &played, &beside, settings)?;
+    finish_replayed(place.path(), &played, &beside, settings)?;
     let does = match wanted.kind {
         OneKind::Issue => "issues",
         OneKind::Amendment => "takes the place of",
     };
-    tell(&format!(
+    print_message(&format!(
         "  report {} {does} report {}\n",
         played.provenance.report_id(),
         report.id
     ));
-    give(&format!("{}\n", place.path().display()))?;
+    print_result(&format!("{}\n", place.path().display()))?;
     // Whatever the verdict of the run: the report has been made.
     Ok(Exit::Met)
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::give;
+use crate::cli::output::print_result;
 use crate::language::check;
 use crate::language::syntax::limits as syntax;
 use crate::plan;
@@ -71,7 +71,7 @@ pub fn limits() -> Result<Exit, Failure> {
         journal::MOST_BYTES.to_string(),
         "bytes of the record of one run",
     )];
-    give(&counted.iter().chain(&reckoned).chain(&record).fold(
+    print_result(&counted.iter().chain(&reckoned).chain(&record).fold(
         String::new(),
         |mut text, (bound, what)| {
             let _ = writeln!(text, "{bound:>10}  {what}");

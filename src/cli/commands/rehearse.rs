@@ -6,9 +6,9 @@ use super::explain_plan::DryRun;
 use super::run::{Ran, on_its_rig};
 use crate::cli::args::{Format, RunArguments};
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::{conclude, summary};
+use crate::cli::files::finish_run::{finish_run, summary};
 use crate::cli::operator::watch::Attendance;
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::plan::{Behaviour, Frame, Plan};
 use crate::record::{Outcome, Record};
@@ -37,23 +37,23 @@ pub fn rehearse(
         recorded,
         ..
     } = ran;
-    let exit = conclude(folder.path(), &part, &provenance, &recorded, settings)?;
+    let exit = finish_run(folder.path(), &part, &provenance, &recorded, settings)?;
     let predicted = if exit <= Exit::Missed {
         let stand_in = rehearsal::prediction(plan, &recorded.record)?;
         let dry = DryRun::on(plan, &stand_in, told(plan, &stand_in));
         let text = dry.text(settings);
         match arguments.format {
-            Format::Human => give(&text)?,
-            Format::Json => tell(&text),
+            Format::Human => print_result(&text)?,
+            Format::Json => print_message(&text),
         }
         dry.exit()
     } else {
-        tell("  no prediction: the rehearsal itself did not come to its end\n");
+        print_message("  no prediction: the rehearsal itself did not come to its end\n");
         exit
     };
     match arguments.format {
-        Format::Human => give(&format!("{}\n", folder.path().display()))?,
-        Format::Json => give(&summary(folder.path(), &recorded.record)?)?,
+        Format::Human => print_result(&format!("{}\n", folder.path().display()))?,
+        Format::Json => print_result(&summary(folder.path(), &recorded.record)?)?,
     }
     Ok(exit.max(predicted))
 }

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 use super::issue::amend;
 use crate::cli::args::ReportArguments;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::{into, write_made};
+use crate::cli::files::finish_run::{folder_message, write_made};
 use crate::cli::files::loader::plain;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::journal_of;
-use crate::cli::files::run_folder::{FolderShelf, RunFolder};
-use crate::cli::files::writing::Telling;
-use crate::cli::output::{give, tell, tell_words};
+use crate::cli::files::run_folder::{FolderSink, RunFolder};
+use crate::cli::files::writing::ProgressSink;
+use crate::cli::output::{print_message, print_result, print_wrapped};
 use crate::cli::settings::Settings;
 use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, held_issue, stands};
 use crate::record::journal::FileStorage;
@@ -52,8 +52,8 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
             .iter()
             .try_for_each(|(name, _)| copy(run, &folder, name))?;
     }
-    let exit = conclude_played(&folder, &played, &beside, settings)?;
-    give(&format!("{}\n", folder.display()))?;
+    let exit = finish_replayed(&folder, &played, &beside, settings)?;
+    print_result(&format!("{}\n", folder.display()))?;
     Ok(exit)
 }
 
@@ -68,7 +68,7 @@ fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
 }
 
 /// Tells the verdict of a record played back, and writes its results.
-pub fn conclude_played(
+pub fn finish_replayed(
     folder: &Path,
     played: &PlayedBack,
     beside: &[(String, String)],
@@ -83,7 +83,7 @@ pub fn conclude_played(
         steps,
     } = played;
     if steps.is_none() {
-        tell_words(
+        print_wrapped(
             &report::console::verdict_text(
                 &Run {
                     plan,
@@ -96,15 +96,15 @@ pub fn conclude_played(
             settings,
         );
     }
-    tell(&into(folder));
-    write_made(FolderShelf::replacing(folder), beside, |shelf| {
-        played.results(&mut Telling::over(shelf, settings))
+    print_message(&folder_message(folder));
+    write_made(FolderSink::replacing(folder), beside, |sink| {
+        played.results(&mut ProgressSink::new(sink, settings))
     })?;
     let exit = Exit::from(assessment.verdict);
     let Some(mismatch) = mismatch else {
         return Ok(exit);
     };
-    tell(&format!("  the record does not fit the plan: {mismatch}\n"));
+    print_message(&format!("  the record does not fit the plan: {mismatch}\n"));
     Ok(exit.max(Exit::Fault))
 }
 

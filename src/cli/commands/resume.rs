@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::args::ResumeArguments;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::conclude;
+use crate::cli::files::finish_run::finish_run;
 use crate::cli::files::loader::plain;
 use crate::cli::files::provenance::{BUILD, TOOLCHAIN};
 use crate::cli::files::record_file;
@@ -15,7 +15,7 @@ use crate::cli::files::record_file::{ReadRecord, journal_of};
 use crate::cli::files::{disk_space, plan_file, provenance};
 use crate::cli::operator::watch::{Attendance, Shared, Signals, Watcher};
 use crate::cli::operator::{confirm_release, expected, held, real_rig};
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::MANIFEST;
 use crate::plan::{Plan, RealLink};
@@ -194,7 +194,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     drop((connected, watcher));
     let recorded = recorded?;
     if let Some(torn) = torn {
-        tell(&format!(
+        print_message(&format!(
             "  a torn end of the record was put aside: {}\n",
             torn.display()
         ));
@@ -210,8 +210,8 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     {
         return Ok(exit);
     }
-    let exit = conclude(&arguments.run, &plan, &provenance, &recorded, settings)?;
-    give(&format!("{}\n", arguments.run.display()))?;
+    let exit = finish_run(&arguments.run, &plan, &provenance, &recorded, settings)?;
+    print_result(&format!("{}\n", arguments.run.display()))?;
     Ok(exit)
 }
 

@@ -5,7 +5,7 @@ use super::rehearse::rehearse;
 use crate::cli::args::{Format, RunArguments};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::accepted::BlessedFolder;
-use crate::cli::files::finish_run::{conclude, summary};
+use crate::cli::files::finish_run::{finish_run, summary};
 use crate::cli::files::golden_run;
 use crate::cli::files::golden_run::Extent;
 use crate::cli::files::record_file;
@@ -14,7 +14,7 @@ use crate::cli::files::run_folder::RunFolder;
 use crate::cli::files::{plan_file, provenance};
 use crate::cli::operator::watch::{Attendance, Signals, Watcher};
 use crate::cli::operator::{expected, held, real_rig};
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::golden::{Outcome, Tested, console};
 use crate::plan::{Link, Plan};
@@ -35,7 +35,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     plan_file::show(&checked, &arguments.plan, settings);
     let Some(plan) = &checked.plan else {
         if arguments.format == Format::Json {
-            give(&json::text(&plan_file::diagnostics(
+            print_result(&json::text(&plan_file::diagnostics(
                 &checked,
                 &arguments.plan,
             )))?;
@@ -75,13 +75,13 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         recorded,
         ..
     } = ran;
-    let exit = conclude(folder.path(), plan, &provenance, &recorded, settings)?;
+    let exit = finish_run(folder.path(), plan, &provenance, &recorded, settings)?;
     if let Some(blessed) = blessed {
         let trial = golden_run::of(&arguments.plan, Extent::All)?;
         if trial.ended.as_ref() == Some(&recorded.record.outcome) {
             let outcome =
                 Outcome::Blessed(blessed.bless(&trial.files, &trial.tolerances, false, false)?);
-            tell(&console::told(
+            print_message(&console::told(
                 &Tested {
                     name: blessed.path().display().to_string(),
                     outcome,
@@ -89,12 +89,14 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
                 settings.color,
             ));
         } else {
-            tell("  not blessed: the run was stopped, and the plan as it is written goes on\n");
+            print_message(
+                "  not blessed: the run was stopped, and the plan as it is written goes on\n",
+            );
         }
     }
     match arguments.format {
-        Format::Human => give(&format!("{}\n", folder.path().display()))?,
-        Format::Json => give(&summary(folder.path(), &recorded.record)?)?,
+        Format::Human => print_result(&format!("{}\n", folder.path().display()))?,
+        Format::Json => print_result(&summary(folder.path(), &recorded.record)?)?,
     }
     Ok(exit)
 }
@@ -190,7 +192,7 @@ fn on_a_real_rig(
     opened.watcher.expect(expected);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
-    tell(&provenance::told_of_another_day(
+    print_message(&provenance::told_of_another_day(
         plan,
         circumstances.began.as_deref(),
     ));

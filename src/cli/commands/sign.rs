@@ -7,7 +7,7 @@ use super::verify::refuse_unproven;
 use crate::cli::args::{KeygenArguments, SignArguments};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::run_folder::write_new;
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::keys;
 use crate::evidence::keys::Protection;
@@ -50,8 +50,8 @@ pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failu
         bytes: signed.into_bytes(),
     };
     write_new(run, &file)?;
-    tell(&format!("  signed by key {}\n", keys::number(key.keynum())));
-    give(&format!("{}\n", run.join(file.path).display()))?;
+    print_message(&format!("  signed by key {}\n", keys::number(key.keynum())));
+    print_result(&format!("{}\n", run.join(file.path).display()))?;
     Ok(Exit::Met)
 }
 
@@ -102,24 +102,24 @@ pub fn keygen(arguments: &KeygenArguments, settings: Settings) -> Result<Exit, F
     };
     let (public, key) = keys::make(&arguments.file, password)?;
     warn(&arguments.file, protection);
-    tell(&format!(
+    print_message(&format!(
         "  key {}: give {} to whoever is to check your signatures\n",
         keys::number(key.keynum()),
         public.display()
     ));
-    give(&format!("{}\n", public.display()))?;
+    print_result(&format!("{}\n", public.display()))?;
     Ok(Exit::Met)
 }
 
 fn warn(key: &Path, protection: Protection) {
     let name = one_line(&key.display().to_string());
     if protection == Protection::None {
-        tell(&format!(
+        print_message(&format!(
             "  {name} has no password: whoever reads it can sign with it\n"
         ));
     }
     if keys::is_readable_by_others(key) {
-        tell(&format!(
+        print_message(&format!(
             "  {name} can be read by others than its owner: `chmod 600` keeps it from them\n"
         ));
     }

@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::cli::args::VerifyArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file::{JOURNAL, journal_of};
-use crate::cli::output::give;
+use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
 use crate::record::journal::{FileFault, FileStorage};
@@ -47,7 +47,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
             one_line(&finding.told)
         );
     }
-    give(&text)?;
+    print_result(&text)?;
     Ok(if findings.iter().all(|finding| finding.sound) {
         Exit::Met
     } else {

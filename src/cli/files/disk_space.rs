@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::cli::exit::Failure;
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::plan::Plan;
 use crate::record::journal::{FileStorage, MOST_BYTES};
 use crate::rig::safety::failpoint::{Guarding, on};
@@ -50,7 +50,7 @@ pub fn enough(
     fits(folder, need.bytes.saturating_sub(written), storage.room()?)?;
     if !need.unknown.is_empty() {
         let names: Vec<String> = need.unknown.iter().map(|name| escape(name)).collect();
-        tell(&format!(
+        print_message(&format!(
             "  not reckoned: the room on the disk that {} may take hangs on what is measured before\n",
             names.join(", ")
         ));

@@ -1,5 +1,5 @@
-//! The end of a run: verdict, results, manifest. In: what was recorded. Out: the files of the run folder. The record lies
-//! there already, whole, whatever becomes of the results.
+//! The end of a run: verdict, results, manifest. In: the recorded run. Out: the files of the run folder. The record is complete
+//! there before any result is written.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -7,25 +7,25 @@ use std::path::Path;
 use super::loader::plain;
 use super::provenance;
 use super::record_file::{self, journal_of};
-use super::run_folder::{FolderShelf, write_new};
-use super::writing::Telling;
+use super::run_folder::{FolderSink, write_new};
+use super::writing::ProgressSink;
 use crate::cli::commands::rehearse;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::held;
-use crate::cli::output::{tell, tell_words};
+use crate::cli::output::{print_message, print_wrapped};
 use crate::cli::settings::Settings;
 use crate::evidence::Folder;
 use crate::plan::Plan;
 use crate::record::remote::DrivenStep;
 use crate::record::{EventKind, Outcome, Record};
 use crate::report;
-use crate::report::{Listed, OutputError, Provenance, Run, Shelf};
+use crate::report::{FileDigest, OutputError, OutputSink, Provenance, Run};
 use crate::run::replay::Recorded;
 use crate::text::diagnostic::excerpt::escape;
 use crate::verdict::{self, Assessment};
 
-/// Tells the verdict and writes every result into the run's own folder.
-pub fn conclude(
+/// Prints the verdict and writes every result into the run folder.
+pub fn finish_run(
     folder: &Path,
     plan: &Plan,
     provenance: &Provenance,
@@ -33,8 +33,8 @@ pub fn conclude(
     settings: Settings,
 ) -> Result<Exit, Failure> {
     let provenance = &as_recorded(folder, plan, provenance, recorded).inspect_err(|_| {
-        // Without a report, but not without where the rig stands.
-        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+        // No report is made, but the state of the rig is printed.
+        print_message(&rig_state(folder, plan, &recorded.record, settings));
     })?;
     let assessment = verdict::assess(plan, &recorded.record);
     let run = Run {
@@ -44,46 +44,46 @@ pub fn conclude(
         provenance,
     };
     if !held::is_held(&recorded.record) {
-        // Nothing comes before it, and nothing beside it says how to go on.
-        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+        // The state of the rig is printed first.
+        print_message(&rig_state(folder, plan, &recorded.record, settings));
     }
-    tell_words(
+    print_wrapped(
         &report::console::verdict_text(&run, settings.color),
         settings,
     );
     if held::is_held(&recorded.record) {
-        tell(&how_it_stands(folder, plan, &recorded.record, settings));
+        print_message(&rig_state(folder, plan, &recorded.record, settings));
     }
-    tell(&into(folder));
+    print_message(&folder_message(folder));
     let kept = Folder::digests(folder)?.kept();
-    write_made(FolderShelf::new(folder), &kept, |shelf| {
-        let shelf = &mut Telling::over(shelf, settings);
-        made_of(plan, &recorded.record, &assessment, provenance, None, shelf)
+    write_made(FolderSink::new(folder), &kept, |sink| {
+        let sink = &mut ProgressSink::new(sink, settings);
+        put_results(plan, &recorded.record, &assessment, provenance, None, sink)
     })?;
     let exit = Exit::from(assessment.verdict);
     match (&recorded.fault, &recorded.mismatch) {
         (None, None) => Ok(exit),
         (Some(fault), _) => {
-            tell(&format!(
+            print_message(&format!(
                 "  the record could not be kept to its end: {fault}\n"
             ));
             Ok(exit.max(Exit::Fault))
         }
         (None, Some(mismatch)) => {
-            tell(&format!("  the record does not fit the plan: {mismatch}\n"));
+            print_message(&format!("  the record does not fit the plan: {mismatch}\n"));
             Ok(exit.max(Exit::Fault))
         }
     }
 }
 
-/// Said with the verdict: where the record lies, and the results will.
-pub fn into(folder: &Path) -> String {
+/// The message that names the run folder.
+pub fn folder_message(folder: &Path) -> String {
     format!("  run folder {}\n", escape(&folder.display().to_string()))
 }
 
-/// What a run that ended early left at the rig, and how to go on: what a person who stands before it must know first.
-fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings) -> String {
-    // A rig that nobody released stands as it stood.
+/// State of the rig after a run that ended early, and the command to resume; the operator needs it first.
+fn rig_state(folder: &Path, plan: &Plan, record: &Record, settings: Settings) -> String {
+    // A rig that was not released has not moved.
     let unmoved = matches!(record.outcome, Outcome::NotReleased { .. }) && held::is_held(record);
     if plan.rig.link.as_real().is_none() || record.outcome == Outcome::Completed || unmoved {
         return String::new();
@@ -107,22 +107,22 @@ fn how_it_stands(folder: &Path, plan: &Plan, record: &Record, settings: Settings
     text
 }
 
-/// Puts every file that a run gives on a shelf; not the manifest, which also lists what lies beside them. A rig that a client
-/// drove gives the table of its steps alone.
-pub fn made_of(
+/// Puts every result of a run into a sink, without the manifest, which also lists the other files. A run that a client
+/// controlled has only the table of its steps.
+pub fn put_results(
     plan: &Plan,
     record: &Record,
     assessment: &Assessment,
     provenance: &Provenance,
     driven: Option<&[DrivenStep]>,
-    shelf: &mut dyn Shelf,
-) -> Result<Vec<Listed>, OutputError> {
+    sink: &mut dyn OutputSink,
+) -> Result<Vec<FileDigest>, OutputError> {
     if matches!(record.outcome, Outcome::NotReleased { .. }) {
-        // Nothing moved: there is the record, and nothing to report.
+        // Nothing moved: there is a record and no result.
         return Ok(Vec::new());
     }
     if let Some(steps) = driven {
-        return report::put_driven(steps, record.drift.as_ref(), shelf);
+        return report::put_driven(steps, record.drift.as_ref(), sink);
     }
     let prediction = rehearse::prediction(plan, record);
     let provenance = &Provenance {
@@ -136,27 +136,27 @@ pub fn made_of(
             assessment,
             provenance,
         },
-        shelf,
+        sink,
     )
 }
 
-/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest. The manifest is the
-/// last: results without one are none that came to their end.
+/// Writes the results that `make` makes, then a manifest of them and of the files beside them (path and digest). Results without a
+/// manifest are incomplete.
 pub fn write_made(
-    mut shelf: FolderShelf<'_>,
-    beside: &[Listed],
-    make: impl FnOnce(&mut dyn Shelf) -> Result<Vec<Listed>, OutputError>,
+    mut sink: FolderSink<'_>,
+    beside: &[FileDigest],
+    make: impl FnOnce(&mut dyn OutputSink) -> Result<Vec<FileDigest>, OutputError>,
 ) -> Result<(), Failure> {
-    let folder = shelf.folder();
-    let listed = match make(&mut shelf) {
+    let folder = sink.folder();
+    let listed = match make(&mut sink) {
         Ok(listed) => listed,
-        Err(error) => return Err(shelf.failed(error)),
+        Err(error) => return Err(sink.failed(error)),
     };
-    let all: Vec<Listed> = listed.into_iter().chain(beside.iter().cloned()).collect();
+    let all: Vec<FileDigest> = listed.into_iter().chain(beside.iter().cloned()).collect();
     write_new(folder, &report::manifest_with(&[], &all))
 }
 
-/// The summary of results that are written; of a rig that was not released, that alone.
+/// The summary of the written results; for a rig that was not released, only the outcome.
 pub fn summary(folder: &Path, record: &Record) -> Result<String, Failure> {
     if let Outcome::NotReleased { reason } = &record.outcome {
         return Ok(format!(
@@ -168,9 +168,9 @@ pub fn summary(folder: &Path, record: &Record) -> Result<String, Failure> {
     std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))
 }
 
-/// Of a real rig the provenance is read back from the record, so that a report made from it later says the same. Where the record could
-/// not be kept, and cannot be read back, what the run began with is told, and no head of the record. One that could be kept, and is not
-/// what was written, proves nothing: somebody has changed it under way, and no results are made of it.
+/// The provenance as read back from the record of a real rig, so that a report made later states the same. Where the record could not
+/// be kept and cannot be read, it is the provenance at the start, without the head of the record. A record that was kept but differs
+/// from the written one was changed by another program: it is an error, and no results are made.
 fn as_recorded(
     folder: &Path,
     plan: &Plan,
@@ -188,11 +188,11 @@ fn as_recorded(
         ));
     }
     let read = read?;
-    let lies_there = (
+    let on_disk = (
         read.recovered.lines.len() as u64,
         read.recovered.head().to_owned(),
     );
-    if recorded.sealed.as_ref() != Some(&lies_there) {
+    if recorded.sealed.as_ref() != Some(&on_disk) {
         return Err(Failure::file(
             journal_of(folder),
             "is not what this run has written: no results are made of it",

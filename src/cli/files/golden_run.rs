@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use super::finish_run::{made_of, numbered};
+use super::finish_run::{numbered, put_results};
 use super::record_file::{self, Circumstances};
 use super::{plan_file, provenance};
 use crate::cli::args::PlanSettings;
@@ -93,7 +93,7 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     let mut files = match extent {
         Extent::All => {
             let mut files = Vec::new();
-            made_of(plan, &record, &assessment, &provenance, None, &mut files)?;
+            put_results(plan, &record, &assessment, &provenance, None, &mut files)?;
             files
         }
         Extent::Compared => numbers(&run)?,

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::loader::{FolderLoader, read_plan};
 use crate::cli::args::PlanSettings;
 use crate::cli::exit::Failure;
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::cli::settings::{Settings, folder_of};
 use crate::language::check::{Checked, Options, check};
 use crate::text::diagnostic::{json, render};
@@ -51,7 +51,7 @@ pub fn open_to_run(
 
 /// Draws what the checker found, for a person.
 pub fn show(checked: &Checked, path: &Path, settings: Settings) {
-    tell(&render::render_all(
+    print_message(&render::render_all(
         &checked.diagnostics,
         &checked.sources,
         &settings.appearance(path),

@@ -1,5 +1,5 @@
-//! The run folder: new or empty, each file created once. In: where the person wants it, and the files. Out: the
-//! folder on disk. Overwrites nothing but a part of results that are made again, and deletes nothing but what it has just written.
+//! The run folder: new or empty, each file created once. In: the path that the operator gives, and the files. Out: the folder on
+//! disk. It overwrites only incomplete results that are made again, and deletes only files that it has just written.
 
 use std::fs::OpenOptions;
 use std::io::{BufWriter, ErrorKind, IntoInnerError, Write};
@@ -8,10 +8,10 @@ use std::path::{Component, Path, PathBuf};
 
 use super::loader::plain;
 use crate::cli::exit::Failure;
-use crate::report::{OutputError, OutputFile, Shelf};
+use crate::report::{OutputError, OutputFile, OutputSink};
 use crate::text::sanitize;
 
-/// An empty folder that belongs to this run.
+/// An empty folder for one run.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
@@ -31,7 +31,7 @@ impl RunFolder {
 
     fn named(path: &Path) -> Result<Self, Failure> {
         let failed = |error: std::io::Error| Failure::file(path, plain(&error));
-        // A link may lead anywhere, also to nothing.
+        // A link may lead outside the folder, or to no folder.
         if path.is_symlink() {
             return Err(Failure::file(path, "is a link").help("name the run folder itself"));
         }
@@ -55,7 +55,7 @@ impl RunFolder {
     fn numbered(runs: &Path, plan: &str) -> Result<Self, Failure> {
         let failed = |path: &Path, error: &std::io::Error| Failure::file(path, plain(error));
         std::fs::create_dir_all(runs).map_err(|error| failed(runs, &error))?;
-        let taken = std::fs::read_dir(runs)
+        let used = std::fs::read_dir(runs)
             .map_err(|error| failed(runs, &error))?
             .filter_map(|entry| {
                 let name = entry.ok()?.file_name().into_string().ok()?;
@@ -64,13 +64,13 @@ impl RunFolder {
                     .parse::<u32>()
                     .ok()
             });
-        let mut number = taken.max().unwrap_or(0);
+        let mut number = used.max().unwrap_or(0);
         loop {
             number = number
                 .checked_add(1)
                 .ok_or_else(|| Failure::file(runs, "no number is free"))?;
             let path = runs.join(format!("{plan}-{number}"));
-            // To make the folder is to take the number, also from a run that starts at the same moment.
+            // Creating the folder reserves the number, also against a run that starts at the same time.
             match std::fs::create_dir(&path) {
                 Ok(()) => return Ok(Self { path }),
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
@@ -90,7 +90,7 @@ pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
     written(&path, &mut |out| out.write_all(&file.bytes)).map_err(|error| unwritten(&path, &error))
 }
 
-/// Why a file was not written; where one is there already, also what is left to do.
+/// The error of a file that was not written; with advice where one exists already.
 fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
     match error.kind() {
         ErrorKind::AlreadyExists => Failure::file(path, "is there already: somebody else wrote it")
@@ -99,7 +99,7 @@ fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
     }
 }
 
-/// Where a file of the folder lies.
+/// The path of a file in the folder.
 fn inside(folder: &Path, relative: &str) -> Result<PathBuf, Failure> {
     let path = folder.join(relative);
     if Path::new(relative)
@@ -131,22 +131,22 @@ fn written(
         .sync_all()
 }
 
-/// Results say what the record says, and like it are for their owner alone until the owner gives them to others.
+/// Results are readable by their owner only, as the record is.
 const MODE: u32 = 0o600;
 
-/// Bytes of a file that are given to the disk at once.
+/// Bytes that are written to the disk together.
 const WRITE_BYTES: usize = 64 * 1024;
 
-/// Files put into a folder as they are made.
-pub struct FolderShelf<'a> {
+/// A sink that writes into a folder.
+pub struct FolderSink<'a> {
     folder: &'a Path,
-    /// What lies at a file's place is a piece of results that did not come to their end.
+    /// Whether existing files are replaced: they are a part of incomplete results.
     replaces: bool,
     created: Vec<PathBuf>,
     failure: Option<Failure>,
 }
 
-impl<'a> FolderShelf<'a> {
+impl<'a> FolderSink<'a> {
     pub const fn new(folder: &'a Path) -> Self {
         Self {
             folder,
@@ -156,7 +156,7 @@ impl<'a> FolderShelf<'a> {
         }
     }
 
-    /// For a folder with a part of the results, which are made again.
+    /// For a folder with incomplete results, which are made again.
     pub const fn replacing(folder: &'a Path) -> Self {
         Self {
             folder,
@@ -170,7 +170,8 @@ impl<'a> FolderShelf<'a> {
         self.folder
     }
 
-    /// Why not all files are there. Where one could not be made, none of those before it stays: the results can be made again.
+    /// The error of an incomplete run folder. Where a file could not be made, the files before it are deleted: the results can be
+    /// made again.
     pub fn failed(self, error: OutputError) -> Failure {
         self.failure.unwrap_or_else(|| {
             for path in &self.created {
@@ -181,27 +182,27 @@ impl<'a> FolderShelf<'a> {
     }
 }
 
-impl Shelf for FolderShelf<'_> {
+impl OutputSink for FolderSink<'_> {
     fn put(
         &mut self,
         path: &str,
         write: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>,
     ) -> std::io::Result<()> {
-        let place = match inside(self.folder, path) {
-            Ok(place) => place,
+        let target = match inside(self.folder, path) {
+            Ok(target) => target,
             Err(failure) => {
                 self.failure = Some(failure);
                 return Err(ErrorKind::InvalidInput.into());
             }
         };
-        // A link goes, and not what it leads to.
-        if self.replaces && place.is_symlink() | place.is_file() {
-            std::fs::remove_file(&place)
-                .inspect_err(|error| self.failure = Some(unwritten(&place, error)))?;
+        // A link is removed, not the file that it leads to.
+        if self.replaces && target.is_symlink() | target.is_file() {
+            std::fs::remove_file(&target)
+                .inspect_err(|error| self.failure = Some(unwritten(&target, error)))?;
         }
-        written(&place, write)
-            .inspect_err(|error| self.failure = Some(unwritten(&place, error)))?;
-        self.created.push(place);
+        written(&target, write)
+            .inspect_err(|error| self.failure = Some(unwritten(&target, error)))?;
+        self.created.push(target);
         Ok(())
     }
 }
@@ -255,46 +256,43 @@ mod tests {
     }
 
     #[test]
-    fn what_could_not_all_be_made_leaves_nothing_and_what_could_not_be_kept_names_its_file() {
+    fn incomplete_results_are_deleted_and_an_error_names_its_file() {
         let root = tempfile::tempdir().unwrap();
-        let mut shelf = FolderShelf::new(root.path());
-        shelf
-            .put("tables/a.csv", &mut |out| out.write_all(b"x"))
+        let mut sink = FolderSink::new(root.path());
+        sink.put("tables/a.csv", &mut |out| out.write_all(b"x"))
             .unwrap();
-        let failure = shelf.failed(OutputError::Pdf("no such font".to_owned()));
+        let failure = sink.failed(OutputError::Pdf("no such font".to_owned()));
         assert!(
             failure.to_string().contains("no such font")
                 && !root.path().join("tables/a.csv").exists()
         );
 
-        let mut shelf = FolderShelf::new(root.path());
-        shelf
-            .put("tables/a.csv", &mut |out| out.write_all(b"x"))
+        let mut sink = FolderSink::new(root.path());
+        sink.put("tables/a.csv", &mut |out| out.write_all(b"x"))
             .unwrap();
-        let told = shelf
+        let error = sink
             .put("tables/a.csv", &mut |out| out.write_all(b"y"))
             .unwrap_err()
             .to_string();
-        let failure = shelf.failed(OutputError::Pdf(told)).to_string();
+        let failure = sink.failed(OutputError::Pdf(error)).to_string();
         assert!(
             failure.contains("tables/a.csv")
                 && std::fs::read(root.path().join("tables/a.csv")).unwrap() == b"x",
             "{failure}"
         );
-        let mut shelf = FolderShelf::new(root.path());
-        assert!(shelf.put("../a.csv", &mut |_| Ok(())).is_err());
+        let mut sink = FolderSink::new(root.path());
+        assert!(sink.put("../a.csv", &mut |_| Ok(())).is_err());
 
         std::os::unix::fs::symlink(root.path().join("tables/a.csv"), root.path().join("link"))
             .unwrap();
-        let mut shelf = FolderShelf::replacing(root.path());
-        shelf.put("link", &mut |out| out.write_all(b"z")).unwrap();
+        let mut sink = FolderSink::replacing(root.path());
+        sink.put("link", &mut |out| out.write_all(b"z")).unwrap();
         assert_eq!(
             std::fs::read(root.path().join("tables/a.csv")).unwrap(),
             b"x",
             "what a link leads to stays"
         );
-        shelf
-            .put("tables/a.csv", &mut |out| out.write_all(b"z"))
+        sink.put("tables/a.csv", &mut |out| out.write_all(b"z"))
             .unwrap();
         assert_eq!(
             std::fs::read(root.path().join("tables/a.csv")).unwrap(),

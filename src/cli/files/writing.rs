@@ -1,6 +1,5 @@
-//! What is told while results are made: how much of them is done. In: pieces as they are begun. Out: on a terminal one line that
-//! goes on, also while a long piece is made; in a pipe a line for the tables, the figures and the report each, and one for every second in
-//! which nothing was told. It writes no file.
+//! Progress while results are written. In: pieces as they are begun. Out: on a terminal one line that is updated; in a pipe one
+//! line for each of tables, figures and report, and one for every second without a new one. It writes no file.
 
 use std::io::Write;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -9,59 +8,59 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
-use crate::report::{Piece, Shelf};
+use crate::report::{OutputPiece, OutputSink};
 
-/// Between two looks of a person at the line.
+/// Time between two updates of the line.
 const TICK: Duration = Duration::from_millis(250);
 
-/// A pipe is silent for so long at most.
+/// Longest time without a line in a pipe.
 const SILENT: Duration = Duration::from_secs(1);
 
-/// A shelf, and who is told what is put on it.
-pub struct Telling<'a> {
-    shelf: &'a mut dyn Shelf,
-    told: Told,
+/// A sink that reports its progress.
+pub struct ProgressSink<'a> {
+    sink: &'a mut dyn OutputSink,
+    progress: Progress,
 }
 
-/// What tells it, from the first piece on.
-enum Told {
-    Nothing { terminal: bool },
+/// The display, from the first piece on.
+enum Progress {
+    NotBegun { terminal: bool },
     Terminal(ProgressBar),
     Pipe(Lines),
 }
 
-impl<'a> Telling<'a> {
-    pub fn over(shelf: &'a mut dyn Shelf, settings: Settings) -> Self {
+impl<'a> ProgressSink<'a> {
+    pub fn new(sink: &'a mut dyn OutputSink, settings: Settings) -> Self {
         Self {
-            shelf,
-            told: Told::Nothing {
+            sink,
+            progress: Progress::NotBegun {
                 terminal: settings.stderr_terminal,
             },
         }
     }
 }
 
-/// Lines in a pipe, by a thread of their own: the one that writes is busy.
+/// Lines in a pipe, printed by a separate thread: the thread that writes is busy.
 struct Lines {
     /// None once all is written.
-    pieces: Option<Sender<Piece>>,
+    pieces: Option<Sender<OutputPiece>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Lines {
     fn begin() -> Self {
-        let (pieces, heard) = channel();
-        let thread = std::thread::spawn(move || told_in_lines(&heard, SILENT, tell));
+        let (pieces, received) = channel();
+        let thread = std::thread::spawn(move || print_lines(&received, SILENT, print_message));
         Self {
             pieces: Some(pieces),
             thread: Some(thread),
         }
     }
 
-    fn piece(&self, piece: &Piece) {
-        // The thread lives as long as there is somebody to hear.
+    fn begin_piece(&self, piece: &OutputPiece) {
+        // Fails only where the thread has ended.
         let _ = self.pieces.as_ref().map(|pieces| pieces.send(*piece));
     }
 }
@@ -73,85 +72,88 @@ impl Drop for Lines {
     }
 }
 
-/// Says a line for the first piece of each part, and one whenever nothing was said for `silent`, until no more pieces come.
-fn told_in_lines(pieces: &Receiver<Piece>, silent: Duration, mut say: impl FnMut(&str)) {
-    let (began, mut said_at) = (Instant::now(), Instant::now());
-    let mut now: Option<Piece> = None;
+/// Prints a line for the first piece of each part, and one after every `silent` without a line, until the sender is dropped.
+fn print_lines(pieces: &Receiver<OutputPiece>, silent: Duration, mut print: impl FnMut(&str)) {
+    let (began, mut printed_at) = (Instant::now(), Instant::now());
+    let mut current: Option<OutputPiece> = None;
     loop {
-        let new = match pieces.recv_timeout(silent.saturating_sub(said_at.elapsed())) {
-            Ok(piece) => now.replace(piece).map(|before| before.part) != Some(piece.part),
+        let is_new = match pieces.recv_timeout(silent.saturating_sub(printed_at.elapsed())) {
+            Ok(piece) => current.replace(piece).map(|before| before.part) != Some(piece.part),
             Err(RecvTimeoutError::Timeout) => true,
             Err(RecvTimeoutError::Disconnected) => return,
         };
-        if let Some(piece) = now.filter(|_| new) {
-            say(&said(&piece, began.elapsed()));
+        if let Some(piece) = current.filter(|_| is_new) {
+            print(&line(&piece, began.elapsed()));
         }
-        if new {
-            said_at = Instant::now();
+        if is_new {
+            printed_at = Instant::now();
         }
     }
 }
 
-/// The line as it begins, and goes on by itself.
-fn line(piece: &Piece) -> ProgressBar {
+/// The line on a terminal, which updates itself.
+fn progress_bar(piece: &OutputPiece) -> ProgressBar {
     let style = ProgressStyle::with_template(
         "  writing tables, figures, report: {pos} of {len}  ({msg}, {elapsed})",
     );
     let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-    let line = ProgressBar::with_draw_target(Some(piece.of as u64), ProgressDrawTarget::stderr())
-        .with_style(style);
-    let line = line
+    let bar = ProgressBar::with_draw_target(Some(piece.total as u64), ProgressDrawTarget::stderr())
+        .with_style(style)
         .with_message(piece.part.name())
         .with_position(piece.number as u64);
-    line.enable_steady_tick(TICK);
-    line
+    bar.enable_steady_tick(TICK);
+    bar
 }
 
-impl Shelf for Telling<'_> {
+impl OutputSink for ProgressSink<'_> {
     fn put(
         &mut self,
         path: &str,
         write: &mut dyn FnMut(&mut dyn Write) -> std::io::Result<()>,
     ) -> std::io::Result<()> {
-        self.shelf.put(path, write)
+        self.sink.put(path, write)
     }
 
-    fn begin(&mut self, piece: &Piece) {
-        if let Told::Nothing { terminal } = self.told {
-            self.told = if terminal {
-                Told::Terminal(line(piece))
+    fn begin(&mut self, piece: &OutputPiece) {
+        if let Progress::NotBegun { terminal } = self.progress {
+            self.progress = if terminal {
+                Progress::Terminal(progress_bar(piece))
             } else {
-                Told::Pipe(Lines::begin())
+                Progress::Pipe(Lines::begin())
             };
         }
-        match &self.told {
-            Told::Terminal(line) => {
-                line.set_message(piece.part.name());
-                line.set_position(piece.number as u64);
+        match &self.progress {
+            Progress::Terminal(bar) => {
+                bar.set_message(piece.part.name());
+                bar.set_position(piece.number as u64);
             }
-            Told::Pipe(lines) => lines.piece(piece),
-            Told::Nothing { .. } => {}
+            Progress::Pipe(lines) => lines.begin_piece(piece),
+            Progress::NotBegun { .. } => {}
         }
     }
 }
 
-/// What a pipe is told; a piece that takes longer is told with the time since the first.
-fn said(piece: &Piece, since: Duration) -> String {
-    let Piece { part, number, of } = piece;
+/// The line in a pipe, with the time since the first piece where it is a second or more.
+fn line(piece: &OutputPiece, since: Duration) -> String {
+    let OutputPiece {
+        part,
+        number,
+        total,
+    } = piece;
     let seconds = since.as_secs();
     let since = if seconds == 0 {
         String::new()
     } else {
         format!("  ({seconds} s)")
     };
-    format!("  writing {}: {number} of {of}{since}\n", part.name())
+    format!("  writing {}: {number} of {total}{since}\n", part.name())
 }
 
-impl Drop for Telling<'_> {
-    /// The line goes, also where a piece failed.
+impl Drop for ProgressSink<'_> {
+    /// Removes the line, also after an error.
     fn drop(&mut self) {
-        if let Told::Terminal(line) = &self.told {
-            line.finish_and_clear();
+        if let Progress::Terminal(bar) = &self.progress {
+            bar.finish_and_clear();
         }
     }
 }
@@ -159,26 +161,26 @@ impl Drop for Telling<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Part;
+    use crate::report::OutputPart;
 
-    /// The first piece is never ended, the second follows at once, the third is of another part.
+    /// The first piece takes long, the second follows immediately, the third is of another part.
     #[test]
-    fn a_long_piece_is_told_again_and_again() {
+    fn a_long_piece_is_printed_repeatedly() {
         let (send, pieces) = channel();
         let mut lines = Vec::new();
-        let piece = |part, number| Piece {
+        let piece = |part, number| OutputPiece {
             part,
             number,
-            of: 3,
+            total: 3,
         };
-        send.send(piece(Part::Tables, 1)).unwrap();
+        send.send(piece(OutputPart::Tables, 1)).unwrap();
         let mut send = Some(send);
-        told_in_lines(&pieces, Duration::from_millis(20), |text| {
+        print_lines(&pieces, Duration::from_millis(20), |text| {
             lines.push(text.to_owned());
             if lines.len() == 3 {
                 let send = send.take().unwrap();
-                send.send(piece(Part::Tables, 2)).unwrap();
-                send.send(piece(Part::Report, 3)).unwrap();
+                send.send(piece(OutputPart::Tables, 2)).unwrap();
+                send.send(piece(OutputPart::Report, 3)).unwrap();
             }
         });
         let [first, second, third, report] = &lines[..] else {
@@ -187,7 +189,7 @@ mod tests {
         assert_eq!([first, second, third], ["  writing tables: 1 of 3\n"; 3]);
         assert_eq!(report, "  writing report: 3 of 3\n");
         assert_eq!(
-            said(&piece(Part::Figures, 2), Duration::from_millis(2900)),
+            line(&piece(OutputPart::Figures, 2), Duration::from_millis(2900)),
             "  writing figures: 2 of 3  (2 s)\n"
         );
     }

@@ -8,7 +8,7 @@ use crate::cli::args::ResumeArguments;
 use crate::cli::commands::resume::resume;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file;
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::record::{Event, EventKind, Outcome, Record};
 use crate::rig::Rig;
@@ -102,7 +102,7 @@ pub fn go_on(
             if !unchanged {
                 return Err(failure);
             }
-            tell(&failure.report(settings));
+            print_message(&failure.report(settings));
             Ok(None)
         }
     }

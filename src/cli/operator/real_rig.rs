@@ -4,7 +4,7 @@ use super::watch::{Attendance, Signals, Watcher, throw_away};
 use crate::cli::args::{PlanSettings, name};
 use crate::cli::exit::Failure;
 use crate::cli::files::record_file::Circumstances;
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, Wish, connect};
@@ -28,13 +28,13 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
     // What was typed before the question is no name.
     throw_away();
     loop {
-        tell("  who runs the test? [your name] ");
+        print_message("  who runs the test? [your name] ");
         let mut line = String::new();
         let count = std::io::stdin()
             .read_line(&mut line)
             .map_err(|_| nobody())?;
         if count == 0 {
-            tell("\n");
+            print_message("\n");
             return Err(nobody());
         }
         match name(&line) {
@@ -44,7 +44,7 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
                     ..attendance
                 });
             }
-            Err(reason) => tell(&format!("  {reason}\n")),
+            Err(reason) => print_message(&format!("  {reason}\n")),
         }
     }
 }

@@ -79,12 +79,12 @@ fn axis(axis: &FigureAxis) -> PlainAxis {
 }
 
 fn curves(sides: &[Side], drawn: &[(usize, FigureCurve)]) -> Vec<Curve> {
-    if sides.len() <= Curves::TOLD_APART {
+    if sides.len() <= Curves::MOST_RUNS {
         let one = |(run, curve): &(usize, FigureCurve)| Curve {
             label: format!("{} {}", run + 1, sides[*run].name),
             points: curve.line(),
             dots: curve.dots,
-            place: Some(*run),
+            run: Some(*run),
         };
         return drawn.iter().map(one).collect();
     }
@@ -99,7 +99,7 @@ fn curves(sides: &[Side], drawn: &[(usize, FigureCurve)]) -> Vec<Curve> {
         label: label(index),
         points: curve.line(),
         dots: curve.dots,
-        place: None,
+        run: None,
     });
     each.chain(mean(drawn)).collect()
 }
@@ -129,7 +129,7 @@ fn mean(drawn: &[(usize, FigureCurve)]) -> Option<Curve> {
         label: "mean".to_owned(),
         points,
         dots: false,
-        place: Some(0),
+        run: Some(0),
     })
 }
 
@@ -174,7 +174,7 @@ mod tests {
             (few.len(), few[0].name.as_str(), few[0].curves.curves.len()),
             (1, "hit_force_1", 2)
         );
-        assert_eq!(few[0].curves.curves[1].place, Some(1));
+        assert_eq!(few[0].curves.curves[1].run, Some(1));
         let many: Vec<Side> = (1..=8_u8).map(|height| side(f64::from(height))).collect();
         let sheet = &sheets(&many)[0].curves;
         assert_eq!(

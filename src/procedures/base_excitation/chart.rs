@@ -122,7 +122,7 @@ pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedC
     let points = points(kind, history)?;
     let over_time = |name, dimension| (Quantity::time(), Quantity::of(name, dimension));
     let (length, force) = (Dimension::LENGTH, Dimension::FORCE);
-    let ((x, y), words) = match kind {
+    let ((x, y), caption) = match kind {
         FigureKind::Displacement => (
             over_time("Displacement of the top floor", length),
             "displacement of the top floor against virtual time",
@@ -147,7 +147,7 @@ pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedC
     Some(SharedCurve {
         x,
         y,
-        words,
+        caption,
         points,
     })
 }

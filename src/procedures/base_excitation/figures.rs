@@ -7,7 +7,7 @@ use crate::report::figures::chart::{
     Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Quantity, Reference, SOLID, Series, Style,
     palette,
 };
-use crate::report::figures::points::{Gathering, Points};
+use crate::report::figures::points::{PointCollector, Points};
 use crate::units::Dimension;
 
 /// More curves than this cannot be distinguished in one picture.
@@ -267,9 +267,9 @@ fn each_floor<S: Floors>(steps: &[S], y: Quantity, what: &str, read: fn(&S) -> V
 
 /// The curves of the floors that are drawn, each with its floor; `read` gives a point of every floor.
 fn each<S: Floors>(steps: &[S], read: impl Fn(&S) -> Vec<(f64, f64)>) -> Vec<(usize, Points)> {
-    let mut curves: Vec<(usize, Gathering)> = shown(floors(steps))
+    let mut curves: Vec<(usize, PointCollector)> = shown(floors(steps))
         .into_iter()
-        .map(|floor| (floor, Gathering::default()))
+        .map(|floor| (floor, PointCollector::default()))
         .collect();
     for step in steps {
         let points = read(step);

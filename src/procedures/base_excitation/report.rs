@@ -6,10 +6,12 @@ use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping::energy;
 use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
-use crate::report::content::{budget, described, method, tracking};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
-use crate::report::{Run, number, specimen_text};
+use crate::report::sections::described;
+use crate::report::sections::results::{actuators, budget_table, tracking};
+use crate::report::wording::specimen as specimen_text;
+use crate::report::{Run, number};
 use crate::schema::ResultKind;
 use crate::schema::procedures::{base_excitation as schema, unload};
 use crate::units::Dimension;
@@ -162,7 +164,7 @@ fn integration(
             time(history.critical_time_step)
         ),
     ];
-    sentences.extend(method::driven(
+    sentences.extend(actuators::motion(
         shake.stepping.i_modification,
         shake.stepping.mode,
     ));
@@ -337,10 +339,10 @@ pub(crate) fn entry(result: &NamedResult, index: usize) -> Text {
         return "—".into();
     };
     if let Some(Some(u)) = result.entry_uncertainties().get(index) {
-        let mark = if budget::is_sure(result, index) {
+        let mark = if budget_table::is_reliable(result, index) {
             ""
         } else {
-            budget::MARK
+            budget_table::MARK
         };
         return (number::with_uncertainty(*value, Some(*u), result.dimension) + mark).into();
     }

@@ -1,8 +1,8 @@
 //! A damping sweep as a report gives it: the line through its pairs. In: a history. Out: a block.
 
 use crate::record::SweepHistory;
-use crate::report::content::line_fit::fitted;
 use crate::report::document::Block;
+use crate::report::sections::results::line_fit::{Coefficient, fitted};
 use crate::units::Dimension;
 
 /// The block below its results.
@@ -10,8 +10,8 @@ pub(crate) fn report(history: &SweepHistory, body: &mut Vec<Block>) {
     if let Some(fit) = history.fit {
         body.push(fitted(
             "F = c·v + F₀·sign v",
-            ("c", Dimension::DAMPING),
-            ("F₀", Dimension::FORCE),
+            &Coefficient("c", Dimension::DAMPING),
+            &Coefficient("F₀", Dimension::FORCE),
             fit,
         ));
     }

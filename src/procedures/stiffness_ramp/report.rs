@@ -4,9 +4,9 @@
 use super::curve_report;
 use crate::plan::{RelaxationLaw, RelaxationModel};
 use crate::record::{Hold, RampHistory, RelaxationFit, SuperpositionFit};
-use crate::report::content::line_fit::fitted;
 use crate::report::document::Block;
 use crate::report::number;
+use crate::report::sections::results::line_fit::{Coefficient, fitted};
 use crate::units::Dimension;
 
 /// How the contributions to its uncertainty were found, as to that of every fitted line.
@@ -38,8 +38,8 @@ pub(crate) fn report(history: &RampHistory, body: &mut Vec<Block>) {
     if let Some(fit) = history.fit {
         body.push(fitted(
             "R = K·X + R₀",
-            ("K", Dimension::STIFFNESS),
-            ("R₀", Dimension::FORCE),
+            &Coefficient("K", Dimension::STIFFNESS),
+            &Coefficient("R₀", Dimension::FORCE),
             fit,
         ));
     }

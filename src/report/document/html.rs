@@ -1,14 +1,15 @@
 //! A report as one self-contained HTML page. In: a [`Document`]. Out: HTML without scripts and without anything to load;
-//! every text is escaped by the template, and a figure is a picture that can run nothing.
+//! every text is escaped by the template, and a figure is an image that runs no script.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::text::Piece;
-use super::{Block, Document, Figure, Mark, Style, Table, Text};
+use super::{Block, Document, Figure, Notice, Style, Table, Text};
+use crate::report::wording::LABELS;
 
-/// Only inline style and embedded pictures: a label that smuggled markup in would still load and run nothing.
+/// Inline style and embedded images only: markup in a label could neither load nor run anything.
 pub(crate) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
 /// The whole page.
@@ -27,7 +28,7 @@ pub(crate) fn html(document: &Document) -> String {
                 (watermark(document))
                 (top(document))
                 @for section in sections(&document.body) {
-                    section { @for block in section { (set(block)) } }
+                    section { @for block in section { (render(block)) } }
                 }
                 footer { p.end { (line(&document.end)) } }
             }
@@ -36,59 +37,60 @@ pub(crate) fn html(document: &Document) -> String {
     page.into_string()
 }
 
-/// The style with the report's id at the foot of every printed page. The id is hexadecimal; anything else is left out.
+/// The style, with the id of the report at the foot of every printed page. Only letters and digits of the id are printed.
 fn style(document: &Document) -> String {
     let id: String = document
         .id
         .chars()
         .filter(char::is_ascii_alphanumeric)
         .collect();
+    let report = LABELS.report;
     let foot = format!(
-        "@page {{ @bottom-left {{ content: \"Report {id}\"; font: 8pt \"DejaVu Sans\", sans-serif; color: #5d6870; }} }}\n"
+        "@page {{ @bottom-left {{ content: \"{report} {id}\"; font: 8pt \"DejaVu Sans\", sans-serif; color: #5d6870; }} }}\n"
     );
-    let across = if document.across.is_empty() {
+    let watermark = if document.watermarks.is_empty() {
         ""
     } else {
-        include_str!("marks.css")
+        include_str!("watermark.css")
     };
-    include_str!("style.css").to_owned() + across + &foot
+    include_str!("style.css").to_owned() + watermark + &foot
 }
 
 fn watermark(document: &Document) -> Markup {
     html! {
-        @if !document.across.is_empty() {
-            div.watermark aria-hidden="true" { @for words in &document.across { div { (words) } } }
+        @if !document.watermarks.is_empty() {
+            div.watermark aria-hidden="true" { @for words in &document.watermarks { div { (words) } } }
         }
     }
 }
 
-/// Title, particulars, verdict and marks.
+/// Title, particulars, verdict and notices.
 fn top(document: &Document) -> Markup {
     html! {
         header.title {
             div {
                 p.kind { (document.kind) }
-                @if let Some(replaced) = &document.replaces { p.kind { b { "Amendment to report " (replaced) } } }
+                @if let Some(replaced) = &document.replaces { p.kind { b { (LABELS.amendment_to) " " (replaced) } } }
                 h1 { (line(&document.title)) }
             }
             div.run {
-                "Report " span.id { (document.id) } br;
-                @if let Some(date) = &document.date { "Tested " (date) } @else { "date of the test not given" }
+                (LABELS.report) " " span.id { (document.id) } br;
+                @if let Some(date) = &document.date { (LABELS.tested) " " (date) } @else { (LABELS.date_not_given) }
             }
         }
         div.front {
             @for (name, value) in in_two_columns(&document.front) { div { span.name { (line(name)) } span { (line(value)) } } }
         }
-        @if !document.lacking.is_empty() { p.note.lacking { "Not given: " (document.lacking.join(", ")) "." } }
+        @if !document.missing_fields.is_empty() { p.note.lacking { (LABELS.not_given) " " (document.missing_fields.join(", ")) "." } }
         div class={ "verdict " (document.verdict.name) } {
             strong { (document.verdict.name.to_uppercase()) }
             (line(&document.verdict.text))
         }
-        @for mark in &document.marks { (boxed(mark)) }
+        @for notice in &document.notices { (boxed(notice)) }
     }
 }
 
-/// Rows of two: the first half stands left, the second right.
+/// Rows of two: the first half on the left, the second on the right.
 fn in_two_columns<T>(items: &[T]) -> impl Iterator<Item = &T> {
     let (left, right) = items.split_at(items.len().div_ceil(2));
     left.iter()
@@ -97,21 +99,21 @@ fn in_two_columns<T>(items: &[T]) -> impl Iterator<Item = &T> {
         .flatten()
 }
 
-fn boxed(mark: &Mark) -> Markup {
+fn boxed(notice: &Notice) -> Markup {
     html! {
         div.marks {
-            @for words in &mark.words { span.mark { (words) } " " }
-            span { (line(&mark.text)) }
+            @for words in &notice.words { span.mark { (words) } " " }
+            span { (line(&notice.text)) }
         }
     }
 }
 
-/// The blocks of each section; what stands before the first heading is one too.
+/// The blocks of each section; blocks before the first heading are one section.
 fn sections(body: &[Block]) -> impl Iterator<Item = &[Block]> {
     body.chunk_by(|_, next| !matches!(next, Block::Section { .. }))
 }
 
-fn set(block: &Block) -> Markup {
+fn render(block: &Block) -> Markup {
     html! {
         @match block {
             Block::Section { title } => { h2 { (line(title)) } }
@@ -152,7 +154,7 @@ fn table(it: &Table) -> Markup {
             thead {
                 tr {
                     @for column in &it.columns {
-                        // A share of what is left over, as far as a page can say so.
+                        // CSS has no share of the remaining width: 70 % are distributed.
                         @let width = if column.share == 0 { String::new() } else { format!("width: {}%", 70 * u32::from(column.share) / shares.max(1)) };
                         th class=(class(column.numeric, column.share == 0)) style=[(!width.is_empty()).then_some(width)] { (line(&column.title)) }
                     }
@@ -171,21 +173,21 @@ fn table(it: &Table) -> Markup {
     }
 }
 
-/// The picture as a document of its own: nothing in it can act on the page.
+/// The figure as an image: nothing in it can act on the page.
 fn figure(it: &Figure) -> Markup {
     html! {
         figure {
             div.scroll { img alt=(plain(&it.caption)) src={ "data:image/svg+xml;base64," (STANDARD.encode(&it.svg)) }; }
-            figcaption { b { "Figure " (it.number) ". " } (line(&it.caption)) }
+            figcaption { b { (LABELS.figure) " " (it.number) ". " } (line(&it.caption)) }
         }
     }
 }
 
 fn line(text: &Text) -> Markup {
-    html! { @for piece in &text.0 { (set_piece(piece)) } }
+    html! { @for piece in &text.0 { (render_piece(piece)) } }
 }
 
-fn set_piece(piece: &Piece) -> Markup {
+fn render_piece(piece: &Piece) -> Markup {
     let text = piece.text.as_str();
     html! {
         @match piece.style {
@@ -195,14 +197,14 @@ fn set_piece(piece: &Piece) -> Markup {
             Style::Id => span.id { (text) },
             Style::Missing => span.missing { (text) },
             Style::Pass => span.pass { (text) },
-            Style::Doubt => span.doubt { (text) },
+            Style::Inconclusive => span.doubt { (text) },
             Style::Fail => span.fail { (text) },
             Style::Break => br;,
         }
     }
 }
 
-/// The words alone.
+/// The text without its styles.
 fn plain(text: &Text) -> String {
     text.0.iter().map(|piece| piece.text.as_str()).collect()
 }

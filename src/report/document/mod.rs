@@ -1,7 +1,8 @@
-//! The model of a report, and its two renderers. `content` builds one document; `html` and `pdf`
+//! The model of a report, and its two renderers. `sections` builds one document; `html` and `pdf`
 //! print that same document, so that both state the same. All text is data: no renderer interprets
 //! markup in it.
 
+pub mod comparison;
 pub(super) mod fonts;
 pub(super) mod html;
 pub(super) mod pdf;
@@ -10,33 +11,36 @@ mod world;
 
 use serde::Serialize;
 
-pub(super) use html::POLICY;
+use super::wording::Labels;
+
 pub(crate) use text::{Style, Text, printable};
 
 /// A whole report.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Document {
-    /// What kind of paper this is, above the title.
+    /// The kind of report, above the title.
     pub kind: &'static str,
-    /// The report that this one takes the place of.
+    /// The report that this one replaces.
     pub replaces: Option<String>,
     pub title: Text,
     /// Identifies the report on every page.
     pub id: String,
-    /// Of the test, `YYYY-MM-DD` or as it was given.
+    /// Date of the test, `YYYY-MM-DD` or as it was given.
     pub date: Option<String>,
-    /// Who and what, beside the title: short names and values.
+    /// Particulars below the title: names and values.
     pub front: Vec<(Text, Text)>,
-    /// Names of what should stand there and is not known.
-    pub lacking: Vec<&'static str>,
+    /// Names of particulars that are missing there.
+    pub missing_fields: Vec<&'static str>,
     pub verdict: Verdict,
-    pub marks: Vec<Mark>,
+    pub notices: Vec<Notice>,
     /// Words across every page.
-    pub across: Vec<&'static str>,
+    pub watermarks: Vec<&'static str>,
     pub body: Vec<Block>,
-    /// The last line, so that nobody takes a part for the whole.
+    /// The last line, which marks the end of the report.
     pub end: Text,
-    /// Files that go with a paged report: name, what it is, its bytes.
+    /// Words that the layout adds.
+    pub labels: Labels,
+    /// Files attached to the PDF.
     #[serde(skip)]
     pub attachments: Vec<Attachment>,
 }
@@ -44,14 +48,14 @@ pub(super) struct Document {
 /// The verdict on the whole run.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Verdict {
-    /// As in `summary.json`.
+    /// The name in `summary.json`.
     pub name: &'static str,
     pub text: Text,
 }
 
-/// What the report must not be taken for: words in a box, and why.
+/// A notice against a wrong use of the report: words in a box, and the reason.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Mark {
+pub(super) struct Notice {
     pub words: Vec<&'static str>,
     pub text: Text,
 }
@@ -62,14 +66,14 @@ pub(super) struct Attachment {
     pub text: String,
 }
 
-/// A piece of the report, from the top of it to its end.
+/// A block of the report; the body is a list of them.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "block", rename_all = "snake_case")]
 pub(crate) enum Block {
     Section {
         title: Text,
     },
-    /// A heading below a section's.
+    /// A heading inside a section.
     Part {
         title: Text,
     },
@@ -89,11 +93,11 @@ pub(crate) enum Block {
     },
     Table(Table),
     Figure(Figure),
-    /// A file, line by line, numbered.
+    /// A file with line numbers.
     Code {
         lines: Vec<String>,
     },
-    /// A line for each who signs.
+    /// A line for each signatory.
     Signatures {
         names: Vec<Text>,
     },
@@ -110,12 +114,12 @@ pub(crate) struct Column {
     pub title: Text,
     /// Set flush right, never broken.
     pub numeric: bool,
-    /// Share of what the other columns leave; 0: as wide as its widest cell.
+    /// Share of the width that columns with 0 leave; 0: as wide as its widest cell.
     pub share: u8,
 }
 
 impl Column {
-    /// A column of words that takes a share of the width.
+    /// A column of words with a share of the width.
     pub fn words(title: impl Into<Text>, share: u8) -> Self {
         Self {
             title: title.into(),

@@ -1,5 +1,5 @@
-//! A report on paper. In: a [`Document`]. Out: the bytes of a PDF, the same for the same document: date and identity are the
-//! document's own, the fonts the program's. Every text goes to the template as data, so that none of it is ever markup.
+//! A report as PDF. In: a [`Document`]. Out: bytes, the same for the same document: date and identifier come from the document,
+//! the fonts from the program. Every text goes to the template as data, never as markup.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::text::glyphs;
 
 const TEMPLATE: &str = include_str!("certificate.typ");
 
-/// The report as a PDF: PDF/A-3b where the day of the test is known, which that form of it demands; else PDF 1.7.
+/// The report as a PDF: PDF/A-3b, which requires a date, where the day of the test is known; else PDF 1.7.
 pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
     let day = document.date.as_deref().and_then(day);
     let mut data = serde_json::to_value(document).map_err(|error| error.to_string())?;
@@ -28,9 +28,9 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
         .map(|file| serde_json::json!([file.name, file.text]))
         .collect();
     for key in [
-        "title", "kind", "id", "date", "front", "verdict", "marks", "body", "end",
+        "title", "kind", "id", "date", "front", "verdict", "notices", "body", "end",
     ] {
-        set_in_our_fonts(&mut data[key]);
+        make_settable(&mut data[key]);
     }
     let mut files = vec![("report.json".to_owned(), data.to_string().into_bytes())];
     files.extend(document.figures().map(|figure| {
@@ -42,7 +42,7 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
     let world = Sealed::new(TEMPLATE, files)?;
     let paged = typst::compile::<PagedDocument>(&world)
         .output
-        .map_err(|errors| told(&errors))?;
+        .map_err(|errors| messages(&errors))?;
     let standard = if day.is_some() {
         PdfStandard::A_3b
     } else {
@@ -52,14 +52,14 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
         ident: Smart::Custom(document.id.clone()),
         creator: Smart::Custom(Some("psd".to_owned())),
         standards: PdfStandards::new(&[standard]).map_err(|error| error.message().to_string())?,
-        // A tagged file makes common readers complain of its structure, and a report is no form to fill in.
+        // Common readers report structure errors in tagged files.
         tagged: false,
         ..PdfOptions::default()
     };
-    typst_pdf::pdf(&paged, &options).map_err(|errors| told(&errors))
+    typst_pdf::pdf(&paged, &options).map_err(|errors| messages(&errors))
 }
 
-fn told(errors: &[SourceDiagnostic]) -> String {
+fn messages(errors: &[SourceDiagnostic]) -> String {
     errors
         .iter()
         .map(|error| error.message.to_string())
@@ -78,22 +78,21 @@ fn day(text: &str) -> Option<(i32, u8, u8)> {
     Datetime::from_ymd(year, month, day).map(|_| (year, month, day))
 }
 
-/// Every text below, so that the fonts have each of its characters and each of its lines can end somewhere.
-fn set_in_our_fonts(value: &mut Value) {
+/// Makes every string below settable: with characters of our fonts only, and with line breaks in long words.
+fn make_settable(value: &mut Value) {
     match value {
         Value::String(text) => {
             if let Cow::Owned(new) = settable(text) {
                 *text = new;
             }
         }
-        Value::Array(items) => items.iter_mut().for_each(set_in_our_fonts),
-        Value::Object(fields) => fields.values_mut().for_each(set_in_our_fonts),
+        Value::Array(items) => items.iter_mut().for_each(make_settable),
+        Value::Object(fields) => fields.values_mut().for_each(make_settable),
         _ => {}
     }
 }
 
-/// A character that no font of ours has stands as its code point: an empty box would say nothing. A word longer than most
-/// lines may be broken after every few letters.
+/// A character without a glyph becomes its code point. A word longer than most lines may be broken after every few letters.
 fn settable(text: &str) -> Cow<'_, str> {
     const LONGEST_WORD: usize = 40;
     const ZERO_WIDTH_SPACE: char = '\u{200b}';

@@ -1,26 +1,27 @@
-//! A line of print: pieces of text, each with what it is. In: strings from anywhere, also from a plan. Out: pieces without
-//! control characters. Knows no fonts and no markup.
+//! A line of text in pieces, each with its style. In: strings from any source, such as a plan. Out: pieces without control
+//! characters. It knows no fonts and no markup.
 
 use serde::Serialize;
 
+use crate::report::wording::common::NOT_GIVEN;
 use crate::text::sanitize;
 
-/// What a piece of text is; how that looks is the renderer's.
+/// The role of a piece of text; the renderer gives it its look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Style {
     Plain,
-    /// Beside the point.
+    /// Secondary information.
     Soft,
-    /// As the plan's language has it.
+    /// Text in the language of the plan.
     Code,
     /// An identifier of many digits, which may be broken anywhere.
     Id,
-    /// What should be there and is not.
+    /// A missing value.
     Missing,
     /// A word of a verdict, in its colour.
     Pass,
-    Doubt,
+    Inconclusive,
     Fail,
     /// The end of a line.
     Break,
@@ -43,16 +44,16 @@ impl Text {
         Self::default()
     }
 
-    /// What was not given.
+    /// A missing value.
     pub fn missing(words: &str) -> Self {
         Self::new().with(Style::Missing, words)
     }
 
-    /// A text that may be missing; one of blanks is.
+    /// A text that may be missing; a blank text is.
     pub fn given(text: Option<&str>) -> Self {
         match text {
             Some(text) if !text.trim().is_empty() => text.into(),
-            _ => Self::missing("not given"),
+            _ => Self::missing(NOT_GIVEN),
         }
     }
 
@@ -86,7 +87,7 @@ impl Text {
         self.with(Style::Id, text)
     }
 
-    /// The same, and what follows begins a new line.
+    /// The same with a line break.
     #[must_use]
     pub fn line(self) -> Self {
         self.with(Style::Break, "")
@@ -105,7 +106,7 @@ impl From<String> for Text {
     }
 }
 
-/// Without what steers a printer or turns the direction of reading: a label must not read otherwise than it is written.
+/// The text without control characters and marks of reading direction: a label reads as it is written.
 pub(crate) fn printable(text: &str) -> String {
     sanitize::printed(text)
 }
@@ -115,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_that_steers_is_printed() {
+    fn no_control_character_is_printed() {
         assert_eq!(
             printable("a\u{1b}[31m\u{202e}b\u{ffff}\nc"),
             "a\u{fffd}[31m\u{fffd}b\u{fffd}\u{fffd}c"

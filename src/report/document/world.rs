@@ -1,5 +1,5 @@
-//! What typst may see: the template, the report as data, its figures. In: those files. Out: a [`World`] that has no clock,
-//! no packages, no disk and no fonts but the program's.
+//! The files that typst may read: the template, the report as data, its figures. In: those files. Out: a [`World`] without
+//! clock, packages and disk, and with the fonts of the program only.
 
 use std::collections::HashMap;
 
@@ -19,10 +19,10 @@ pub(super) struct Sealed {
 }
 
 impl Sealed {
-    /// A world of one template and the files it may read, by name.
+    /// A world of one template and the files that it may read, by name.
     ///
     /// # Errors
-    /// A name that is no path.
+    /// A name that is not a path.
     pub fn new(template: &str, files: Vec<(String, Vec<u8>)>) -> Result<Self, String> {
         let main = Source::new(id("certificate.typ")?, template.to_owned());
         let files = files
@@ -70,7 +70,7 @@ impl World for Sealed {
         FONTS.get(index)
     }
 
-    /// A report is a function of its run: it does not know what day it is set on.
+    /// None: a report does not depend on the day on which it is made.
     fn today(&self, _: Option<Duration>) -> Option<Datetime> {
         None
     }

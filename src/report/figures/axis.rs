@@ -1,22 +1,22 @@
-//! An axis: its range, its ticks and its words. In: the data's range in SI and the quantity. Out: an [`Axis`] in a
-//! readable unit. Knows no pixels.
+//! An axis: range, ticks and title. In: the range of the data in SI, and the quantity. Out: an [`Axis`] in a readable unit. It
+//! knows no pixels.
 
 use super::chart::{End, Quantity};
 use crate::units::display::{minus, typeset, unit};
 
-/// A scaled axis; `low..high` and the ticks are in its own unit.
+/// A scaled axis; `low..high` and the ticks are in the unit of the axis.
 pub(super) struct Axis {
     pub low: f64,
     pub high: f64,
     pub ticks: Vec<(f64, String)>,
     /// `Displacement (mm)`
     pub title: String,
-    /// One of the axis's unit in SI.
+    /// The unit of the axis in SI.
     pub factor: f64,
 }
 
-/// Share of an axis that a line covers.
-const TRIFLE: f64 = 0.004;
+/// Fraction of an axis that the width of a line covers.
+const LINE_WIDTH: f64 = 0.004;
 
 impl Axis {
     /// An axis that holds every finite one of `values` (SI), with about `wanted` ticks.
@@ -38,12 +38,12 @@ impl Axis {
         let (unit, factor) = unit(low.abs().max(high.abs()), quantity.dimension);
         let (mut low, mut high) = (low / factor, high / factor);
         if high - low <= f64::EPSILON * high.abs().max(low.abs()) {
-            // One value only: a range around it, so that it stands in the middle.
+            // One value only: it is in the middle of the axis.
             let half = if high == 0.0 { 1.0 } else { 0.5 * high.abs() };
             (low, high) = (low - half, high + half);
         }
-        // Less below zero than the width of a line is no reason for a tick there.
-        if quantity.from_zero && low < 0.0 && -low < TRIFLE * high {
+        // A value below zero by less than the width of a line needs no tick.
+        if quantity.from_zero && low < 0.0 && -low < LINE_WIDTH * high {
             low = 0.0;
         }
         let step = nice_step((high - low) / f64::from(wanted));
@@ -53,10 +53,10 @@ impl Axis {
             step
         };
         if quantity.end != End::Data {
-            let air = 0.025 * (high - low);
+            let margin = 0.025 * (high - low);
             (low, high) = (
-                if low == 0.0 { 0.0 } else { low - air },
-                if high == 0.0 { 0.0 } else { high + air },
+                if low == 0.0 { 0.0 } else { low - margin },
+                if high == 0.0 { 0.0 } else { high + margin },
             );
         }
         if quantity.end == End::Tick {
@@ -76,8 +76,8 @@ impl Axis {
         }
     }
 
-    /// Place of an SI value on the axis, 0 at its low end and 1 at its high one.
-    pub fn place(&self, value: f64) -> f64 {
+    /// Position of an SI value on the axis, 0 at its low end and 1 at its high end.
+    pub fn fraction(&self, value: f64) -> f64 {
         (value / self.factor - self.low) / (self.high - self.low)
     }
 }
@@ -110,7 +110,7 @@ fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
         .map(|index| (first + f64::from(index)) * step)
         .take_while(|tick| *tick <= high + 1e-9 * step)
         .map(|tick| {
-            // Rounding to the step's own decimals takes away the sign of a negative zero.
+            // Rounding to the decimals of the step removes the sign of a negative zero.
             let tick = if tick.abs() < 1e-9 * step { 0.0 } else { tick };
             (tick, minus(&format!("{tick:.decimals$}")))
         })
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trifle_below_zero_has_no_tick_of_its_own() {
+    fn a_value_just_below_zero_needs_no_tick() {
         let energy = Quantity::of("Energy", Dimension::ENERGY);
         assert_eq!(labels(&energy, -0.01, 5.0)[0], "0");
         assert_eq!(labels(&energy, -0.1, 5.0)[0], "−2");

@@ -1,5 +1,5 @@
-//! What a chart is drawn on: shapes and words in reference pixels, 96 to the inch, y downward. Two surfaces are canvases: a
-//! raster of fine pixels and a drawing in vectors, both with the same font, so that words take the same room on each.
+//! The surface of a chart: shapes and text in reference pixels, 96 to the inch, y downward. There are two canvases: a raster
+//! and a vector drawing. Both use the same font, so that text has the same width on each.
 
 use std::sync::Once;
 
@@ -19,20 +19,20 @@ pub(super) trait Canvas {
 
     fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String>;
 
-    /// A line of several pieces with round joins.
+    /// A line of several segments with round joins.
     fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String>;
 
-    fn text(&self, text: &str, at: Point, style: &Lettering) -> Result<(), String>;
+    fn text(&self, text: &str, anchor: Point, style: &Lettering) -> Result<(), String>;
 }
 
-/// Where a text stands about its point.
+/// Position of a text relative to its anchor point.
 #[derive(Clone, Copy)]
 pub(super) struct Anchor {
     pub horizontal: HPos,
     pub vertical: VPos,
 }
 
-/// How a text is set.
+/// Size, weight, colour and direction of a text.
 #[derive(Clone, Copy)]
 pub(super) struct Lettering {
     /// Height of a line from the lowest to the highest letter, reference pixels.
@@ -40,11 +40,11 @@ pub(super) struct Lettering {
     pub bold: bool,
     pub colour: Colour,
     pub anchor: Anchor,
-    /// Read from below.
+    /// Rotated, read from bottom to top.
     pub upright: bool,
 }
 
-/// Words are measured at this many times their size: the font's reader rounds to whole pixels.
+/// Text is measured at a multiple of its size: the font library rounds to whole pixels.
 const MEASURED_AT: f64 = 8.0;
 
 impl Lettering {
@@ -58,12 +58,12 @@ impl Lettering {
         Ok(f64::from(width) / MEASURED_AT)
     }
 
-    /// As the font's reader wants it, `scale` times as large.
+    /// The style for the font library, `scale` times as large.
     pub fn scaled(&self, scale: f64) -> TextStyle<'static> {
         const FAMILY: &str = "psd";
         static FONTS: Once = Once::new();
         FONTS.call_once(|| {
-            // The two fonts are part of the program: that they read is a property of the build, not of a run.
+            // The two fonts are part of the program: whether they are readable depends on the build, not on a run.
             for (style, font) in [(FontStyle::Normal, SANS), (FontStyle::Bold, SANS_BOLD)] {
                 assert!(
                     register_font(FAMILY, style, font).is_ok(),

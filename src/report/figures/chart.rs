@@ -1,12 +1,12 @@
-//! What a chart shows, before anything is drawn: series, bands and reference lines in SI, and the style of each. A
-//! style is told apart by colour and by dash or marker, so that a grey print can be read.
+//! The content of a chart: series, bands and reference lines in SI, and the style of each. Styles differ in colour and in dash
+//! or marker, so that a grey print can be read.
 
 use std::borrow::Cow;
 
 use super::points::Points;
 use crate::units::Dimension;
 
-/// A picture of two quantities.
+/// A chart of two quantities.
 pub(crate) struct Chart {
     pub x: Quantity,
     pub y: Quantity,
@@ -15,7 +15,7 @@ pub(crate) struct Chart {
     pub references: Vec<Reference>,
 }
 
-/// What an axis measures.
+/// The quantity of an axis.
 pub(crate) struct Quantity {
     pub name: Cow<'static, str>,
     pub dimension: Dimension,
@@ -24,16 +24,16 @@ pub(crate) struct Quantity {
     pub from_zero: bool,
 }
 
-/// Where an axis ends.
+/// The end of an axis.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
-    /// With the data: a time.
+    /// At the end of the data, for a time.
     Data,
-    /// A little past the data, so that no marker stands on the frame.
-    Air,
+    /// A little past the data, so that no marker is on the frame.
+    Margin,
     /// At a whole tick past the data.
     Tick,
-    /// As `Air`, of what is counted: every tick is a whole number.
+    /// As `Margin`, for a count: every tick is a whole number.
     Whole,
 }
 
@@ -47,6 +47,7 @@ impl Quantity {
         }
     }
 
+    /// A quantity along y.
     pub const fn of(name: &'static str, dimension: Dimension) -> Self {
         Self {
             name: Cow::Borrowed(name),
@@ -56,12 +57,12 @@ impl Quantity {
         }
     }
 
-    /// The same, along x.
+    /// A quantity along x.
     pub const fn along(name: &'static str, dimension: Dimension) -> Self {
         Self {
             name: Cow::Borrowed(name),
             dimension,
-            end: End::Air,
+            end: End::Margin,
             from_zero: true,
         }
     }
@@ -71,8 +72,8 @@ impl Quantity {
 pub(crate) struct SharedCurve {
     pub x: Quantity,
     pub y: Quantity,
-    /// What the chart shows, for its caption.
-    pub words: &'static str,
+    /// The content of the chart, for its caption.
+    pub caption: &'static str,
     pub points: Points,
 }
 
@@ -83,14 +84,14 @@ pub(crate) struct Series {
     pub style: Style,
 }
 
-/// Upright shaded intervals of x with one name.
+/// Shaded intervals of x with one name.
 pub(crate) struct Band {
     pub label: &'static str,
     pub intervals: Vec<(f64, f64)>,
     pub colour: Colour,
 }
 
-/// A level line across the plot with its text on it.
+/// A horizontal line across the plot with its text.
 pub(crate) struct Reference {
     pub label: String,
     pub y: f64,
@@ -98,7 +99,7 @@ pub(crate) struct Reference {
 
 pub(crate) type Colour = (u8, u8, u8);
 
-/// Okabe and Ito's colours, told apart by every common kind of colour vision.
+/// The colours of Okabe and Ito, distinct for every common kind of colour vision.
 pub(crate) mod palette {
     use crate::report::figures::chart::Colour;
 
@@ -113,7 +114,7 @@ pub(crate) mod palette {
     pub const CLOUD: Colour = (176, 190, 200);
 }
 
-/// How a series is drawn.
+/// The look of a series.
 #[derive(Clone, Copy)]
 pub(crate) struct Style {
     pub colour: Colour,

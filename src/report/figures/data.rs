@@ -1,20 +1,20 @@
-//! What figures plot, as data: `figures.json`, schema `psd.figures/1`, SI. In: charts. Out: each curve point by point, or,
-//! where it has many, thinned so that a number that moves a little moves what is kept as little: never by which point is
-//! the highest. Pictures are drawn from the same charts.
+//! The figures as data: `figures.json`, schema `psd.figures/1`, SI. In: charts. Out: each curve with its points. A long curve is
+//! thinned by position, not by its peaks, so that a small change of a number changes the data little. The images are drawn
+//! from the same charts.
 
 use serde::{Deserialize, Serialize};
 
 use super::chart::{Band, Chart, Quantity, Series};
 use crate::units::display::si_unit;
 
-/// Name of the file in a folder of blessed results.
+/// Name of the file in a folder of accepted results.
 pub const FIGURE_DATA: &str = "figures.json";
 const SCHEMA: &str = "psd.figures/1";
 
-/// Points of a curve that is kept as it is, at most.
+/// A curve of up to this many points is kept in full.
 const WHOLE: usize = 200;
-/// Runs that a longer curve is cut into.
-const RUNS: usize = 100;
+/// Segments of a longer curve.
+const SEGMENTS: usize = 100;
 
 /// The figures of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -25,13 +25,13 @@ pub struct Figures {
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FigureData {
-    /// `hit_displacement`, as its picture is called.
+    /// `hit_displacement`, the name of its image.
     pub figure: String,
     pub procedure: String,
     pub x: FigureAxis,
     pub y: FigureAxis,
     pub curves: Vec<FigureCurve>,
-    /// Level lines with their words.
+    /// Horizontal lines with their text.
     pub references: Vec<(String, f64)>,
     pub bands: Vec<FigureBand>,
 }
@@ -49,21 +49,22 @@ pub struct FigureBand {
     pub intervals: Vec<(f64, f64)>,
 }
 
-/// A curve: its points, or of each of its runs the first point, and the lowest and highest corner of what it covers.
+/// A curve: its points, or the first point and the bounding box of each of its segments.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FigureCurve {
     pub label: String,
-    /// Points drawn.
+    /// Number of points drawn.
     pub count: usize,
     pub points: Vec<(f64, f64)>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub corners: Vec<[(f64, f64); 2]>,
-    /// Drawn as dots that no line joins.
+    /// Drawn as dots without a line.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub dots: bool,
 }
 
 impl FigureCurve {
+    /// The curve of these points.
     #[must_use]
     pub fn of(label: &str, points: &[(f64, f64)]) -> Self {
         let points: Vec<(f64, f64)> = points
@@ -81,17 +82,20 @@ impl FigureCurve {
                 dots: false,
             };
         }
-        let runs = || (0..RUNS).map(|run| &points[run * count / RUNS..(run + 1) * count / RUNS]);
-        let corner = |run: &[(f64, f64)], pick: fn(f64, f64) -> f64| {
-            run.iter().skip(1).fold(run[0], |corner, point| {
+        let segments = || {
+            (0..SEGMENTS)
+                .map(|index| &points[index * count / SEGMENTS..(index + 1) * count / SEGMENTS])
+        };
+        let corner = |segment: &[(f64, f64)], pick: fn(f64, f64) -> f64| {
+            segment.iter().skip(1).fold(segment[0], |corner, point| {
                 (pick(corner.0, point.0), pick(corner.1, point.1))
             })
         };
-        let corners = runs()
-            .map(|run| [corner(run, f64::min), corner(run, f64::max)])
+        let corners = segments()
+            .map(|segment| [corner(segment, f64::min), corner(segment, f64::max)])
             .collect();
-        let firsts = runs()
-            .map(|run| run[0])
+        let firsts = segments()
+            .map(|segment| segment[0])
             .chain(points.last().copied())
             .collect();
         Self {
@@ -103,7 +107,7 @@ impl FigureCurve {
         }
     }
 
-    /// Everything that is kept, to be held against another.
+    /// All kept points, to be compared with those of another curve.
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         self.points
             .iter()
@@ -111,7 +115,7 @@ impl FigureCurve {
             .chain(self.corners.iter().flatten().copied())
     }
 
-    /// A line that looks like the curve: through the first point of each run, and up and down to what it covers.
+    /// A line that looks like the curve: through the first point of each segment, and to its lowest and highest value.
     #[must_use]
     pub fn line(&self) -> Vec<(f64, f64)> {
         if self.corners.is_empty() {
@@ -123,9 +127,9 @@ impl FigureCurve {
             line.push(from);
             let middle = 0.5 * (from.0 + to.0);
             let (below, above) = (from.1.min(to.1), from.1.max(to.1));
-            let seen = 0.02 * (high.1 - low.1).max(above - below);
-            line.extend((low.1 < below - seen).then_some((middle, low.1)));
-            line.extend((high.1 > above + seen).then_some((middle, high.1)));
+            let visible = 0.02 * (high.1 - low.1).max(above - below);
+            line.extend((low.1 < below - visible).then_some((middle, low.1)));
+            line.extend((high.1 > above + visible).then_some((middle, high.1)));
         }
         line.extend(self.points.last());
         line
@@ -142,7 +146,7 @@ impl Default for Figures {
 }
 
 impl Figures {
-    /// A line a curve, so that a change of one is a change of one line.
+    /// JSON with one line per curve, so that a changed curve is one changed line.
     #[must_use]
     pub fn to_json(&self) -> String {
         let json = |value: serde_json::Result<String>| value.expect("plain numbers and texts");
@@ -173,8 +177,8 @@ impl Figures {
     }
 }
 
-/// What one chart plots.
-pub(super) fn of(figure: String, procedure: &str, chart: &Chart) -> FigureData {
+/// The data of one chart.
+pub(super) fn figure_data(figure: String, procedure: &str, chart: &Chart) -> FigureData {
     let axis = |quantity: &Quantity| FigureAxis {
         name: quantity.name.to_string(),
         unit: si_unit(quantity.dimension),

@@ -12,7 +12,8 @@ mod raster;
 mod together;
 mod vector;
 
-use super::{OutputError, Run};
+use super::output::file::OutputError;
+use super::run::Run;
 use crate::plan::formula::ProcedureId;
 use crate::plan::{Figure, FigureKind};
 use crate::procedures;
@@ -25,7 +26,7 @@ pub use plain::{Curve, Curves, PlainAxis};
 /// A figure, drawn in vectors.
 pub(super) struct Drawn {
     pub svg: String,
-    /// What it shows, in one sentence.
+    /// The content of the figure, in one sentence.
     pub caption: String,
 }
 
@@ -40,7 +41,7 @@ pub(super) struct Undrawn {
 }
 
 impl Undrawn {
-    /// None where the record cannot draw it: a procedure that was stopped before it recorded anything has no figure.
+    /// None where the procedure recorded no step.
     pub fn of(run: &Run<'_>, figure: &Figure) -> Option<Self> {
         let procedure = run.record.procedures.get(figure.procedure.0)?;
         let (chart, caption) = chart_of(run, procedure, figure)?;
@@ -54,10 +55,12 @@ impl Undrawn {
         })
     }
 
+    /// The figure as PNG.
     pub fn png(&self) -> Result<Vec<u8>, OutputError> {
         draw::png(&self.chart).map_err(|reason| self.failed(reason))
     }
 
+    /// The figure as SVG, with its caption.
     pub fn in_vectors(self) -> Result<Drawn, OutputError> {
         let svg = draw::svg(&self.chart).map_err(|reason| self.failed(reason))?;
         Ok(Drawn {
@@ -75,16 +78,26 @@ impl Undrawn {
     }
 }
 
-/// What the figures of a report plot, in the report's order.
+/// The curves of the figures of a report, in its order.
 #[must_use]
 pub fn data(run: &Run<'_>) -> Figures {
-    let one = |figure: &Figure| {
+    let figure_data = |figure: &Figure| {
         let procedure = run.record.procedures.get(figure.procedure.0)?;
         let (chart, _) = chart_of(run, procedure, figure)?;
-        Some(data::of(name_of(run, figure), &procedure.name, &chart))
+        Some(data::figure_data(
+            name_of(run, figure),
+            &procedure.name,
+            &chart,
+        ))
     };
     Figures {
-        figures: run.plan.report.figures.iter().filter_map(one).collect(),
+        figures: run
+            .plan
+            .report
+            .figures
+            .iter()
+            .filter_map(figure_data)
+            .collect(),
         ..Figures::default()
     }
 }

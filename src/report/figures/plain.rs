@@ -1,4 +1,4 @@
-//! Curves of several runs on one sheet: each told apart by colour and dash. In: points in SI. Out: PNG bytes.
+//! Curves of several runs on one chart, distinct by colour and dash. In: points in SI. Out: PNG bytes.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use super::chart::{
 use super::draw;
 use crate::units::Dimension;
 
-/// What an axis measures.
+/// The quantity of an axis.
 #[derive(Clone, Debug)]
 pub struct PlainAxis {
     pub name: String,
@@ -21,13 +21,13 @@ pub struct PlainAxis {
 pub struct Curve {
     pub label: String,
     pub points: Vec<(f64, f64)>,
-    /// Drawn as dots that no line joins.
+    /// Drawn as dots without a line.
     pub dots: bool,
-    /// Of the runs, from 0: gives colour and dash. None: one of many, drawn pale.
-    pub place: Option<usize>,
+    /// Number of the run from 0, which gives colour and dash. None for one of many, drawn pale.
+    pub run: Option<usize>,
 }
 
-/// A sheet of curves.
+/// A chart of curves.
 #[derive(Clone, Debug)]
 pub struct Curves {
     pub x: PlainAxis,
@@ -47,13 +47,13 @@ const STYLES: [(Colour, f64, &[f64]); 8] = [
 ];
 
 impl Curves {
-    /// Runs that can be told apart on one sheet.
-    pub const TOLD_APART: usize = 6;
+    /// Largest number of runs on one chart.
+    pub const MOST_RUNS: usize = 6;
 
-    /// Draws them, the last on top.
+    /// Draws the curves, the last on top.
     ///
     /// # Errors
-    /// The picture cannot be encoded.
+    /// The image cannot be encoded.
     pub fn png(&self) -> Result<Vec<u8>, String> {
         let axis = |axis: &PlainAxis, end: End| Quantity {
             name: Cow::Owned(axis.name.clone()),
@@ -64,16 +64,14 @@ impl Curves {
         let x_end = if self.x.dimension == Dimension::TIME {
             End::Data
         } else {
-            End::Air
+            End::Margin
         };
         let series = |curve: &Curve| {
-            let (colour, width, dash) = curve.place.map_or((palette::CLOUD, 1.0, SOLID), |place| {
-                STYLES[place % STYLES.len()]
+            let (colour, width, dash) = curve.run.map_or((palette::CLOUD, 1.0, SOLID), |run| {
+                STYLES[run % STYLES.len()]
             });
-            let style = match curve.place {
-                Some(place) if curve.dots && place % 2 == 1 => {
-                    Style::marker(colour, Marker::Ring(3.0))
-                }
+            let style = match curve.run {
+                Some(run) if curve.dots && run % 2 == 1 => Style::marker(colour, Marker::Ring(3.0)),
                 _ if curve.dots => Style::marker(colour, Marker::Disc(2.0)),
                 _ => Style::line(colour, width, dash),
             };

@@ -1,14 +1,14 @@
-//! The points of a curve, gathered one by one. A short curve is kept as it is. Of a long one only what a picture can show is
-//! kept: of each stretch of points the first, the last, and those farthest left, right, down and up, in their order; so that a
-//! run of ten million steps takes no more room in a figure than one of some hundred thousand. In: points in SI, in order. Out:
-//! points. It knows no picture: stretches are far finer than its columns.
+//! The points of a curve, collected one by one. A short curve is kept in full. A long one keeps what an image can show: of each
+//! segment the first and the last point and those farthest left, right, down and up, in their order. A run of ten million steps
+//! takes no more memory in a figure than one of some hundred thousand. In: points in SI, in order. Out: points. Segments are
+//! far finer than the pixel columns of an image.
 
 use std::ops::Deref;
 
-/// A curve of so many points is kept whole.
+/// A curve of up to this many points is kept in full.
 const WHOLE: usize = 100_000;
-/// Stretches of a longer one: more than ten for each column of pixels, less than twenty.
-const STRETCHES: usize = 20_000;
+/// Segments of a longer curve: between ten and twenty per column of pixels.
+const SEGMENTS: usize = 20_000;
 
 /// Points in order, SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,9 +33,9 @@ impl<'a> IntoIterator for &'a Points {
 
 impl FromIterator<(f64, f64)> for Points {
     fn from_iter<I: IntoIterator<Item = (f64, f64)>>(points: I) -> Self {
-        let mut gathering = Gathering::default();
-        points.into_iter().for_each(|point| gathering.push(point));
-        gathering.points()
+        let mut collector = PointCollector::default();
+        points.into_iter().for_each(|point| collector.push(point));
+        collector.points()
     }
 }
 
@@ -49,90 +49,90 @@ impl From<Vec<(f64, f64)>> for Points {
     }
 }
 
-/// A curve that is still gathered.
+/// Collects the points of a curve.
 #[derive(Debug, Default)]
-pub(crate) struct Gathering {
+pub(crate) struct PointCollector {
     whole: Vec<(f64, f64)>,
-    stretches: Vec<Stretch>,
-    /// Points of a stretch that is full.
-    long: usize,
-    /// Points so far.
+    segments: Vec<Segment>,
+    /// Points of a full segment.
+    capacity: usize,
+    /// Number of points so far.
     count: usize,
 }
 
-impl Gathering {
+impl PointCollector {
     pub fn push(&mut self, point: (f64, f64)) {
-        if self.stretches.is_empty() && self.whole.len() < WHOLE {
+        if self.segments.is_empty() && self.whole.len() < WHOLE {
             self.whole.push(point);
             return;
         }
-        if self.stretches.is_empty() {
-            self.long = WHOLE.div_ceil(STRETCHES);
+        if self.segments.is_empty() {
+            self.capacity = WHOLE.div_ceil(SEGMENTS);
             for point in std::mem::take(&mut self.whole) {
-                self.gather(point);
+                self.add(point);
             }
         }
-        self.gather(point);
+        self.add(point);
     }
 
     pub fn points(self) -> Points {
-        if self.stretches.is_empty() {
+        if self.segments.is_empty() {
             return Points(self.whole);
         }
-        Points(self.stretches.iter().flat_map(Stretch::seen).collect())
+        Points(self.segments.iter().flat_map(Segment::kept).collect())
     }
 
-    /// What is no number is not drawn.
-    fn gather(&mut self, (x, y): (f64, f64)) {
+    /// Adds a point to the segments; a point that is not finite is not drawn.
+    fn add(&mut self, (x, y): (f64, f64)) {
         if !x.is_finite() || !y.is_finite() {
             return;
         }
-        let one = Stretch {
+        let one = Segment {
             count: 1,
-            places: [Place {
-                at: self.count,
+            extremes: [Numbered {
+                number: self.count,
                 x,
                 y,
             }; 6],
         };
         self.count += 1;
         if let Some(last) = self
-            .stretches
+            .segments
             .last_mut()
-            .filter(|last| last.count < self.long)
+            .filter(|last| last.count < self.capacity)
         {
-            *last = last.and(&one);
+            *last = last.joined(&one);
             return;
         }
-        if self.stretches.len() == 2 * STRETCHES {
-            self.stretches = self.stretches.chunks(2).map(Stretch::together).collect();
-            self.long *= 2;
+        if self.segments.len() == 2 * SEGMENTS {
+            self.segments = self.segments.chunks(2).map(Segment::merged).collect();
+            self.capacity *= 2;
         }
-        self.stretches.push(one);
+        self.segments.push(one);
     }
 }
 
-/// A point and its number.
+/// A point and its number in the curve.
 #[derive(Clone, Copy, Debug)]
-struct Place {
-    at: usize,
+struct Numbered {
+    number: usize,
     x: f64,
     y: f64,
 }
 
-/// Points after each other: of them the first, the last, and those farthest left, right, down and up.
+/// Consecutive points: of them the first, the last, and those farthest left, right, down and up.
 #[derive(Clone, Copy, Debug)]
-struct Stretch {
+struct Segment {
     count: usize,
-    places: [Place; 6],
+    extremes: [Numbered; 6],
 }
 
-impl Stretch {
-    /// This one and the next.
-    fn and(&self, next: &Self) -> Self {
-        let [first, _, left, right, low, high] = self.places;
-        let [_, last, next_left, next_right, next_low, next_high] = next.places;
-        let places = [
+impl Segment {
+    /// This segment joined with the next.
+    fn joined(&self, next: &Self) -> Self {
+        let [first, _, left, right, low, high] = self.extremes;
+        let [_, last, next_left, next_right, next_low, next_high] = next.extremes;
+        let extremes = [
             first,
             last,
             if next_left.x < left.x {
@@ -154,25 +154,26 @@ impl Stretch {
         ];
         Self {
             count: self.count + next.count,
-            places,
+            extremes,
         }
     }
 
-    fn together(pair: &[Self]) -> Self {
-        pair[1..].iter().fold(pair[0], |one, next| one.and(next))
+    /// A pair of segments, or the last one alone, as one.
+    fn merged(pair: &[Self]) -> Self {
+        pair[1..].iter().fold(pair[0], |one, next| one.joined(next))
     }
 
-    /// What of it is seen, in order.
-    fn seen(&self) -> Vec<(f64, f64)> {
-        let mut places = self.places;
-        places.sort_unstable_by_key(|place| place.at);
-        let mut seen: Vec<Place> = Vec::with_capacity(places.len());
-        for place in places {
-            if seen.last().is_none_or(|last| last.at < place.at) {
-                seen.push(place);
+    /// The kept points, in order and each once.
+    fn kept(&self) -> Vec<(f64, f64)> {
+        let mut extremes = self.extremes;
+        extremes.sort_unstable_by_key(|point| point.number);
+        let mut kept: Vec<Numbered> = Vec::with_capacity(extremes.len());
+        for point in extremes {
+            if kept.last().is_none_or(|last| last.number < point.number) {
+                kept.push(point);
             }
         }
-        seen.into_iter().map(|place| (place.x, place.y)).collect()
+        kept.into_iter().map(|point| (point.x, point.y)).collect()
     }
 }
 
@@ -193,51 +194,51 @@ mod tests {
     }
 
     #[test]
-    fn a_short_curve_is_kept_as_it_is() {
+    fn a_short_curve_is_kept_in_full() {
         let points: Vec<(f64, f64)> = (0..100_000)
             .map(|step| (f64::from(step), f64::NAN))
             .collect();
-        let gathered: Points = points.iter().copied().collect();
+        let collected: Points = points.iter().copied().collect();
         assert_eq!(
-            (gathered.len(), gathered.last().unwrap().0),
+            (collected.len(), collected.last().unwrap().0),
             (100_000, 99_999.0)
         );
         assert!(
-            gathered
+            collected
                 .iter()
                 .zip(&points)
                 .all(|(kept, point)| kept.0 == point.0 && kept.1.is_nan())
         );
     }
 
-    /// However long it is: its ends, its peaks and its order stay, and it takes the room of a curve of 240,000 points at most.
+    /// A long curve keeps its ends, its peaks and its order, and at most 240,000 points.
     #[test]
-    fn a_long_curve_keeps_its_ends_and_peaks_in_order_and_takes_no_more_room() {
+    fn a_long_curve_keeps_its_ends_and_peaks_in_order() {
         for count in [100_001, 250_000, 1_000_001] {
-            let gathered: Points = (0..count).map(swing).collect();
+            let collected: Points = (0..count).map(swing).collect();
             assert!(
-                gathered.len() <= 6 * 2 * STRETCHES && gathered.len() > STRETCHES,
+                collected.len() <= 6 * 2 * SEGMENTS && collected.len() > SEGMENTS,
                 "{count}: {}",
-                gathered.len()
+                collected.len()
             );
             assert_eq!(
-                (gathered[0], *gathered.last().unwrap()),
+                (collected[0], *collected.last().unwrap()),
                 (swing(0), swing(count - 1))
             );
-            assert!(gathered.contains(&swing(61_234)));
-            assert!(gathered.windows(2).all(|pair| pair[0].0 < pair[1].0));
-            // Whatever is highest in a column of pixels is kept in it, or at most a stretch away: a tenth of the column.
-            let (wide, stretch) = (
+            assert!(collected.contains(&swing(61_234)));
+            assert!(collected.windows(2).all(|pair| pair[0].0 < pair[1].0));
+            // The highest point of a pixel column is kept in it, or at most one segment away, a tenth of the column.
+            let (width, segment) = (
                 count.div_ceil(1244),
-                count.div_ceil(u32::try_from(STRETCHES).unwrap()).max(5),
+                count.div_ceil(u32::try_from(SEGMENTS).unwrap()).max(5),
             );
-            for from in (0..count).step_by(usize::try_from(wide).unwrap()) {
-                let to = (from + wide).min(count) - 1;
+            for from in (0..count).step_by(usize::try_from(width).unwrap()) {
+                let to = (from + width).min(count) - 1;
                 let highest = (from..=to)
                     .map(|step| swing(step).1)
                     .fold(f64::MIN, f64::max);
-                let (near, far) = (swing(from.saturating_sub(stretch)).0, swing(to + stretch).0);
-                let kept = &gathered[gathered.partition_point(|point| point.0 < near)..];
+                let (near, far) = (swing(from.saturating_sub(segment)).0, swing(to + segment).0);
+                let kept = &collected[collected.partition_point(|point| point.0 < near)..];
                 let kept = kept
                     .iter()
                     .take_while(|point| point.0 <= far)
@@ -248,9 +249,9 @@ mod tests {
         }
     }
 
-    /// A path that comes back on itself keeps its farthest points to all sides.
+    /// A closed path keeps its extreme points.
     #[test]
-    fn a_loop_keeps_its_corners() {
+    fn a_loop_keeps_its_extreme_points() {
         let corners = [
             (0.0, 0.0),
             (-2.0, 0.5),
@@ -259,10 +260,14 @@ mod tests {
             (0.2, 8.0),
             (1.0, 1.0),
         ];
-        let gathered: Points = corners.iter().copied().cycle().take(600_000).collect();
-        assert!(corners[1..5].iter().all(|corner| gathered.contains(corner)));
+        let collected: Points = corners.iter().copied().cycle().take(600_000).collect();
+        assert!(
+            corners[1..5]
+                .iter()
+                .all(|corner| collected.contains(corner))
+        );
         assert_eq!(
-            (gathered[0], *gathered.last().unwrap()),
+            (collected[0], *collected.last().unwrap()),
             (corners[0], corners[5])
         );
     }

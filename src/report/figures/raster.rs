@@ -1,5 +1,5 @@
-//! A drawing surface with fine edges: everything is drawn eight times as large as a reference pixel and box-averaged
-//! to two, which is 192 dpi. In: shapes in reference pixels. Out: PNG bytes. Knows no axes.
+//! The raster canvas: shapes are drawn with 8 × 8 subpixels per reference pixel and averaged to 2 × 2, which is 192 dpi. In:
+//! shapes in reference pixels. Out: PNG bytes. It knows no axes.
 
 use plotters::prelude::{
     BitMapBackend, Circle, DrawingArea, IntoDrawingArea as _, Polygon, RGBColor, Rectangle, Text,
@@ -10,15 +10,16 @@ use plotters::style::text_anchor::VPos;
 use super::canvas::{Canvas, Lettering, Point};
 use super::chart::{Colour, Line};
 
-/// Subpixels to a reference pixel.
+/// Subpixels per reference pixel, in each direction.
 const FINE: u32 = 8;
-/// Subpixels averaged into one of the picture, in each direction.
+/// Subpixels per pixel of the image, in each direction.
 const BOX: u32 = 4;
 const SIDE: usize = BOX as usize;
-/// Bytes of such a piece of a row, and of a stretch of rows that is looked at as a whole.
+/// Bytes of one pixel in a row of subpixels.
 const PIECE: usize = 3 * SIDE;
-const STRETCH: usize = 16 * PIECE;
-/// 192 dpi in pixels to the metre.
+/// Bytes of a row that are compared with white together.
+const CHUNK: usize = 16 * PIECE;
+/// 192 dpi in pixels per metre.
 const PIXELS_PER_METRE: u32 = 7559;
 
 struct Raster<'a> {
@@ -48,8 +49,7 @@ pub(super) fn png(
     .map_err(|error| error.to_string())
 }
 
-/// Each BOX × BOX square of subpixels becomes their mean. Most of a figure is white paper, which is told by comparing whole
-/// stretches of rows.
+/// The mean of each BOX × BOX square of subpixels. Most of a figure is white, which is found by comparing chunks of rows.
 fn average(fine: &[u8], fine_width: usize) -> Vec<u8> {
     let row = 3 * fine_width;
     let white = vec![255_u8; row];
@@ -59,8 +59,8 @@ fn average(fine: &[u8], fine_width: usize) -> Vec<u8> {
         .zip(picture.chunks_exact_mut(row / SIDE))
     {
         let rows = [0, 1, 2, 3].map(|y| &band[y * row..(y + 1) * row]);
-        for start in (0..row).step_by(STRETCH) {
-            let end = row.min(start + STRETCH);
+        for start in (0..row).step_by(CHUNK) {
+            let end = row.min(start + CHUNK);
             if rows.iter().all(|row| row[start..end] == white[start..end]) {
                 continue;
             }
@@ -79,12 +79,12 @@ fn mean(rows: &[&[u8]; SIDE], x: usize) -> [u8; 3] {
     let mut sums = [0_u32; 3];
     for row in rows {
         let piece = &row[x..x + PIECE];
-        let mut at = 0;
-        while at < PIECE {
-            sums[0] += u32::from(piece[at]);
-            sums[1] += u32::from(piece[at + 1]);
-            sums[2] += u32::from(piece[at + 2]);
-            at += 3;
+        let mut byte = 0;
+        while byte < PIECE {
+            sums[0] += u32::from(piece[byte]);
+            sums[1] += u32::from(piece[byte + 1]);
+            sums[2] += u32::from(piece[byte + 2]);
+            byte += 3;
         }
     }
     sums.map(|sum| u8::try_from((sum + BOX * BOX / 2) / (BOX * BOX)).unwrap_or(u8::MAX))
@@ -132,8 +132,7 @@ impl Canvas for Raster<'_> {
             .map_err(|error| error.to_string())
     }
 
-    /// Each piece is a quadrangle of its own: one filled outline of the
-    /// whole would show hollow slits where the line folds back on itself.
+    /// Each segment is a separate quadrangle: one filled outline would show slits where the line folds back.
     fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
         for piece in dashes(points, line.dash) {
             for ends in piece.windows(2) {
@@ -152,19 +151,19 @@ impl Canvas for Raster<'_> {
         Ok(())
     }
 
-    fn text(&self, text: &str, at: Point, style: &Lettering) -> Result<(), String> {
-        // The font's box is taller below its letters than above: a centred text is let down to look centred.
-        let sinks = matches!(style.anchor.vertical, VPos::Center) && !style.upright;
-        let at = if sinks {
-            (at.0, at.1 + 0.17 * style.size)
+    fn text(&self, text: &str, anchor: Point, style: &Lettering) -> Result<(), String> {
+        // The box of the font is taller below its letters than above: a centred text is lowered to look centred.
+        let is_lowered = matches!(style.anchor.vertical, VPos::Center) && !style.upright;
+        let anchor = if is_lowered {
+            (anchor.0, anchor.1 + 0.17 * style.size)
         } else {
-            at
+            anchor
         };
         let style = style.scaled(f64::from(FINE));
         self.area
             .draw(&Text::new(
                 crate::text::glyphs::shown(text).into_owned(),
-                fine(at),
+                fine(anchor),
                 style,
             ))
             .map_err(|error| error.to_string())
@@ -191,7 +190,7 @@ impl Raster<'_> {
     }
 }
 
-/// The drawn pieces of a line, walked along its length; a solid line is one piece.
+/// The dashes of a line along its length; a solid line is one piece.
 fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
     let Some(&first) = points.first() else {
         return Vec::new();
@@ -206,15 +205,15 @@ fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
         let mut walked = 0.0;
         while length - walked > left {
             walked += left;
-            let at = (
+            let end = (
                 from.0 + (to.0 - from.0) * walked / length,
                 from.1 + (to.1 - from.1) * walked / length,
             );
             if part % 2 == 0 {
-                piece.push(at);
+                piece.push(end);
                 pieces.push(std::mem::take(&mut piece));
             } else {
-                piece = vec![at];
+                piece = vec![end];
             }
             part = (part + 1) % pattern.len();
             left = pattern[part];
@@ -257,24 +256,24 @@ mod tests {
         assert_eq!(average(&[7; 4 * 4 * 3], 4), [7, 7, 7]);
     }
 
-    /// A sheet of white with one dark subpixel, wherever it is: the mean of its square, and paper all around.
+    /// A white image with one dark subpixel, at every position: the mean of its square, and white around it.
     #[test]
-    fn no_mark_is_lost_in_the_paper() {
+    fn no_dark_subpixel_is_lost() {
         let (width, height) = (4 * 37, 8);
-        for place in 0..width * height {
+        for subpixel in 0..width * height {
             let mut fine = vec![255_u8; 3 * width * height];
-            fine[3 * place..3 * place + 3].copy_from_slice(&[0, 95, 255]);
+            fine[3 * subpixel..3 * subpixel + 3].copy_from_slice(&[0, 95, 255]);
             let picture = average(&fine, width);
-            let square = (place / width / 4) * (width / 4) + place % width / 4;
-            for (at, colour) in picture.chunks_exact(3).enumerate() {
+            let square = (subpixel / width / 4) * (width / 4) + subpixel % width / 4;
+            for (index, colour) in picture.chunks_exact(3).enumerate() {
                 assert_eq!(
                     colour,
-                    if at == square {
+                    if index == square {
                         [239, 245, 255]
                     } else {
                         [255; 3]
                     },
-                    "subpixel {place}, square {at}"
+                    "subpixel {subpixel}, square {index}"
                 );
             }
         }

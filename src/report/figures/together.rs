@@ -1,12 +1,12 @@
-//! Several procedures of one kind on one chart, one curve each, on the same axes. In: their curves, the figure. Out: a
-//! [`Chart`] in SI and what it shows in words. Bounds of requirements stand on the figures of the procedure they bound.
+//! Several procedures of one kind on one chart, one curve each, on the same axes. In: their curves, the kind of figure. Out: a
+//! [`Chart`] in SI and its caption. Limits of requirements are drawn only on the figures of a single procedure.
 
 use super::chart::{
     Chart, Colour, DASH_DOT, DOTTED, LONG, SOLID, SPARSE, Series, SharedCurve, Style, palette,
 };
 use crate::plan::{FigureKind, MOST_TOGETHER};
 
-/// Those that may lie on each other are told apart all the same: a narrow line of gaps on a broad one shows both.
+/// Curves that coincide remain visible: a narrow dashed line on a broad one shows both.
 const STYLES: [(Colour, f64, &[f64]); MOST_TOGETHER] = [
     (palette::BLUE, 2.0, SOLID),
     (palette::VERMILION, 2.6, SOLID),
@@ -18,25 +18,25 @@ const STYLES: [(Colour, f64, &[f64]); MOST_TOGETHER] = [
 
 const LOOP: f64 = 1.2;
 
-/// The chart, and its words; None where no procedure has steps, or none has this figure.
+/// The chart and its caption; None where no procedure has steps, or none has this figure.
 pub(super) fn chart(
     kind: FigureKind,
     procedures: Vec<(&str, Option<SharedCurve>)>,
 ) -> Option<(Chart, String)> {
     let (mut series, mut first) = (Vec::new(), None);
-    // A loop that runs many times needs a fine line.
+    // Many loops need a fine line.
     let loops = matches!(kind, FigureKind::ForceDisplacement | FigureKind::Hysteresis);
     for ((name, curve), (colour, width, dash)) in procedures.into_iter().zip(STYLES) {
         let Some(SharedCurve {
             x,
             y,
-            words,
+            caption,
             points,
         }) = curve
         else {
             continue;
         };
-        first.get_or_insert((x, y, words));
+        first.get_or_insert((x, y, caption));
         if !points.is_empty() {
             let width = if loops { LOOP } else { width };
             series.push(Series {
@@ -46,7 +46,7 @@ pub(super) fn chart(
             });
         }
     }
-    let (x, y, words) = first?;
+    let (x, y, caption) = first?;
     if series.is_empty() {
         return None;
     }
@@ -55,7 +55,7 @@ pub(super) fn chart(
         Some((last, before)) if !before.is_empty() => format!("{} and {last}", before.join(", ")),
         _ => names.concat(),
     };
-    let caption = format!("{names} on one chart: {words}.");
+    let caption = format!("{names} on one chart: {caption}.");
     Some((
         Chart {
             x,

@@ -1,5 +1,5 @@
-//! A drawing in vectors. In: shapes in reference pixels. Out: SVG text, which names its font and loads nothing; every word in
-//! it is escaped. Coordinates are kept to a hundredth of a pixel.
+//! The vector canvas. In: shapes in reference pixels. Out: SVG, which names its font and loads no file; every text is escaped.
+//! Coordinates are rounded to a hundredth of a pixel.
 
 use std::cell::RefCell;
 use std::fmt::Write as _;
@@ -16,8 +16,7 @@ struct Drawing {
     shapes: RefCell<String>,
 }
 
-/// Draws on a sheet of `width × height` reference pixels. It is white where it stands alone, and on paper lets through what
-/// lies below it.
+/// Draws on `width × height` reference pixels. The background is white in a browser and transparent in the PDF.
 pub(super) fn svg(
     width: u32,
     height: u32,
@@ -93,8 +92,8 @@ impl Canvas for Drawing {
         Ok(())
     }
 
-    fn text(&self, text: &str, at: Point, style: &Lettering) -> Result<(), String> {
-        // From the anchor to the line that letters stand on, as the raster has it.
+    fn text(&self, text: &str, anchor: Point, style: &Lettering) -> Result<(), String> {
+        // From the anchor down to the baseline, as on the raster.
         let down = style.size
             * match style.anchor.vertical {
                 VPos::Top => 0.5,
@@ -102,13 +101,13 @@ impl Canvas for Drawing {
                 VPos::Center => 0.267,
                 VPos::Bottom => -0.306,
             };
-        // Read from below, down is to the right.
+        // For text read from bottom to top, down is to the right.
         let (x, y) = if style.upright {
-            (at.0 + down, at.1)
+            (anchor.0 + down, anchor.1)
         } else {
-            (at.0, at.1 + down)
+            (anchor.0, anchor.1 + down)
         };
-        let anchor = match style.anchor.horizontal {
+        let text_anchor = match style.anchor.horizontal {
             HPos::Left => "start",
             HPos::Center => "middle",
             HPos::Right => "end",
@@ -125,7 +124,7 @@ impl Canvas for Drawing {
             ""
         };
         self.add(&format!(
-            "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"{weight} text-anchor=\"{anchor}\" fill=\"{}\"{turn}>{}</text>",
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"{weight} text-anchor=\"{text_anchor}\" fill=\"{}\"{turn}>{}</text>",
             number(style.size / LINE_OVER_EM),
             hex(style.colour),
             escaped(text)
@@ -134,7 +133,7 @@ impl Canvas for Drawing {
     }
 }
 
-/// To a hundredth, without empty zeros and without a negative zero.
+/// To a hundredth, without trailing zeros and without a negative zero.
 fn number(value: f64) -> String {
     let text = format!("{:.2}", value.clamp(-1e5, 1e5));
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -149,7 +148,7 @@ fn hex((red, green, blue): Colour) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// A text between tags; what XML cannot hold is replaced, and what the fonts of paper lack is a code point, as on the raster.
+/// A text between tags: escaped, without control characters, and with code points for missing glyphs as on the raster.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in crate::text::glyphs::shown(&crate::report::document::printable(text)).chars() {

@@ -1,8 +1,9 @@
 //! `summary.json`, the results for programs: schema `psd.summary/1`, SI, stable order. In: a run.
 //! Out: [`Summary`] and its JSON. `grammar/summary.schema.json` is generated from these types.
 
-mod drift;
-mod of_run;
+mod fill;
+mod prediction;
+mod zero_drift;
 
 use std::collections::BTreeMap;
 
@@ -13,8 +14,13 @@ use serde::ser::SerializeMap as _;
 
 use crate::text::sanitize;
 
-pub use drift::{AxisDriftSummary, DriftSummary, ZeroSummary};
-pub(super) use of_run::governing;
+pub(super) use fill::governing;
+pub(in crate::report) use prediction::file as prediction_file;
+pub use prediction::{
+    PredictedLimit, PredictedProcedure, PredictedRequirement, PredictedZeros, Prediction,
+    REHEARSAL_FILE,
+};
+pub use zero_drift::{AxisDriftSummary, DriftSummary, ZeroSummary};
 
 /// Name and version of the format; a change that breaks a reader raises the number.
 pub const SCHEMA: &str = "psd.summary/1";
@@ -45,7 +51,8 @@ pub struct Summary {
     pub decision_rule: &'static str,
     /// What the report may be taken for: its gravest ground against a certificate.
     #[schemars(extend("enum" = ["certifiable", "rehearsal", "incomplete", "not certifiable", "particulars missing"]))]
-    pub standing: &'static str,
+    #[serde(rename = "standing")]
+    pub report_status: &'static str,
     /// What the certificate of a real rig must state and does not: of how it was measured, then particulars.
     pub missing: Vec<String>,
     pub outcome: OutcomeSummary,
@@ -332,4 +339,9 @@ impl Summary {
         serde_json::to_string_pretty(&generator.into_root_schema_for::<Self>())
             .map(|json| json + "\n")
     }
+}
+
+/// None for NaN and infinity, which JSON cannot hold.
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
 }

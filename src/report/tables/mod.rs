@@ -1,16 +1,18 @@
 //! Tables: one row per step, SI, with the column names of the schema. In: the record. Out: CSV and
 //! Parquet, into the sink of the caller. It knows no display unit.
 
-mod drift;
 mod table;
+mod zero_drift;
 
 use std::iter::once;
 use std::rc::Rc;
 
 pub(crate) use polars::prelude::Column;
 
-use super::sink::{Listed, Shelf, put_written};
-use super::{OutputError, Run, tell_apart, wants};
+use super::output::file::{OutputError, wants};
+use super::output::paths::make_unique;
+use super::output::sink::{FileDigest, OutputSink, put_chunks};
+use super::run::Run;
 use crate::plan::Format;
 use crate::procedures;
 use crate::record::Drift;
@@ -19,7 +21,7 @@ use crate::text::sanitize;
 use table::Form;
 pub(crate) use table::Table;
 
-/// A table in one of its forms, and where it is put.
+/// A table in one format, with its path.
 pub(super) struct Unwritten<'a> {
     table: Rc<Table<'a>>,
     form: Form,
@@ -27,13 +29,14 @@ pub(super) struct Unwritten<'a> {
 }
 
 impl Unwritten<'_> {
-    pub fn put(&self, shelf: &mut dyn Shelf) -> Result<Listed, OutputError> {
-        put_one(&self.table, self.form, &self.path, shelf)
+    /// Writes the table into the sink.
+    pub fn put(&self, sink: &mut dyn OutputSink) -> Result<FileDigest, OutputError> {
+        put_one(&self.table, self.form, &self.path, sink)
     }
 }
 
 /// The tables of every procedure that recorded steps, in the formats the plan asks for.
-pub(super) fn of<'a>(run: &Run<'a>) -> Vec<Unwritten<'a>> {
+pub(super) fn of_run<'a>(run: &Run<'a>) -> Vec<Unwritten<'a>> {
     let forms = [(Format::Csv, Form::Csv), (Format::Parquet, Form::Parquet)];
     let forms: Vec<Form> = forms
         .into_iter()
@@ -50,23 +53,26 @@ pub(super) fn of<'a>(run: &Run<'a>) -> Vec<Unwritten<'a>> {
             path: path(form),
         }));
     }
-    tell_apart(files.iter_mut().map(|file| &mut file.path));
+    make_unique(files.iter_mut().map(|file| &mut file.path));
     files
 }
 
 fn all<'a>(run: &Run<'a>) -> Vec<Table<'a>> {
     let of_procedures = run.record.procedures.iter().flat_map(procedures::tables);
-    let drift = run.record.drift.as_ref().map(of_drift);
-    of_procedures.chain(drift).collect()
+    let zero_drift = run.record.drift.as_ref().map(zero_drift_table);
+    of_procedures.chain(zero_drift).collect()
 }
 
-/// Puts the targets of a client that drove the rig and what was read there; what its zeros did, where they were read.
-pub(super) fn put_driven(
+/// Puts the tables of a run that a client controlled: targets with readings, and the zero drift where it was measured.
+///
+/// # Errors
+/// A table that cannot be encoded or kept.
+pub fn put_driven(
     steps: &[DrivenStep],
-    found: Option<&Drift>,
-    shelf: &mut dyn Shelf,
-) -> Result<Vec<Listed>, OutputError> {
-    // A row a step and axis; which axis it is, is said where there are several.
+    zero_drift: Option<&Drift>,
+    sink: &mut dyn OutputSink,
+) -> Result<Vec<FileDigest>, OutputError> {
+    // One row per step and axis, with a column for the axis where there are several.
     let axes = steps
         .iter()
         .map(|step| step.command.len())
@@ -76,28 +82,28 @@ pub(super) fn put_driven(
         driven_rows(&steps[range], axes > 1)
     });
     let served = (table, "tables/served.csv");
-    let drift = found.map(|found| (of_drift(found), "tables/drift.csv"));
+    let drift = zero_drift.map(|drift| (zero_drift_table(drift), "tables/drift.csv"));
     once(served)
         .chain(drift)
-        .map(|(table, path)| put_one(&table, Form::Csv, path, shelf))
+        .map(|(table, path)| put_one(&table, Form::Csv, path, sink))
         .collect()
 }
 
-fn of_drift(found: &Drift) -> Table<'_> {
-    Table::of_steps("drift".to_owned(), 1, 1, |_| drift::rows(found))
+fn zero_drift_table(drift: &Drift) -> Table<'_> {
+    Table::of_steps("drift".to_owned(), 1, 1, |_| zero_drift::columns(drift))
 }
 
 fn put_one(
     table: &Table<'_>,
     form: Form,
     path: &str,
-    shelf: &mut dyn Shelf,
-) -> Result<Listed, OutputError> {
+    sink: &mut dyn OutputSink,
+) -> Result<FileDigest, OutputError> {
     let failed = |error: std::io::Error| OutputError::Table {
         table: table.name.clone(),
         reason: error.to_string(),
     };
-    put_written(shelf, path, |out| table.write(form, out)).map_err(failed)
+    put_chunks(sink, path, |out| table.write(form, out)).map_err(failed)
 }
 
 fn driven_rows(steps: &[DrivenStep], several: bool) -> Vec<Column> {
@@ -105,28 +111,31 @@ fn driven_rows(steps: &[DrivenStep], several: bool) -> Vec<Column> {
         .iter()
         .flat_map(|step| (0..step.command.len()).map(move |axis| (step, axis)))
         .collect();
-    let of = |name, read: fn(&(&DrivenStep, usize)) -> f64| numbers(name, &rows, read);
+    let column = |name, read: fn(&(&DrivenStep, usize)) -> f64| numbers(name, &rows, read);
     let mut columns = vec![integers("step", &rows, |(step, _)| step.step)];
     if several {
         columns.push(integers("storey", &rows, |(_, axis)| *axis as u64 + 1));
     }
     columns.extend([
-        of("wall_time_s", |(step, _)| step.time),
-        of("command_m", |(step, axis)| step.command[*axis]),
-        of("displacement_m", |(step, axis)| step.displacement[*axis]),
-        of("restoring_force_n", |(step, axis)| step.force[*axis]),
+        column("wall_time_s", |(step, _)| step.time),
+        column("command_m", |(step, axis)| step.command[*axis]),
+        column("displacement_m", |(step, axis)| step.displacement[*axis]),
+        column("restoring_force_n", |(step, axis)| step.force[*axis]),
     ]);
     columns
 }
 
+/// A column of numbers.
 pub(crate) fn numbers<T>(name: &str, steps: &[T], read: fn(&T) -> f64) -> Column {
     Column::new(name.into(), steps.iter().map(read).collect::<Vec<f64>>())
 }
 
+/// A column of whole numbers.
 pub(crate) fn integers<T>(name: &str, steps: &[T], read: fn(&T) -> u64) -> Column {
     Column::new(name.into(), steps.iter().map(read).collect::<Vec<u64>>())
 }
 
+/// A column of strings.
 pub(crate) fn texts<T>(name: &str, steps: &[T], read: fn(&T) -> &'static str) -> Column {
     Column::new(
         name.into(),

@@ -1,6 +1,6 @@
-//! A table that is not made yet: it is written a stretch of its rows after the other, so that of a run of a million steps no
-//! more than a stretch is ever in memory beside the record. In: who gives the columns of some steps. Out: CSV with shortest
-//! round-trip numbers, or Parquet (zstd), each byte for byte what the whole table would be written as in one piece.
+//! A table that is written in chunks of rows, so that a run of a million steps needs memory for one chunk beside the record. In:
+//! a function that gives the columns of a range of steps. Out: CSV with shortest round-trip numbers, or Parquet (zstd),
+//! bit-identical with the table written as a whole.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -9,19 +9,20 @@ use polars::prelude::{
     Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, SerWriter as _,
 };
 
-/// Rows of a stretch; in Parquet, a row group.
-const STRETCH: usize = 65_536;
+/// Rows of a chunk; in Parquet, a row group.
+const CHUNK: usize = 65_536;
 
 /// One table.
 pub(crate) struct Table<'a> {
     pub name: String,
-    /// Steps, each of which has `rows` rows.
+    /// Number of steps.
     steps: usize,
+    /// Rows per step.
     rows: usize,
     columns: Box<dyn Fn(Range<usize>) -> Vec<Column> + 'a>,
 }
 
-/// What it is written as.
+/// File format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     Csv,
@@ -38,7 +39,7 @@ impl Form {
 }
 
 impl<'a> Table<'a> {
-    /// A row a step.
+    /// A table with one row per step.
     pub fn of<T>(
         name: String,
         steps: &'a [T],
@@ -47,7 +48,7 @@ impl<'a> Table<'a> {
         Self::of_steps(name, steps.len(), 1, move |range| columns(&steps[range]))
     }
 
-    /// So many rows a step.
+    /// A table with `rows` rows per step.
     pub fn of_steps(
         name: String,
         steps: usize,
@@ -62,7 +63,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Writes it.
+    /// Writes the table.
     pub fn write(&self, form: Form, out: &mut dyn Write) -> io::Result<()> {
         match form {
             Form::Csv => self.csv(out),
@@ -71,7 +72,7 @@ impl<'a> Table<'a> {
     }
 
     fn csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        for (index, frame) in self.stretches().enumerate() {
+        for (index, frame) in self.chunks().enumerate() {
             CsvWriter::new(&mut *out)
                 .include_header(index == 0)
                 .finish(&mut frame?)
@@ -81,23 +82,23 @@ impl<'a> Table<'a> {
     }
 
     fn parquet(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut stretches = self.stretches();
-        let Some(first) = stretches.next().transpose()? else {
+        let mut chunks = self.chunks();
+        let Some(first) = chunks.next().transpose()? else {
             return Ok(());
         };
         let writer = ParquetWriter::new(out).with_compression(ParquetCompression::Zstd(None));
         let mut writer = writer.batched(first.schema()).map_err(io::Error::other)?;
-        for frame in std::iter::once(Ok(first)).chain(stretches) {
+        for frame in std::iter::once(Ok(first)).chain(chunks) {
             writer.write_batch(&frame?).map_err(io::Error::other)?;
         }
         writer.finish().map(drop).map_err(io::Error::other)
     }
 
-    /// At least one, for a table without rows has columns.
-    fn stretches(&self) -> impl Iterator<Item = io::Result<DataFrame>> {
-        let long = (STRETCH / self.rows).max(1);
-        (0..self.steps.max(1)).step_by(long).map(move |from| {
-            let columns = (self.columns)(from.min(self.steps)..(from + long).min(self.steps));
+    /// The data in chunks; at least one, because a table without rows has columns.
+    fn chunks(&self) -> impl Iterator<Item = io::Result<DataFrame>> {
+        let length = (CHUNK / self.rows).max(1);
+        (0..self.steps.max(1)).step_by(length).map(move |from| {
+            let columns = (self.columns)(from.min(self.steps)..(from + length).min(self.steps));
             let height = columns.first().map_or(0, Column::len);
             DataFrame::new(height, columns).map_err(io::Error::other)
         })
@@ -140,7 +141,7 @@ mod tests {
         bytes
     }
 
-    /// One piece, by Polars alone.
+    /// The whole table, written by Polars.
     fn whole(steps: usize, form: Form) -> Vec<u8> {
         let mut frame = DataFrame::new(2 * steps, columns(0..steps)).unwrap();
         let mut bytes = Vec::new();
@@ -153,7 +154,7 @@ mod tests {
                 let writer =
                     ParquetWriter::new(&mut bytes).with_compression(ParquetCompression::Zstd(None));
                 writer
-                    .with_row_group_size(Some(STRETCH))
+                    .with_row_group_size(Some(CHUNK))
                     .finish(&mut frame)
                     .map(drop)
                     .unwrap();
@@ -163,8 +164,8 @@ mod tests {
     }
 
     #[test]
-    fn a_table_in_stretches_is_the_table_in_one_piece() {
-        for steps in [0, 1, 1000, STRETCH / 2, STRETCH] {
+    fn a_table_in_chunks_is_the_table_written_as_a_whole() {
+        for steps in [0, 1, 1000, CHUNK / 2, CHUNK] {
             assert!(
                 written(steps, Form::Csv) == whole(steps, Form::Csv),
                 "{steps}"
@@ -174,7 +175,7 @@ mod tests {
                 "{steps}"
             );
         }
-        // Neither a whole number of stretches: Polars would divide the row groups evenly.
-        assert!(written(STRETCH + 5, Form::Csv) == whole(STRETCH + 5, Form::Csv));
+        // Not a whole number of chunks; in Parquet, Polars would divide the row groups evenly.
+        assert!(written(CHUNK + 5, Form::Csv) == whole(CHUNK + 5, Form::Csv));
     }
 }

@@ -5,8 +5,7 @@ use psd::plan::{
     RealLink, SafeState,
 };
 use psd::record::{Event, EventKind, Outcome};
-use psd::report::report_status;
-use psd::report::report_status::Standing;
+use psd::report::ReportStatus;
 use psd::report::{Change, Issue, IssueKind, Issues, RealRun, console};
 
 use super::fixture::{Finished, finished};
@@ -102,8 +101,8 @@ fn real() -> Finished {
 }
 
 fn missing(finished: &Finished) -> Vec<String> {
-    match report_status::of(&finished.run()) {
-        Standing::NotCertifiable { missing } => missing,
+    match ReportStatus::of(&finished.run()) {
+        ReportStatus::NotCertifiable { missing } => missing,
         other => panic!("{other:?}"),
     }
 }
@@ -111,7 +110,7 @@ fn missing(finished: &Finished) -> Vec<String> {
 #[test]
 fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with() {
     let finished = real();
-    assert_eq!(report_status::of(&finished.run()), Standing::Certifiable);
+    assert_eq!(ReportStatus::of(&finished.run()), ReportStatus::Certifiable);
     let files = files(&finished);
     let html = text(&files, "certificate.html").replace('\u{a0}', " ");
     for told in [
@@ -197,7 +196,7 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
     undated.provenance.date = Some("next week, perhaps".into());
     assert_eq!(missing(&undated), ["the day of the test"]);
     undated.provenance.date = Some("2027-02-28".into());
-    assert_eq!(report_status::of(&undated.run()), Standing::Certifiable);
+    assert_eq!(ReportStatus::of(&undated.run()), ReportStatus::Certifiable);
 }
 
 #[test]
@@ -241,8 +240,8 @@ fn what_lies_outside_the_range_of_its_calibration_is_told() {
 fn particulars_missing(change: impl FnOnce(&mut Vec<(&'static str, String)>)) -> Vec<String> {
     let mut finished = real();
     change(&mut finished.plan.particulars);
-    match report_status::of(&finished.run()) {
-        Standing::ParticularsMissing { missing } => missing,
+    match ReportStatus::of(&finished.run()) {
+        ReportStatus::ParticularsMissing { missing } => missing,
         other => panic!("{other:?}"),
     }
 }
@@ -273,7 +272,7 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
     bare.plan
         .particulars
         .retain(|(field, _)| *field != "receipt_date");
-    assert_eq!(report_status::of(&bare.run()), Standing::Certifiable);
+    assert_eq!(ReportStatus::of(&bare.run()), ReportStatus::Certifiable);
     assert!(
         text(&files(&bare), "certificate.html").contains("Not given: Condition, Item received.")
     );
@@ -306,7 +305,10 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
     );
     // A rehearsal is issued by nobody.
     bare.record.rig.simulated = true;
-    assert_eq!(report_status::grounds(&bare.run()), [Standing::Rehearsal]);
+    assert_eq!(
+        ReportStatus::reasons(&bare.run()),
+        [ReportStatus::Rehearsal]
+    );
 }
 
 #[test]
@@ -341,8 +343,8 @@ fn days_out_of_their_order_are_told() {
         near.plan.particulars.push((field, day.into()));
     }
     assert_eq!(
-        report_status::of(&near.run()),
-        Standing::Certifiable,
+        ReportStatus::of(&near.run()),
+        ReportStatus::Certifiable,
         "the days of a laboratory may be one off those of UTC"
     );
 }
@@ -386,13 +388,13 @@ fn an_amended_name_of_the_operator_stands_on_the_first_page_and_not_in_the_prove
 fn a_simulated_rig_on_a_real_line_is_marked_across_the_page_whatever_else_is_wrong() {
     let mut rehearsed = real();
     rehearsed.record.rig.simulated = true;
-    assert_eq!(report_status::of(&rehearsed.run()), Standing::Rehearsal);
+    assert_eq!(ReportStatus::of(&rehearsed.run()), ReportStatus::Rehearsal);
     rehearsed.record.outcome = Outcome::Aborted {
         reason: "stopped on request".into(),
     };
     assert_eq!(
-        report_status::grounds(&rehearsed.run()),
-        [Standing::Rehearsal, Standing::Incomplete]
+        ReportStatus::reasons(&rehearsed.run()),
+        [ReportStatus::Rehearsal, ReportStatus::Incomplete]
     );
     let files = files(&rehearsed);
     let html = text(&files, "certificate.html");

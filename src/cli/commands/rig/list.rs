@@ -1,5 +1,5 @@
-//! `psd rig list`: the serial ports of this machine, one a line, with what the system knows of each and the names that stay
-//! when cables change places. It opens none of them.
+//! `psd rig list`: the serial ports of this machine, one per line, with the data that the system has of each and the persistent
+//! names, which do not change when cables are exchanged. It opens no port.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,24 +9,26 @@ use serialport::{SerialPortInfo, SerialPortType};
 
 use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::text::diagnostic::excerpt::escape;
 
-/// Where the system keeps names made of maker and serial number, each a link to its port.
+/// The folder of names made of manufacturer and serial number, each a link to its port.
 const NAMES: &str = "/dev/serial/by-id";
 
-/// Prints the ports; none is not a fault.
+/// Prints the ports; no port is not an error.
 pub fn list(format: Format) -> Result<Exit, Failure> {
     let mut ports = serialport::available_ports()
         .map_err(|error| Failure::file("serial ports", error.to_string()))?;
     ports.sort_by(|one, other| one.port_name.cmp(&other.port_name));
-    let names = names_that_stay(Path::new(NAMES));
+    let names = persistent_names(Path::new(NAMES));
     match format {
         Format::Human => {
             if ports.is_empty() {
-                tell("no serial port was found: is the device plugged in and switched on?\n");
+                print_message(
+                    "no serial port was found: is the device plugged in and switched on?\n",
+                );
             }
-            give(
+            print_result(
                 &ports
                     .iter()
                     .map(|port| lines(port, &names))
@@ -35,23 +37,24 @@ pub fn list(format: Format) -> Result<Exit, Failure> {
         }
         Format::Json => {
             let ports: Vec<Value> = ports.iter().map(|port| entry(port, &names)).collect();
-            give(&format!("{:#}\n", Value::from(ports)))?;
+            print_result(&format!("{:#}\n", Value::from(ports)))?;
         }
     }
     Ok(Exit::Met)
 }
 
-/// Names that stay, and the port that each leads to, sorted.
-fn names_that_stay(folder: &Path) -> Vec<(String, String)> {
+/// Persistent names with the port of each, sorted.
+fn persistent_names(folder: &Path) -> Vec<(String, String)> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let leads = |path: &Path| {
+    let name_and_port = |path: &Path| {
         Some((
             path.to_str()?.to_owned(),
             path.canonicalize().ok()?.to_str()?.to_owned(),
         ))
     };
-    let mut names: Vec<(String, String)> =
-        entries.filter_map(|entry| leads(&entry.path())).collect();
+    let mut names: Vec<(String, String)> = entries
+        .filter_map(|entry| name_and_port(&entry.path()))
+        .collect();
     names.sort();
     names
 }
@@ -62,26 +65,26 @@ fn names_of<'a>(
 ) -> impl Iterator<Item = &'a str> {
     names
         .iter()
-        .filter(|(_, leads)| *leads == port.port_name)
+        .filter(|(_, target)| *target == port.port_name)
         .map(|(name, _)| name.as_str())
 }
 
 fn lines(port: &SerialPortInfo, names: &[(String, String)]) -> String {
-    let what = match &port.port_type {
+    let description = match &port.port_type {
         SerialPortType::UsbPort(usb) => {
             let known = [
                 usb.manufacturer.as_deref(),
                 usb.product.as_deref(),
                 usb.serial_number.as_deref(),
             ];
-            let said: Vec<&str> = known.into_iter().flatten().collect();
-            format!("USB {:04x}:{:04x} {}", usb.vid, usb.pid, said.join(", "))
+            let given: Vec<&str> = known.into_iter().flatten().collect();
+            format!("USB {:04x}:{:04x} {}", usb.vid, usb.pid, given.join(", "))
         }
         other => kind(other).to_owned(),
     };
     let mut text = format!(
         "{}\n",
-        escape(format!("{}  {what}", port.port_name).trim_end())
+        escape(format!("{}  {description}", port.port_name).trim_end())
     );
     for name in names_of(port, names) {
         let _ = writeln!(text, "  {}", escape(name));
@@ -89,7 +92,7 @@ fn lines(port: &SerialPortInfo, names: &[(String, String)]) -> String {
     text
 }
 
-/// For a program: what is not known is null.
+/// The port as JSON; unknown data are null.
 fn entry(port: &SerialPortInfo, names: &[(String, String)]) -> Value {
     let usb = match &port.port_type {
         SerialPortType::UsbPort(usb) => json!({
@@ -101,8 +104,8 @@ fn entry(port: &SerialPortInfo, names: &[(String, String)]) -> Value {
         }),
         _ => Value::Null,
     };
-    let stay: Vec<&str> = names_of(port, names).collect();
-    json!({ "port": port.port_name, "kind": kind(&port.port_type), "usb": usb, "names_that_stay": stay })
+    let names: Vec<&str> = names_of(port, names).collect();
+    json!({ "port": port.port_name, "kind": kind(&port.port_type), "usb": usb, "names_that_stay": names })
 }
 
 const fn kind(port: &SerialPortType) -> &'static str {
@@ -163,14 +166,14 @@ mod tests {
         assert_eq!(entry(&usb(), &stays), expected);
     }
 
-    /// A pseudo-terminal stands for a port, a link to it for a name that stays.
+    /// A pseudo-terminal acts as a port, a link to it as a persistent name.
     #[test]
-    fn a_name_that_stays_stands_below_its_port() {
+    fn a_persistent_name_is_listed_below_its_port() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(names_that_stay(&folder.path().join("none")).is_empty());
+        assert!(persistent_names(&folder.path().join("none")).is_empty());
         let line =
             crate::emulator::PseudoTerminal::linked(&folder.path().join("usb-Maker_A7")).unwrap();
-        let names = names_that_stay(folder.path());
+        let names = persistent_names(folder.path());
         let [(name, port)] = names.as_slice() else {
             panic!("{names:?}")
         };

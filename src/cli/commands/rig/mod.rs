@@ -18,7 +18,7 @@ use crate::cli::settings::Settings;
 use crate::plan::{Link, Plan};
 use crate::rig::{Rig, Wish, connect, virtual_rig};
 
-/// Does one of the commands.
+/// Runs one of the commands.
 pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
     match command {
         RigCommand::List { format } => list::list(*format),
@@ -34,12 +34,12 @@ pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
             count,
             every,
         } => {
-            let asked = monitor::Asked {
+            let request = monitor::MonitorRequest {
                 every: typed::every(every)?,
                 count: *count,
             };
             with_rig(plan, plan_settings, settings, |rig, plan, wish| {
-                monitor::monitor(rig, plan, &asked, wish, settings)
+                monitor::monitor(rig, plan, &request, wish, settings)
             })
         }
         RigCommand::Jog(arguments) => jog::jog(arguments, settings),
@@ -48,12 +48,12 @@ pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
     }
 }
 
-/// Checks the plan, opens its rig and does `what` with it.
+/// Checks the plan, opens its rig and runs a command on it.
 fn with_rig(
     path: &Path,
     plan_settings: &PlanSettings,
     settings: Settings,
-    what: impl FnOnce(&mut dyn Rig, &Plan, &Wish) -> Result<Exit, Failure>,
+    command: impl FnOnce(&mut dyn Rig, &Plan, &Wish) -> Result<Exit, Failure>,
 ) -> Result<Exit, Failure> {
     let checked = plan_file::open(path, plan_settings)?;
     plan_file::show(&checked, path, settings);
@@ -62,12 +62,12 @@ fn with_rig(
     };
     let wish = Wish::default();
     match &plan.rig.link {
-        Link::Virtual(_) => what(virtual_rig(plan).as_mut(), plan, &wish),
+        Link::Virtual(_) => command(virtual_rig(plan).as_mut(), plan, &wish),
         Link::Real(_) => {
             let place = |fault: &str| plan_file::place_of_link(&checked, path, fault);
             let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
             let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
-            what(&mut connected.rig, plan, &wish)
+            command(&mut connected.rig, plan, &wish)
         }
     }
 }

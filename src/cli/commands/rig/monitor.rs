@@ -1,33 +1,33 @@
-//! `psd rig monitor`: the readings as they come: on the screen of a terminal, one line a reading in a pipe. Nothing moves.
+//! `psd rig monitor`: continuous readings, on the live screen of a terminal or one line per reading in a pipe. Nothing moves.
 
 use std::time::Duration;
 
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::screen::{Screen, is_large_enough};
 use crate::cli::operator::watch::Signals;
-use crate::cli::output::give_on;
+use crate::cli::output::print_while_read;
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
 use crate::rig::{Reading, Rig, Wish};
 use crate::run::{AxisReport, Observer as _, StepReport};
 
-/// How often, and how long.
-pub struct Asked {
-    /// Time from one reading to the next, s.
+/// Interval and number of readings.
+pub struct MonitorRequest {
+    /// Time from one reading to the next \[s\].
     pub every: f64,
     /// None: until Ctrl-C.
     pub count: Option<u64>,
 }
 
-/// Reads until Ctrl-C, `q`, `count` readings, or until nobody reads the lines any more.
+/// Reads until Ctrl-C, `q`, `count` readings, or until the reader of the lines has gone.
 pub fn monitor(
     rig: &mut dyn Rig,
     plan: &Plan,
-    asked: &Asked,
+    request: &MonitorRequest,
     wish: &Wish,
     settings: Settings,
 ) -> Result<Exit, Failure> {
-    let Asked { every, count } = *asked;
+    let MonitorRequest { every, count } = *request;
     let _signals = Signals::ending(wish).map_err(Failure::Signals)?;
     let simulated = rig.identity().simulated;
     let on_screen =
@@ -37,13 +37,13 @@ pub fn monitor(
     if let Some(screen) = &mut screen {
         screen.procedure_started("readings", "monitor", None);
     } else {
-        give_on(&header(rig.degrees_of_freedom()))?;
+        print_while_read(&header(rig.degrees_of_freedom()))?;
     }
     let mut number = 0;
     while !wish.wants_end() && count.is_none_or(|count| number < count) {
         if number > 0 {
             rig.pause(every).map_err(Failure::Rig)?;
-            // A virtual rig's time costs nothing; a person's eyes are not that fast.
+            // A simulated rig does not wait: slow down for the operator.
             if simulated && count.is_none() {
                 std::thread::sleep(Duration::from_secs_f64(every));
             }
@@ -52,14 +52,14 @@ pub fn monitor(
         let reading = rig.read().map_err(Failure::Rig)?;
         match &mut screen {
             Some(screen) => screen.step_done(&step(number, &reading)),
-            None if give_on(&line(&reading))? => {}
+            None if print_while_read(&line(&reading))? => {}
             None => break,
         }
     }
     Ok(Exit::Met)
 }
 
-/// Every degree of freedom, as a step that asked for nothing.
+/// A reading as a step without a target.
 fn step(number: u64, reading: &Reading) -> StepReport {
     let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
     let displacement = first(&reading.displacement);
@@ -95,29 +95,29 @@ fn at_rest(displacement: f64, force: f64) -> AxisReport {
     }
 }
 
-/// What the columns of [`line`] are.
+/// The names of the columns of [`line`].
 fn header(axes: usize) -> String {
-    let named = |what: &str, unit: &str| match axes {
-        1 => format!("{what}_{unit}"),
+    let columns = |quantity: &str, unit: &str| match axes {
+        1 => format!("{quantity}_{unit}"),
         _ => (1..=axes)
-            .map(|axis| format!("{what}_{axis}_{unit}"))
+            .map(|axis| format!("{quantity}_{axis}_{unit}"))
             .collect::<Vec<_>>()
             .join(","),
     };
     format!(
         "time_s,{},{}\n",
-        named("displacement", "m"),
-        named("force", "n")
+        columns("displacement", "m"),
+        columns("force", "n")
     )
 }
 
-/// SI, one column a value; of several degrees of freedom all displacements, then all forces.
+/// SI values, comma-separated; with several degrees of freedom all displacements, then all forces.
 fn line(reading: &Reading) -> String {
     let values = std::iter::once(&reading.time)
         .chain(&reading.displacement)
         .chain(&reading.force);
-    let words: Vec<String> = values.map(ToString::to_string).collect();
-    format!("{}\n", words.join(","))
+    let cells: Vec<String> = values.map(ToString::to_string).collect();
+    format!("{}\n", cells.join(","))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::give;
+use crate::cli::output::print_result;
 use crate::physics::identification::fit_line;
 use crate::plan::{Datum, Interval, Plan};
 use crate::rig::{Identity, Reading, Rig};
@@ -38,7 +38,7 @@ pub fn probe(rig: &mut dyn Rig, plan: &Plan) -> Result<Exit, Failure> {
             .as_real()
             .is_some_and(|link| link.datum != Datum::Machine)
     });
-    give(&report(&identity, &axes, plan, datum.as_deref()))?;
+    print_result(&report(&identity, &axes, plan, datum.as_deref()))?;
     let inside = |(place, axis): (usize, &Axis)| {
         let limits = plan.rig.limits_of(place, &plan.limits);
         limits.displacement.contains(axis.displacement.mean)

@@ -9,11 +9,11 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::write_made;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::Circumstances;
-use crate::cli::files::run_folder::{FolderShelf, RunFolder};
+use crate::cli::files::run_folder::{FolderSink, RunFolder};
 use crate::cli::files::{plan_file, provenance};
 use crate::cli::operator::real_rig;
 use crate::cli::operator::watch::{Attendance, Signals, Watcher};
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::Folder;
 use crate::plan::{Link, Plan};
@@ -181,27 +181,25 @@ impl Served {
         } = self;
         let drift = recorded.record.drift.as_ref();
         let kept = Folder::digests(folder.path())?.kept();
-        let shelf = FolderShelf::new(folder.path());
+        let sink = FolderSink::new(folder.path());
         if let Outcome::NotReleased { reason } = &recorded.record.outcome {
-            tell(&format!("  NOT RELEASED: {}\n", escape(reason)));
-            write_made(shelf, &kept, |_| Ok(Vec::new()))?;
+            print_message(&format!("  NOT RELEASED: {}\n", escape(reason)));
+            write_made(sink, &kept, |_| Ok(Vec::new()))?;
         } else {
-            write_made(shelf, &kept, |shelf| {
-                report::put_driven(&steps, drift, shelf)
-            })?;
+            write_made(sink, &kept, |sink| report::put_driven(&steps, drift, sink))?;
         }
         for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
             let note = settings.paint_note("  note:");
-            tell(&format!(
+            print_message(&format!(
                 "{note} {}: what was read decides nothing\n",
                 escape(&beyond.reason)
             ));
         }
-        tell(&format!("  {}\n", folder.path().display()));
+        print_message(&format!("  {}\n", folder.path().display()));
         door.map_err(|error| listening(arguments, &error))?;
         told?;
         if let Some(fault) = &recorded.fault {
-            tell(&format!(
+            print_message(&format!(
                 "  the record could not be kept to its end: {fault}\n"
             ));
             exit = exit.max(Exit::Fault);
@@ -257,19 +255,19 @@ fn on_record(
         Driver::Client,
         &mut |specimen| {
             if !door.address.ip().is_loopback() {
-                tell(&open_door(door.address, settings));
+                print_message(&open_door(door.address, settings));
             }
             // Who started this program waits for the line.
-            told = give(&format!(
+            told = print_result(&format!(
                 "ready: {} on {}\n",
                 arguments.protocol.name(),
                 door.address
             ));
             let mut tell_event = |event: Event<'_>| match event {
-                Event::Connected(client) => tell(&format!("  {client} is connected\n")),
+                Event::Connected(client) => print_message(&format!("  {client} is connected\n")),
                 Event::Ended(session) => {
                     exit = exit.max(exit_of(session));
-                    let given = give(&summary(session));
+                    let given = print_result(&summary(session));
                     told = std::mem::replace(&mut told, Ok(())).and(given);
                 }
             };

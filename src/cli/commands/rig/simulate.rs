@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::cli::args::SimulateArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::emulator::lines::real_time::{Carrier, Until, serve};
 use crate::emulator::{Log, PseudoTerminal, Script, Stand, TcpLine, of_plan};
@@ -46,14 +46,14 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
         .map_err(|error| unfit(error.to_string()))?;
 
     for (name, device) in devices(plan) {
-        tell(&escape(&format!(
+        print_message(&escape(&format!(
             "  {name} of `{}`: {} at {}\n",
             plan.rig.name,
             device.dialect.name(),
             device.port
         )));
     }
-    tell("  stands in until Ctrl-C\n");
+    print_message("  stands in until Ctrl-C\n");
     let until = Until {
         last_host_left: arguments.once,
         stopped: &|| stopped.load(Ordering::Relaxed),
@@ -132,12 +132,12 @@ fn end(
 ) -> Result<Exit, Failure> {
     let sound = stand.end();
     let (moves, violations) = (stand.bench().moves().len(), stand.bench().violations());
-    tell(&format!(
+    print_message(&format!(
         "  {moves} moves, {} targets outside the limits\n",
         violations.len()
     ));
     for target in violations.iter().take(20) {
-        tell(&format!("  outside: {} mm\n", target * 1e3));
+        print_message(&format!("  outside: {} mm\n", target * 1e3));
     }
     if let Some(error) = stand.log_failure() {
         return Err(Failure::file(

@@ -1,26 +1,27 @@
-//! Numbers that a person types at a command, with their units as the language writes them. In: text. Out: SI, or what to write.
+//! Numbers that the operator types, with units as the language writes them. In: a string. Out: SI, or an error with an example.
 
 use crate::cli::exit::Failure;
 use crate::units::Dimension;
 use crate::units::unit;
 
-/// A place for every axis, m: `1 mm`, or `1 mm, 2 mm` of two.
-pub fn places(text: &str, axes: usize, what: &str) -> Result<Vec<f64>, Failure> {
+/// A position for every axis \[m\]: `1 mm`, or `1 mm, 2 mm` for two axes.
+pub fn positions(text: &str, axes: usize, what: &str) -> Result<Vec<f64>, Failure> {
     let example = vec!["1 mm"; axes].join(", ");
-    let places = text
+    let positions = text
         .split(',')
-        .map(|place| number(place, Dimension::LENGTH, what, &example))
+        .map(|position| number(position, Dimension::LENGTH, what, &example))
         .collect::<Result<Vec<_>, _>>()?;
-    if places.len() == axes {
-        return Ok(places);
+    if positions.len() == axes {
+        return Ok(positions);
     }
-    Err(
-        Failure::command_line(format!("{what}: {} places for {axes} axes", places.len()))
-            .help(format!("write it as {example}")),
-    )
+    Err(Failure::command_line(format!(
+        "{what}: {} places for {axes} axes",
+        positions.len()
+    ))
+    .help(format!("write it as {example}")))
 }
 
-/// Time from one reading to the next, s.
+/// Time from one reading to the next \[s\].
 pub fn every(text: &str) -> Result<f64, Failure> {
     let every = number(text, Dimension::TIME, "--every", "0.5 s")?;
     if (0.01..=60.0).contains(&every) {
@@ -63,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_has_its_unit_and_is_a_number() {
+    fn a_position_is_a_number_with_a_unit() {
         let place = |text| number(text, Dimension::LENGTH, "--to", "1 mm").ok();
         assert_eq!(place("1 mm"), Some(1e-3));
         assert_eq!(place(" -2.5e1  um "), Some(-2.5e1 * 1e-6));
@@ -75,15 +76,15 @@ mod tests {
     }
 
     #[test]
-    fn every_axis_has_its_place() {
-        assert_eq!(places("1 mm", 1, "--to").ok(), Some(vec![1e-3]));
+    fn every_axis_has_its_position() {
+        assert_eq!(positions("1 mm", 1, "--to").ok(), Some(vec![1e-3]));
         assert_eq!(
-            places("1 mm, -2 mm", 2, "--to").ok(),
+            positions("1 mm, -2 mm", 2, "--to").ok(),
             Some(vec![1e-3, -2e-3])
         );
         for (text, axes) in [("1 mm", 2), ("1 mm, 2 mm", 1), ("1 mm,", 2), ("", 1)] {
             assert_eq!(
-                places(text, axes, "--to").unwrap_err().exit().code(),
+                positions(text, axes, "--to").unwrap_err().exit().code(),
                 2,
                 "{text}"
             );

@@ -12,7 +12,7 @@ use std::path::Path;
 use crate::cli::args::{Format, TestArguments};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::loader::plain;
-use crate::cli::output::{give, tell};
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::golden::{self, Report, console};
 use cases::Case;
@@ -39,7 +39,7 @@ pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failu
             .collect(),
     };
     if human {
-        tell(&console::closing(&report));
+        print_message(&console::closing(&report));
     }
     if let Some(path) = &arguments.junit {
         let text =
@@ -47,9 +47,9 @@ pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failu
         std::fs::write(path, text).map_err(|error| Failure::file(path, plain(&error)))?;
     }
     if arguments.tap {
-        give(&golden::tap(&report))?;
+        print_result(&golden::tap(&report))?;
     } else if arguments.format == Format::Json {
-        give(&golden::json::text(&report))?;
+        print_result(&golden::json::text(&report))?;
     }
     Ok(if report.good() == report.tested.len() {
         Exit::Met
@@ -66,7 +66,7 @@ fn list(cases: &[Case]) -> Result<Exit, Failure> {
         } else {
             ""
         };
-        give(&format!("{}{note}\n", case.name))?;
+        print_result(&format!("{}{note}\n", case.name))?;
     }
     Ok(Exit::Met)
 }

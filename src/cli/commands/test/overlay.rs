@@ -67,13 +67,13 @@ fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
                 label: label("this run", new),
                 points: new.line(),
                 dots: new.dots,
-                place: Some(2 * place),
+                run: Some(2 * place),
             });
             curves.push(Curve {
                 label: label("blessed", old),
                 points: old.line(),
                 dots: new.dots,
-                place: Some(2 * place + 1),
+                run: Some(2 * place + 1),
             });
         }
         if !curves.is_empty() {
@@ -143,7 +143,7 @@ fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> 
                 label,
                 points,
                 dots: false,
-                place: Some(0),
+                run: Some(0),
             }];
             sheets.push((
                 format!("{table}_{column}_difference"),
@@ -159,13 +159,13 @@ fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> 
                 label: "this run".to_owned(),
                 points: new,
                 dots: false,
-                place: Some(0),
+                run: Some(0),
             },
             Curve {
                 label: "blessed".to_owned(),
                 points: old,
                 dots: false,
-                place: Some(1),
+                run: Some(1),
             },
         ];
         sheets.push((format!("{table}_{column}"), Curves { x, y, curves }));

@@ -14,7 +14,7 @@ use crate::cli::exit::Failure;
 use crate::cli::files::accepted::truth_of;
 use crate::cli::files::golden_run;
 use crate::cli::files::golden_run::Extent;
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::golden::{Outcome, Tested, compare, console};
 
@@ -40,8 +40,8 @@ impl Trials<'_> {
             Failure::command_line(format!("no threads to run plans on: {error}"))
         })?;
         let first_bad = AtomicUsize::new(usize::MAX);
-        let teller = Teller {
-            told: Mutex::new((0, BTreeMap::new())),
+        let printer = Printer {
+            pending: Mutex::default(),
             trials: self,
             cases,
             first_bad: &first_bad,
@@ -60,7 +60,7 @@ impl Trials<'_> {
                 name: case.name.clone(),
                 outcome,
             };
-            teller.tell(index, tested.clone());
+            printer.print(index, tested.clone());
             tested
         };
         let mut tested: Vec<Tested> =
@@ -113,36 +113,43 @@ impl Trials<'_> {
     }
 }
 
-/// Tells outcomes in the order of the cases, whatever order they end in.
-struct Teller<'a, 'b> {
-    /// The next to tell, and those that wait for it.
-    told: Mutex<(usize, BTreeMap<usize, Tested>)>,
+/// Prints outcomes in the order of the cases, as soon as all earlier ones are known.
+struct Printer<'a, 'b> {
+    pending: Mutex<Pending>,
     trials: &'a Trials<'b>,
     cases: &'a [Case],
     first_bad: &'a AtomicUsize,
 }
 
-impl Teller<'_, '_> {
-    fn tell(&self, index: usize, tested: Tested) {
+/// Outcomes that wait for an earlier one.
+#[derive(Default)]
+struct Pending {
+    /// Index of the next case to print.
+    next: usize,
+    outcomes: BTreeMap<usize, Tested>,
+}
+
+impl Printer<'_, '_> {
+    fn print(&self, index: usize, tested: Tested) {
         if !self.trials.human {
             return;
         }
-        let mut told = self.told.lock().expect("nobody panics while telling");
-        told.1.insert(index, tested);
+        let mut pending = self.pending.lock().expect("no panic while printing");
+        pending.outcomes.insert(index, tested);
         loop {
-            let next = told.0;
-            let Some(mut tested) = told.1.remove(&next) else {
+            let next = pending.next;
+            let Some(mut tested) = pending.outcomes.remove(&next) else {
                 break;
             };
-            if self.trials.arguments.fail_fast && self.first_bad.load(Ordering::SeqCst) < told.0 {
+            if self.trials.arguments.fail_fast && self.first_bad.load(Ordering::SeqCst) < next {
                 tested.outcome = Outcome::NotRun;
             }
-            tell(&console::told(&tested, self.trials.settings.color));
+            print_message(&console::told(&tested, self.trials.settings.color));
             if matches!(tested.outcome, Outcome::Differs(_)) {
-                let folder = failures::folder(&self.trials.arguments.out, &self.cases[told.0]);
-                tell(&format!("  see {}\n", folder.display()));
+                let folder = failures::folder(&self.trials.arguments.out, &self.cases[next]);
+                print_message(&format!("  see {}\n", folder.display()));
             }
-            told.0 += 1;
+            pending.next += 1;
         }
     }
 }

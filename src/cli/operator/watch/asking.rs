@@ -4,7 +4,7 @@
 use super::Stay;
 use super::typed::{Heard, Typed};
 use crate::cli::operator::question::{After, Choice, Kind, Question, WHY_RESUME};
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::rig::Wish;
 use crate::run::Inspection;
 use crate::text::diagnostic::excerpt::escape;
@@ -48,7 +48,7 @@ impl Person {
         match self.typed().hear() {
             Heard::Nothing => Inspection::Wait,
             Heard::Ready => {
-                tell(&prompt(kind));
+                print_message(&prompt(kind));
                 Inspection::Wait
             }
             Heard::Line(line) => self.heard(&line, operator),
@@ -109,13 +109,13 @@ impl Person {
     /// Shows what may be chosen, or looks for the choice.
     fn choose(&mut self, after: After, told: &[String]) {
         if ![State::Choosing(after), State::Resuming(after)].contains(&self.state) {
-            tell(&format!("\n  {}\n", told.join("\n  ")));
+            print_message(&format!("\n  {}\n", told.join("\n  ")));
             self.typed().begin();
             self.state = State::Choosing(after);
         }
         match self.typed().hear() {
             Heard::Nothing => {}
-            Heard::Ready => tell(&choices(after)),
+            Heard::Ready => print_message(&choices(after)),
             Heard::End => self.leave(),
             Heard::Line(line) if self.state == State::Resuming(after) => {
                 match escape(line.trim()) {
@@ -128,12 +128,12 @@ impl Person {
                 Some(Choice::Leave) => self.leave(),
                 Some(Choice::Unload) => self.unload = true,
                 Some(Choice::Resume) => {
-                    tell(&format!(
+                    print_message(&format!(
                         "  {WHY_RESUME}\n  type the reason, or nothing: back > "
                     ));
                     self.state = State::Resuming(after);
                 }
-                None => tell(&format!("  {}\n{}", told.join("\n  "), choices(after))),
+                None => print_message(&format!("  {}\n{}", told.join("\n  "), choices(after))),
             },
         }
     }
@@ -143,7 +143,7 @@ impl Person {
     }
 
     fn show(&mut self, question: &Question) {
-        tell(&shown(question));
+        print_message(&shown(question));
         self.typed().begin();
     }
 
@@ -166,7 +166,7 @@ impl Person {
                     self.remark = Some(escape(remark));
                 }
                 let Some(yes) = kind.answer(line) else {
-                    tell(&prompt(kind));
+                    print_message(&prompt(kind));
                     return Inspection::Wait;
                 };
                 (kind, yes)
@@ -174,7 +174,7 @@ impl Person {
             _ => return Inspection::Wait,
         };
         let Some(by) = operator.clone() else {
-            tell("  your name? ");
+            print_message("  your name? ");
             self.state = State::Naming(kind, yes);
             return Inspection::Wait;
         };
@@ -246,14 +246,14 @@ pub fn agrees<E>(
     wish: &Wish,
     mut meanwhile: impl FnMut() -> Result<(), E>,
 ) -> Result<bool, E> {
-    tell(&shown(question));
+    print_message(&shown(question));
     typed.begin();
     loop {
         match typed.hear() {
-            Heard::Ready => tell(&prompt(question.kind)),
+            Heard::Ready => print_message(&prompt(question.kind)),
             Heard::Line(line) => match question.kind.answer(&line) {
                 Some(yes) => return Ok(yes),
-                None => tell(&prompt(question.kind)),
+                None => print_message(&prompt(question.kind)),
             },
             Heard::End => return Ok(false),
             Heard::Nothing if wish.wants_end() => return Ok(false),
@@ -264,405 +264,4 @@ pub fn agrees<E>(
 }
 
 #[cfg(test)]
-mod tests {
-    use std::cell::Cell;
-    use std::rc::Rc;
-    use std::sync::mpsc::{Sender, channel};
-    use std::time::Duration;
-
-    use super::*;
-
-    /// A clock that a test sets, a person whose lines it types.
-    struct Bench {
-        now: Rc<Cell<Duration>>,
-        send: Option<Sender<String>>,
-        person: Person,
-    }
-
-    impl Bench {
-        fn new() -> Self {
-            let (now, (send, lines)) = (Rc::new(Cell::new(Duration::ZERO)), channel());
-            let clock = Rc::clone(&now);
-            let typed = Typed::of(lines, Box::new(move || clock.get()));
-            Self {
-                now,
-                send: Some(send),
-                person: Person {
-                    typed: Some(typed),
-                    ..Person::default()
-                },
-            }
-        }
-
-        fn types(&self, line: &str) {
-            self.send.as_ref().unwrap().send(line.to_owned()).unwrap();
-        }
-    }
-
-    const LOOK: Kind = Kind::Look;
-
-    fn question(kind: Kind) -> Question {
-        Question {
-            kind,
-            lines: vec!["look".to_owned()],
-        }
-    }
-
-    /// What comes of these lines, typed once the question can be answered, and then the end of the input.
-    fn said(kind: Kind, lines: &[&str], operator: Option<&str>) -> Inspection {
-        let mut bench = Bench::new();
-        let mut operator = operator.map(str::to_owned);
-        assert_eq!(
-            bench.person.ask(&question(kind), &mut operator),
-            Inspection::Wait
-        );
-        bench.now.set(Duration::from_secs(1));
-        assert_eq!(
-            bench.person.ask(&question(kind), &mut operator),
-            Inspection::Wait
-        );
-        for line in lines {
-            bench.types(line);
-        }
-        bench.send = None;
-        loop {
-            match bench.person.ask(&question(kind), &mut operator) {
-                Inspection::Wait => {}
-                answer => return answer,
-            }
-        }
-    }
-
-    #[test]
-    fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
-        let by = |name: &str| Some(name.to_owned());
-        assert_eq!(
-            said(LOOK, &["y"], Some("A")),
-            Inspection::GoOn {
-                note: None,
-                by: by("A")
-            }
-        );
-        assert_eq!(
-            said(LOOK, &["yes"], Some("A")),
-            Inspection::GoOn {
-                note: None,
-                by: by("A")
-            }
-        );
-        let note = Some("crack at\\u{7} midspan".to_owned());
-        let lines = ["what", "i crack at\u{7} midspan ", "yes", "", "B"];
-        assert_eq!(
-            said(LOOK, &lines, None),
-            Inspection::GoOn { note, by: by("B") }
-        );
-        assert!(matches!(
-            said(LOOK, &["no"], Some("A")),
-            Inspection::Stop { by: Some(_), .. }
-        ));
-        let released = said(
-            Kind::Release,
-            &["y", "yes", "xyz", "release", "RELEASE"],
-            Some("A"),
-        );
-        assert_eq!(
-            released,
-            Inspection::GoOn {
-                note: None,
-                by: by("A")
-            }
-        );
-        for none in ["y", "yes", "xyz", "release", "UNLOAD", "y RELEASE"] {
-            assert!(
-                matches!(
-                    said(Kind::Release, &[none], Some("A")),
-                    Inspection::Stop { by: None, .. }
-                ),
-                "{none}"
-            );
-        }
-        let declined = Inspection::Stop {
-            reason: "declined by the operator: not clear".to_owned(),
-            by: by("A"),
-        };
-        assert_eq!(
-            said(Kind::Release, &["i not clear", "n"], Some("A")),
-            declined
-        );
-    }
-
-    #[test]
-    fn a_release_typed_before_its_question_could_be_read_is_none() {
-        let mut bench = Bench::new();
-        let mut operator = Some("A".to_owned());
-        let mut ask = |bench: &mut Bench| bench.person.ask(&question(Kind::Release), &mut operator);
-        bench.types("RELEASE");
-        assert_eq!(ask(&mut bench), Inspection::Wait);
-        bench.types("RELEASE");
-        bench.now.set(Duration::from_millis(999));
-        assert_eq!(ask(&mut bench), Inspection::Wait);
-        bench.types("RELEASE");
-        bench.now.set(Duration::from_secs(1));
-        assert_eq!(
-            [ask(&mut bench), ask(&mut bench)],
-            [Inspection::Wait, Inspection::Wait]
-        );
-        bench.types("RELEASE");
-        assert!(matches!(ask(&mut bench), Inspection::GoOn { .. }));
-    }
-
-    #[test]
-    fn the_next_question_takes_no_line_of_the_one_before() {
-        let mut bench = Bench::new();
-        let mut operator = Some("A".to_owned());
-        let mut ask = |bench: &mut Bench, kind| bench.person.ask(&question(kind), &mut operator);
-        ask(&mut bench, Kind::Release);
-        bench.now.set(Duration::from_secs(1));
-        ask(&mut bench, Kind::Release);
-        bench.types("RELEASE");
-        bench.types("RELEASE");
-        assert!(matches!(
-            ask(&mut bench, Kind::Release),
-            Inspection::GoOn { .. }
-        ));
-        assert_eq!(
-            [ask(&mut bench, Kind::GoOn), ask(&mut bench, Kind::GoOn)],
-            [Inspection::Wait, Inspection::Wait]
-        );
-        bench.now.set(Duration::from_secs(2));
-        assert_eq!(
-            [ask(&mut bench, Kind::GoOn), ask(&mut bench, Kind::GoOn)],
-            [Inspection::Wait, Inspection::Wait]
-        );
-        bench.types("RELEASE");
-        assert!(matches!(
-            ask(&mut bench, Kind::GoOn),
-            Inspection::GoOn { .. }
-        ));
-    }
-
-    const HELD: After = After::Held {
-        resume: true,
-        unload: false,
-    };
-
-    /// Before a rig that holds, and what may be typed can be.
-    fn held(operator: Option<&str>) -> (Bench, Option<String>) {
-        let (mut bench, mut operator) = (Bench::new(), operator.map(str::to_owned));
-        bench.types("x");
-        for _ in 0..2 {
-            let answer = bench
-                .person
-                .ask_to_unload(&question(Kind::Unload), &[], &mut operator);
-            assert_eq!(answer, Some(Inspection::Wait));
-            bench.now.set(bench.now.get() + Duration::from_secs(1));
-        }
-        (bench, operator)
-    }
-
-    /// What comes of these lines before it, each question of which can be answered.
-    fn typed_before_it(
-        bench: &mut Bench,
-        operator: &mut Option<String>,
-        lines: &[&str],
-    ) -> Option<Inspection> {
-        let mut answer = Some(Inspection::Wait);
-        for line in lines {
-            bench.types(line);
-            // The line, what it shows, the second that is not heard.
-            for _ in 0..3 {
-                answer = bench
-                    .person
-                    .ask_to_unload(&question(Kind::Unload), &[], operator);
-                bench.now.set(bench.now.get() + Duration::from_secs(1));
-                if answer != Some(Inspection::Wait) {
-                    return answer;
-                }
-            }
-        }
-        answer
-    }
-
-    #[test]
-    fn a_held_rig_unloads_for_its_word_alone() {
-        let (mut bench, mut operator) = held(Some("A"));
-        let yes = typed_before_it(&mut bench, &mut operator, &["u", "UNLOAD"]);
-        assert!(
-            matches!(yes, Some(Inspection::GoOn { by: Some(_), .. })),
-            "{yes:?}"
-        );
-        assert_eq!(
-            bench.person.stay(HELD, &[]),
-            Stay::Wait,
-            "somebody still looks at it"
-        );
-        let all: [&[&str]; 7] = [
-            &["UNLOAD"],
-            &["u", "y"],
-            &["u", "RELEASE"],
-            &["u", "n"],
-            &["y"],
-            &["r"],
-            &["u", "n", "r", "", "UNLOAD"],
-        ];
-        for lines in all {
-            let (mut bench, mut operator) = held(Some("A"));
-            assert_eq!(
-                typed_before_it(&mut bench, &mut operator, lines),
-                Some(Inspection::Wait),
-                "{lines:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn a_held_rig_is_left_or_gone_on_with_for_a_reason() {
-        let all: [(&[&str], Stay); 4] = [
-            (&["x"], Stay::Leave),
-            (&["u", "n", "X"], Stay::Leave),
-            (
-                &["r", " it looks well "],
-                Stay::Resume("it looks well".to_owned()),
-            ),
-            (&["r", "", "r", "now"], Stay::Resume("now".to_owned())),
-        ];
-        for (lines, chosen) in all {
-            let (mut bench, mut operator) = held(Some("A"));
-            assert_eq!(
-                typed_before_it(&mut bench, &mut operator, lines),
-                None,
-                "{lines:?}"
-            );
-            assert_eq!(bench.person.stay(HELD, &[]), chosen, "{lines:?}");
-        }
-        for lines in [&[][..], &["u"], &["r"]] {
-            let (mut bench, mut operator) = held(Some("A"));
-            typed_before_it(&mut bench, &mut operator, lines);
-            bench.send = None;
-            assert_eq!(
-                typed_before_it(&mut bench, &mut operator, &[]),
-                Some(Inspection::Wait)
-            );
-            assert_eq!(
-                bench
-                    .person
-                    .ask_to_unload(&question(Kind::Unload), &[], &mut operator),
-                None,
-                "{lines:?}"
-            );
-            assert_eq!(
-                bench.person.stay(HELD, &[]),
-                Stay::Leave,
-                "the end of the input"
-            );
-        }
-    }
-
-    #[test]
-    fn a_rig_that_may_still_move_waits_until_that_has_been_seen() {
-        let mut bench = Bench::new();
-        let stay =
-            |bench: &mut Bench, after| bench.person.stay(after, &["NOT CONFIRMED HELD".to_owned()]);
-        bench.types("a");
-        assert_eq!(stay(&mut bench, After::NotHeld), Stay::Wait);
-        bench.now.set(Duration::from_secs(1));
-        assert_eq!(
-            stay(&mut bench, After::NotHeld),
-            Stay::Wait,
-            "what was typed before"
-        );
-        for line in ["r", "u", "x", ""] {
-            bench.types(line);
-            assert_eq!(stay(&mut bench, After::NotHeld), Stay::Wait, "{line:?}");
-        }
-        bench.types("a");
-        assert_eq!(
-            [
-                stay(&mut bench, After::NotHeld),
-                stay(&mut bench, After::NotHeld)
-            ],
-            [Stay::Leave, Stay::Leave]
-        );
-        // Left while it was held.
-        let (mut bench, mut operator) = held(None);
-        assert_eq!(typed_before_it(&mut bench, &mut operator, &["x"]), None);
-        assert_eq!(
-            [stay(&mut bench, HELD), stay(&mut bench, After::NotHeld)],
-            [Stay::Leave, Stay::Wait]
-        );
-    }
-
-    #[test]
-    fn a_line_ends_with_the_input_and_with_ctrl_c() {
-        let typed = || {
-            let (send, lines) = channel();
-            (send, Typed::of(lines, Box::new(|| Duration::ZERO)))
-        };
-        let wish = Wish::default();
-        let (send, mut lines) = typed();
-        send.send("y".to_owned()).unwrap();
-        drop(send);
-        let line = |typed: &mut Typed| next_line(typed, &wish, || Ok::<_, ()>(()));
-        assert_eq!(line(&mut lines), Ok(Some("y".to_owned())));
-        assert_eq!(line(&mut lines), Ok(None));
-        let (kept, mut lines) = typed();
-        wish.stop_after_step();
-        assert_eq!(line(&mut lines), Ok(None), "Ctrl-C while a question waits");
-        let wish = Wish::default();
-        let mut looks = 0;
-        let heard = next_line(&mut lines, &wish, || {
-            looks += 1;
-            if looks == 3 {
-                kept.send("late".to_owned())
-            } else {
-                Ok(())
-            }
-        });
-        assert_eq!(
-            (heard, looks),
-            (Ok(Some("late".to_owned())), 3),
-            "the rig is heard from while a person thinks"
-        );
-        let (_kept, mut lines) = typed();
-        assert_eq!(
-            next_line(&mut lines, &wish, || Err("it trips")),
-            Err("it trips")
-        );
-    }
-
-    #[test]
-    fn one_move_by_hand_wants_its_word() {
-        for (typed, moves) in [(&["y", "MOVE"][..], true), (&["n"], false), (&["y"], false)] {
-            let (send, lines) = channel();
-            let now = Rc::new(Cell::new(Duration::ZERO));
-            let clock = Rc::clone(&now);
-            let mut lines = Typed::of(lines, Box::new(move || clock.get()));
-            send.send("MOVE".to_owned()).unwrap();
-            let mut send = Some(send);
-            let mut looks = 0;
-            let agreed = agrees(&mut lines, &question(Kind::Jog), &Wish::default(), || {
-                looks += 1;
-                if looks == 1 {
-                    now.set(Duration::from_secs(1));
-                } else if looks == 2 {
-                    let send = send.take().unwrap();
-                    for line in typed {
-                        send.send((*line).to_owned()).unwrap();
-                    }
-                }
-                Ok::<_, ()>(())
-            });
-            assert_eq!(agreed, Ok(moves), "{typed:?}");
-        }
-    }
-
-    #[test]
-    fn the_end_of_the_input_is_no_yes() {
-        for lines in [&[][..], &["yesterday"], &["y"], &["y", " "]] {
-            assert!(
-                matches!(said(LOOK, lines, None), Inspection::Stop { by: None, .. }),
-                "{lines:?}"
-            );
-        }
-    }
-}
+mod tests;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::record::{Event, EventKind};
 use crate::run::{Inspection, Observer, StepReport};
 use crate::text::diagnostic::excerpt::escape;
@@ -142,7 +142,7 @@ impl Observer for Lines {
     }
 
     fn procedure_finished(&mut self, name: &str) {
-        tell(&self.line(name));
+        print_message(&self.line(name));
     }
 
     fn inspect(&mut self, _: &str) -> Inspection {
@@ -152,7 +152,7 @@ impl Observer for Lines {
     fn event(&mut self, event: &Event) {
         // Remarks are for the report; it has them.
         if event.kind != EventKind::Remark {
-            tell(&format!("  {}\n", escape(&event.text).replace('\n', " ")));
+            print_message(&format!("  {}\n", escape(&event.text).replace('\n', " ")));
         }
     }
 }

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use signal_hook::consts::{SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXFSZ};
 use signal_hook::iterator;
 
-use crate::cli::output::tell;
+use crate::cli::output::print_message;
 use crate::rig::Wish;
 
 /// Signals are caught as long as this lives. Afterwards they do nothing: what a run leaves is still being written. One for all
@@ -60,8 +60,8 @@ impl Signals {
                 become_wish(&theirs, signal);
                 match tells.load(Ordering::SeqCst) {
                     SILENT => {}
-                    ON_A_TERMINAL => tell(&format!("{CLEARED}  {}\n", said(&theirs))),
-                    _ => tell(&format!("  {}\n", said(&theirs))),
+                    ON_A_TERMINAL => print_message(&format!("{CLEARED}  {}\n", said(&theirs))),
+                    _ => print_message(&format!("  {}\n", said(&theirs))),
                 }
             }
         });

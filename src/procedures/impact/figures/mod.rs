@@ -122,7 +122,7 @@ pub(crate) fn shared(kind: FigureKind, history: &ImpactHistory) -> Option<Shared
     let points = points(kind, history)?;
     let over_time = |name, dimension| (Quantity::time(), Quantity::of(name, dimension));
     let (length, force, velocity) = (Dimension::LENGTH, Dimension::FORCE, Dimension::VELOCITY);
-    let ((x, y), words) = match kind {
+    let ((x, y), caption) = match kind {
         FigureKind::Displacement => (
             over_time("Displacement X", length),
             "displacement of the structure against virtual time",
@@ -151,7 +151,7 @@ pub(crate) fn shared(kind: FigureKind, history: &ImpactHistory) -> Option<Shared
     Some(SharedCurve {
         x,
         y,
-        words,
+        caption,
         points,
     })
 }

@@ -8,8 +8,8 @@ use crate::plan::{Contact, Impact, Integrator, PointTarget, ProcedureKind};
 use crate::procedures;
 use crate::procedures::stepping::energy;
 use crate::record::{ImpactHistory, ProcedureRecord};
-use crate::report::content::method;
 use crate::report::document::Block;
+use crate::report::sections::results::actuators;
 use crate::report::{Run, number};
 use crate::schema::procedures::{damping_sweep, impact as schema};
 use crate::units::Dimension;
@@ -144,7 +144,7 @@ fn method_note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut 
         return;
     };
     let mut sentences = vec![integrator(impact)];
-    sentences.extend(method::driven(
+    sentences.extend(actuators::motion(
         impact.stepping.i_modification,
         impact.stepping.mode,
     ));
@@ -175,7 +175,7 @@ fn integrator(impact: &Impact) -> String {
 
 fn tracking(history: &ImpactHistory) -> Option<String> {
     let (first, last) = (history.steps.first()?, history.steps.last()?);
-    Some(method::followed(
+    Some(actuators::tracking_error(
         last.tracking,
         last.tracking.share_of(first.energies.striker),
         "The actuator",

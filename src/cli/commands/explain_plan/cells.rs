@@ -1,0 +1,129 @@
+//! Cells of the tables of `check --explain`. In: SI values. Out: strings.
+
+use crate::plan::Interval;
+use crate::units::Dimension;
+use crate::units::display::{digits, join, readable, unit};
+
+/// A row of fixed strings.
+pub(super) fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
+    cells.map(str::to_owned).to_vec()
+}
+
+/// `0 .. 1.000 mm`: both ends in the unit of the larger one.
+pub(super) fn span(interval: Interval, dimension: Dimension) -> String {
+    let finite = |end: f64| if end.is_finite() { end.abs() } else { 0.0 };
+    let (unit, factor) = unit(finite(interval.low).max(finite(interval.high)), dimension);
+    let shown = |end: f64| digits(end, factor, dimension);
+    let text = match (interval.low.is_finite(), interval.high.is_finite()) {
+        (true, true) => format!("{} .. {}", shown(interval.low), shown(interval.high)),
+        (false, true) => format!("up to {}", shown(interval.high)),
+        (true, false) => format!("from {}", shown(interval.low)),
+        (false, false) => return "any".to_owned(),
+    };
+    join(&text, &unit)
+}
+
+/// The distance to the nearer end. An absolute value has an upper end only. An end of 0 at which the run rests is not counted.
+pub(super) fn margin(
+    name: &str,
+    allowed: Interval,
+    reached: Interval,
+    dimension: Dimension,
+) -> String {
+    let above = allowed.high - reached.high;
+    let below = reached.low - allowed.low;
+    let is_size = !["displacement", "force"].contains(&name);
+    let rests = |allowed: f64, reached: f64| allowed == 0.0 && reached == 0.0;
+    let (low, high) = (
+        !is_size && rests(allowed.low, reached.low),
+        rests(allowed.high, reached.high),
+    );
+    match (low, high) {
+        // Without a lower command the rig moves at its largest speed.
+        _ if name == "speed" && above == 0.0 => "none: as fast as allowed".to_owned(),
+        (true, true) => "none, and it rests there".to_owned(),
+        (true, false) => format!("{}; it begins at 0", readable(above, dimension)),
+        (false, true) if !is_size => format!("{}; it begins at 0", readable(below, dimension)),
+        _ if is_size => readable(above, dimension),
+        _ => readable(above.min(below), dimension),
+    }
+}
+
+/// The distance to the nearer end as a number, negative beyond it. An absolute value has an upper end only.
+pub(super) fn distance(name: &str, allowed: Interval, reached: Interval) -> f64 {
+    let above = allowed.high - reached.high;
+    if ["displacement", "force"].contains(&name) {
+        above.min(reached.low - allowed.low)
+    } else {
+        above
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_has_one_unit() {
+        assert_eq!(
+            span(
+                Interval {
+                    low: -2e-3,
+                    high: 25e-3
+                },
+                Dimension::LENGTH
+            ),
+            "−2.000 .. 25.00 mm"
+        );
+        assert_eq!(
+            span(
+                Interval {
+                    low: f64::NEG_INFINITY,
+                    high: 12e3
+                },
+                Dimension::FORCE
+            ),
+            "up to 12.00 kN"
+        );
+        assert_eq!(
+            span(
+                Interval {
+                    low: 0.0,
+                    high: 0.01
+                },
+                Dimension::NUMBER
+            ),
+            "0 .. 0.01000"
+        );
+    }
+
+    #[test]
+    fn a_limit_that_starts_at_zero_has_the_margin_of_its_other_end() {
+        let margin_of = |name, allowed: (f64, f64), reached: (f64, f64)| {
+            let interval = |(low, high)| Interval { low, high };
+            margin(
+                name,
+                interval(allowed),
+                interval(reached),
+                Dimension::LENGTH,
+            )
+        };
+        assert_eq!(
+            margin_of("displacement", (-1e-3, 0.1), (0.0, 0.04)),
+            "1.000 mm"
+        );
+        assert_eq!(
+            margin_of("displacement", (0.0, 0.1), (0.0, 0.04)),
+            "60.00 mm; it begins at 0"
+        );
+        assert_eq!(
+            margin_of("displacement", (-0.1, 0.0), (-0.04, 0.0)),
+            "60.00 mm; it begins at 0"
+        );
+        assert_eq!(margin_of("increment", (0.0, 5e-3), (0.0, 4e-3)), "1.000 mm");
+        assert_eq!(
+            margin_of("speed", (0.0, 0.02), (0.0, 0.02)),
+            "none: as fast as allowed"
+        );
+    }
+}

@@ -1,0 +1,130 @@
+//! The limits in `check --explain`: allowed range, range of the dry run, margin. In: a dry run. Out: rows, and the same as data.
+
+use super::DryRun;
+use super::cells::{distance, margin, row, span};
+use super::dry_rig::Reach;
+use crate::plan::formula::ResultValue;
+use crate::plan::{Interval, Limits};
+use crate::report::PredictedLimit;
+use crate::units::Dimension;
+use crate::units::display::si_unit;
+
+/// A limit with the range of the dry run.
+struct Reached {
+    /// Name of the field.
+    name: &'static str,
+    allowed: Interval,
+    dimension: Dimension,
+    /// None where nothing moved.
+    reached: Option<Interval>,
+}
+
+impl DryRun<'_> {
+    /// Every limit with the range of the dry run.
+    fn reached(&self, limits: &Limits) -> [Reached; 8] {
+        let range = |pick: fn(&Reach) -> Interval| {
+            let moved = self.reaches.iter().filter(|reach| reach.moved).map(pick);
+            moved.reduce(|a, b| Interval {
+                low: a.low.min(b.low),
+                high: a.high.max(b.high),
+            })
+        };
+        let absolute = |pick: fn(&Reach) -> f64| {
+            let largest = self
+                .reaches
+                .iter()
+                .filter(|reach| reach.moved)
+                .map(pick)
+                .reduce(f64::max);
+            largest.map(|high| Interval { low: 0.0, high })
+        };
+        limits.named().map(|(name, allowed, dimension)| {
+            let reached = match name {
+                "displacement" => range(|reach| reach.displacement),
+                "force" => range(|reach| reach.force),
+                "speed" => absolute(|reach| reach.speed),
+                "increment" => absolute(|reach| reach.increment),
+                "tracking_error" => absolute(|reach| reach.tracking_error),
+                error => self.largest(error),
+            };
+            Reached {
+                name,
+                allowed,
+                dimension,
+                reached,
+            }
+        })
+    }
+
+    /// The limits as the guard will apply them, as data.
+    pub(super) fn predicted_limits(&self) -> Vec<PredictedLimit> {
+        let finite = |end: f64| Some(end).filter(|end| end.is_finite());
+        let held = self
+            .reached(&self.plan.limits.held())
+            .into_iter()
+            .filter(|limit| limit.allowed.is_bounded());
+        let predicted = held.map(|limit| {
+            let reached = limit.reached;
+            PredictedLimit {
+                quantity: limit.name.to_owned(),
+                unit: si_unit(limit.dimension),
+                low: finite(limit.allowed.low),
+                high: finite(limit.allowed.high),
+                reached: reached
+                    .filter(|reached| reached.low.is_finite())
+                    .map(|reached| [reached.low, reached.high]),
+                margin: reached
+                    .and_then(|reached| finite(distance(limit.name, limit.allowed, reached))),
+            }
+        });
+        predicted.collect()
+    }
+
+    /// One row per limit: allowed range, range of the dry run, margin.
+    pub(super) fn limits(&self) -> Vec<Vec<String>> {
+        let mut rows = vec![row(["limit", "allowed", "reached", "margin"])];
+        for limit in self.reached(&self.plan.limits) {
+            let Reached {
+                name,
+                allowed,
+                dimension,
+                reached,
+            } = limit;
+            if allowed.is_bounded() {
+                let name = if name == "nrms_error" {
+                    "NRMS tracking error".to_owned()
+                } else {
+                    name.replace('_', " ")
+                };
+                let margin = reached.map_or_else(
+                    || "–".to_owned(),
+                    |reached| margin(&name, allowed, reached, dimension),
+                );
+                rows.push(vec![
+                    name,
+                    span(allowed, dimension),
+                    reached.map_or_else(|| "–".to_owned(), |reached| span(reached, dimension)),
+                    margin,
+                ]);
+            }
+        }
+        if rows.len() == 1 {
+            vec![row(["none: only a virtual rig may run this plan"])]
+        } else {
+            rows
+        }
+    }
+
+    /// Largest absolute value of a result over all procedures that have it.
+    fn largest(&self, result: &str) -> Option<Interval> {
+        let errors = self.record.procedures.iter().filter_map(|procedure| {
+            match procedure.result(result)?.value {
+                ResultValue::Number { value, .. } => value.map(f64::abs),
+                ResultValue::List(_) => None,
+            }
+        });
+        errors
+            .reduce(f64::max)
+            .map(|high| Interval { low: 0.0, high })
+    }
+}

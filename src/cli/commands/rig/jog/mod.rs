@@ -1,0 +1,268 @@
+//! `psd rig jog`: moves the rig by hand, inside the limits of the plan, through the guard, and only with the operator's consent.
+//! In: positions as the language writes them. Out: the readings at each end; for a real rig also a run folder with the record.
+
+mod session;
+
+use std::path::Path;
+
+use super::typed::{number, positions};
+use crate::cli::args::JogArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::finish_run::write_made;
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::Circumstances;
+use crate::cli::files::run_folder::{FolderSink, RunFolder};
+use crate::cli::files::{plan_file, provenance};
+use crate::cli::operator::real_rig;
+use crate::cli::operator::watch::{Attendance, Signals};
+use crate::cli::output::print_message;
+use crate::cli::settings::Settings;
+use crate::evidence::Folder;
+use crate::plan::{Datum, Link, Plan};
+use crate::report;
+use crate::rig::{Connected, Rig, Wish, connect, virtual_rig};
+use crate::run::Unwatched;
+use crate::run::remote_control::{Driver, Specimen};
+use crate::run::replay;
+use crate::run::replay::BY_HAND;
+use crate::units::Dimension;
+use crate::units::display::readable;
+use session::{JogSession, Person};
+
+/// Moves the rig; each move needs the consent of the operator.
+pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure> {
+    let attendance = Attendance {
+        yes: arguments.yes,
+        operator: arguments.operator.clone(),
+    };
+    let unattended = real_rig::unattended(&attendance, settings);
+    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
+    plan_file::show(&checked, &arguments.plan, settings);
+    let Some(plan) = &checked.plan else {
+        return Ok(Exit::Wrong);
+    };
+    if !settings.can_ask && (!arguments.yes || arguments.to.is_none()) {
+        return Err(
+            Failure::command_line("a move needs a yes, and nobody can be asked")
+                .help("give `--to` and `--yes`, or start it from a terminal"),
+        );
+    }
+    let wanted = Wanted {
+        to: arguments
+            .to
+            .as_deref()
+            .map(|to| positions(to, plan.degrees_of_freedom(), "--to"))
+            .transpose()?,
+        speed: arguments
+            .speed
+            .as_deref()
+            .map(|speed| number(speed, Dimension::VELOCITY, "--speed", "0.5 mm/s"))
+            .transpose()?,
+    };
+    let attendance = real_rig::named(attendance, plan)?;
+    let wish = Wish::default().letting_go(arguments.let_go);
+    let _signals = Signals::holding(&wish).map_err(Failure::Signals)?;
+    let by = real_rig::operator(plan, &attendance).unwrap_or_else(|| "somebody".to_owned());
+    let person = Person {
+        typed: None,
+        wish: &wish,
+        yes: arguments.yes,
+        by,
+    };
+    match plan.rig.link {
+        Link::Virtual(_) => on_a_virtual_rig(arguments, plan, &wanted, person, settings),
+        Link::Real(_) => {
+            let recorded = arguments
+                .datum
+                .as_deref()
+                .map(|run| datum_of(run, plan))
+                .transpose()?;
+            let rig = plan.rig.with_recorded_datum(recorded.as_deref());
+            let connected = connect(&rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let place = |fault: &str| plan_file::place_of_link(&checked, &arguments.plan, fault);
+            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
+            if !settings.can_ask && !connected.rig.identity().simulated {
+                return Err(Failure::command_line(
+                    "a real rig is not moved by hand without a person at a terminal",
+                )
+                .help("start it from a terminal"));
+            }
+            if recorded.is_none() {
+                without_load(plan, &mut connected.rig)?;
+            }
+            on_a_real_rig(
+                arguments,
+                plan,
+                &attendance,
+                connected,
+                &wanted,
+                person,
+                settings,
+            )
+        }
+    }
+}
+
+/// The zero of a recorded run in the coordinate of its rig, one value per axis \[m\].
+fn datum_of(run: &Path, plan: &Plan) -> Result<Vec<f64>, Failure> {
+    let read = record_file::read(run)?;
+    let of_this_rig = read.plan.rig.name == plan.rig.name;
+    let datum = read
+        .played
+        .rig
+        .filter(|_| of_this_rig)
+        .and_then(|rig| rig.datum);
+    datum.ok_or_else(|| {
+        Failure::command_line(format!(
+            "{}: its record says of no datum of rig `{}`",
+            run.display(),
+            plan.rig.name
+        ))
+    })
+}
+
+/// Refuses a rig whose zero is its present position while the specimen carries load: the limits would be shifted.
+fn without_load(plan: &Plan, rig: &mut dyn Rig) -> Result<(), Failure> {
+    let Some(link) = plan
+        .rig
+        .link
+        .as_real()
+        .filter(|link| link.datum == Datum::Here)
+    else {
+        return Ok(());
+    };
+    let found = rig.read().map_err(Failure::Rig)?;
+    let loaded = found
+        .force
+        .iter()
+        .enumerate()
+        .find(|(axis, force)| force.is_nan() || force.abs() > link.gate_of(*axis).zero);
+    let Some((_, force)) = loaded else {
+        return Ok(());
+    };
+    Err(Failure::command_line(format!(
+        "the specimen carries {}: where it stands is no zero to count from, and nothing moved",
+        readable(*force, Dimension::FORCE)
+    ))
+    .help("`--datum RUN` counts from the zero of the run that loaded it"))
+}
+
+/// The move of the command line, SI.
+struct Wanted {
+    /// Target position per axis; None where the operator types positions.
+    to: Option<Vec<f64>>,
+    speed: Option<f64>,
+}
+
+/// On a simulated rig no record is kept.
+fn on_a_virtual_rig(
+    arguments: &JogArguments,
+    plan: &Plan,
+    wanted: &Wanted,
+    person: Person<'_>,
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let circumstances = Circumstances {
+        served: Some(BY_HAND.to_owned()),
+        ..Circumstances::default()
+    };
+    let mut rig = virtual_rig(plan);
+    let device = record_file::device(rig.as_ref());
+    let header = record_file::header(
+        plan,
+        device,
+        &arguments.plan_settings,
+        &provenance::of(plan, arguments.plan_settings.date.as_deref()),
+        circumstances,
+    );
+    let journal = record_file::begin_nowhere(plan, &header)?;
+    let mut session = JogSession {
+        wanted,
+        plan,
+        identity: rig.identity(),
+        own_speed: rig.own_speed(),
+        person,
+        settings,
+        ended: None,
+    };
+    let mut drive = |specimen: &mut Specimen<'_, '_>| session.drive(specimen);
+    let wall = Box::new(|| None);
+    let (recorded, _) = replay::record_driven(
+        plan,
+        rig.as_mut(),
+        &mut Unwatched,
+        journal,
+        wall,
+        Driver::ByHand,
+        &mut drive,
+    );
+    session.end(&recorded.record.outcome)
+}
+
+/// On a real rig the moves are recorded: the history of a specimen before its test is evidence.
+fn on_a_real_rig(
+    arguments: &JogArguments,
+    plan: &Plan,
+    attendance: &Attendance,
+    mut connected: Connected,
+    wanted: &Wanted,
+    person: Person<'_>,
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let rig = &mut connected.rig;
+    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let circumstances = Circumstances {
+        served: Some(BY_HAND.to_owned()),
+        ..real_rig::circumstances(plan, attendance)
+    };
+    let provenance = provenance::of_real_run(
+        plan,
+        arguments.plan_settings.date.as_deref(),
+        &circumstances,
+    );
+    let header = record_file::header(
+        plan,
+        record_file::device(rig),
+        &arguments.plan_settings,
+        &provenance,
+        circumstances,
+    );
+    let journal = record_file::begin(folder.path(), plan, &header)?;
+    let mut session = JogSession {
+        wanted,
+        plan,
+        identity: rig.identity(),
+        own_speed: rig.own_speed(),
+        person,
+        settings,
+        ended: None,
+    };
+    let mut drive = |specimen: &mut Specimen<'_, '_>| session.drive(specimen);
+    let wall = real_rig::wall_clock();
+    let (recorded, steps) = replay::record_driven(
+        plan,
+        rig,
+        &mut Unwatched,
+        journal,
+        wall,
+        Driver::ByHand,
+        &mut drive,
+    );
+    drop(connected);
+    let kept = Folder::digests(folder.path())?.kept();
+    write_made(FolderSink::new(folder.path()), &kept, |sink| {
+        report::put_driven(&steps, None, sink)
+    })?;
+    print_message(&format!("  on record: {}\n", folder.path().display()));
+    if let Some(fault) = &recorded.fault {
+        print_message(&format!(
+            "  the record could not be kept to its end: {fault}\n"
+        ));
+    }
+    let exit = session.end(&recorded.record.outcome)?;
+    Ok(if recorded.fault.is_some() {
+        exit.max(Exit::Fault)
+    } else {
+        exit
+    })
+}

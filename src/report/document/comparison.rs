@@ -1,0 +1,87 @@
+//! A comparison as one HTML file that needs no other. In: the comparison, and its figures drawn. Out: text.
+
+use super::html::POLICY;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::golden::comparison::{Comparison, Row, TITLES, cells, heads};
+use crate::text::sanitize;
+
+const STYLE: &str = "body{font:15px/1.45 'DejaVu Sans',Verdana,sans-serif;color:#222;max-width:1100px;margin:2em auto;padding:0 1em}\
+h1{font-size:1.5em}h2{font-size:1.15em;margin-top:2em}table{border-collapse:collapse;font-variant-numeric:tabular-nums}\
+th,td{border-bottom:1px solid #ddd;padding:.25em .8em .25em 0;text-align:left;vertical-align:top}td.n{text-align:right;white-space:nowrap}\
+th.n{text-align:right}.pass{color:#046b3a}.fail,.error,.aborted{color:#a11}.inconclusive{color:#8a5a00}\
+figure{margin:1.5em 0}img{max-width:100%;height:auto}figcaption{color:#555}pre{background:#f5f5f5;padding:.8em;overflow-x:auto}\
+.wide{overflow-x:auto}@media print{body{margin:0;max-width:none}}";
+
+/// The page; `figures` are captions with PNG bytes.
+#[must_use]
+pub fn page(comparison: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
+    let runs = comparison.names.len();
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head { meta charset="utf-8"; meta http-equiv="Content-Security-Policy" content=(POLICY); meta name="viewport" content="width=device-width, initial-scale=1"; title { "Comparison of runs" } style { (PreEscaped(STYLE)) } }
+            body {
+                h1 { "Comparison of " (runs) " runs" }
+                table {
+                    tr { th { "" } th { "run" } th { "verdict" } }
+                    @for (index, (name, verdict)) in comparison.names.iter().zip(&comparison.verdicts).enumerate() {
+                        tr { td { (index + 1) } td { (name) } td class=(verdict) { (verdict) } }
+                    }
+                }
+                @for (title, rows) in TITLES.into_iter().zip([&comparison.shared, &comparison.partial]) { (results(title, rows, runs)) }
+                @if !comparison.requirements.is_empty() {
+                    h2 { "Requirements" }
+                    div class="wide" { table {
+                        (head(runs, &[]))
+                        @for (name, verdicts) in &comparison.requirements {
+                            tr { td { (name) } @for verdict in verdicts { @let word = verdict.as_deref().unwrap_or("—"); td class={ "n " (word) } { (word) } } }
+                        }
+                    } }
+                }
+                @if !comparison.facts.is_empty() {
+                    h2 { "What differs in plan, settings and rig" }
+                    div class="wide" { table {
+                        (head(runs, &[]))
+                        @for (what, texts) in &comparison.facts { tr { td { (what) } @for text in texts { td class="n" { (short(text)) } } } }
+                    } }
+                }
+                @for (name, lines) in &comparison.plans { h2 { "Plan of " (name) " against that of " (comparison.names[0]) } pre { (lines.join("\n")) } }
+                @if !figures.is_empty() {
+                    h2 { "Figures" }
+                    @for (caption, png) in figures {
+                        figure { img alt=(caption) src={ "data:image/png;base64," (STANDARD.encode(png)) }; figcaption { (caption) } }
+                    }
+                }
+            }
+        }
+    };
+    sanitize::page(&page.into_string())
+}
+
+fn head(runs: usize, more: &[&str]) -> Markup {
+    html! { tr { th { "" } @for run in 1..=runs { th class="n" { (run) } } @for head in more { th class="n" { (head) } } } }
+}
+
+fn results(title: &str, rows: &[Row], runs: usize) -> Markup {
+    html! {
+        @if !rows.is_empty() {
+            h2 { (title) }
+            div class="wide" { table {
+                (head(runs, heads(runs)))
+                @for row in rows { tr { td { (row.name) } @for cell in cells(row) { td class="n" { (cell) } } } }
+            } }
+        }
+    }
+}
+
+/// The first digits of a hash, and any other text in full.
+fn short(text: &str) -> String {
+    if text.len() == 64 && text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+        format!("{}…", &text[..12])
+    } else {
+        text.to_owned()
+    }
+}

@@ -1,0 +1,95 @@
+//! The fonts of the PDF, all part of the program. Out: each font, parsed once; `text::glyphs` lists their characters. No font of
+//! the machine is used, so that the same report has the same bytes everywhere.
+
+use std::sync::LazyLock;
+
+use typst::foundations::Bytes;
+use typst::text::{Font, FontBook};
+use typst::utils::LazyHash;
+
+/// The two fonts of the figures; the report uses them for letters that its text font lacks.
+pub(crate) static SANS: &[u8] = include_bytes!("DejaVuSans.ttf");
+pub(crate) static SANS_BOLD: &[u8] = include_bytes!("DejaVuSans-Bold.ttf");
+
+pub(super) struct Fonts {
+    fonts: Vec<Font>,
+    book: LazyHash<FontBook>,
+}
+
+/// Parsed when the first PDF is made.
+pub(super) static FONTS: LazyLock<Fonts> = LazyLock::new(|| {
+    /// Index of the fonts of the template among those of typst: Libertinus Serif in three cuts, DejaVu Sans Mono.
+    const NAMED: [usize; 4] = [0, 1, 2, 16];
+    let theirs = typst_assets::fonts()
+        .enumerate()
+        .filter(|(index, _)| NAMED.contains(index))
+        .map(|(_, font)| font);
+    let fonts: Vec<Font> = [SANS, SANS_BOLD]
+        .into_iter()
+        .chain(theirs)
+        .flat_map(|font| Font::iter(Bytes::new(font)))
+        .collect();
+    let book = LazyHash::new(FontBook::from_fonts(&fonts));
+    Fonts { fonts, book }
+});
+
+impl Fonts {
+    pub fn book(&self) -> &LazyHash<FontBook> {
+        &self.book
+    }
+
+    pub fn get(&self, index: usize) -> Option<Font> {
+        self.fonts.get(index).cloned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use typst::layout::Abs;
+    use typst::text::{FontInstance, FontVariant, FontVariations};
+
+    use super::{FONTS, Font};
+
+    #[test]
+    fn the_families_of_the_template_are_here() {
+        let families: Vec<String> = (0..6)
+            .map(|index| {
+                FONTS
+                    .get(index)
+                    .map_or_else(String::new, |font| font.info().family.clone())
+            })
+            .collect();
+        let serif = "Libertinus Serif";
+        assert_eq!(
+            families,
+            [
+                "DejaVu Sans",
+                "DejaVu Sans",
+                serif,
+                serif,
+                serif,
+                "DejaVu Sans Mono"
+            ]
+        );
+    }
+
+    #[test]
+    fn the_list_of_glyphs_is_that_of_the_fonts() {
+        let plain = |font: &Font| {
+            font.clone().instantiate(
+                FontVariant::default(),
+                Abs::pt(10.0),
+                &FontVariations::default(),
+            )
+        };
+        let instances: Vec<FontInstance> = FONTS.fonts.iter().map(plain).collect();
+        // The font has a shape for the character, not only an entry of its table.
+        let shape = |font: &FontInstance, c: char| {
+            font.ttf().glyph_index(c).is_some_and(|glyph| glyph.0 != 0)
+        };
+        let differ =
+            |c: &char| crate::text::glyphs::has(*c) != instances.iter().any(|font| shape(font, *c));
+        let differing: Vec<char> = ('\u{80}'..='\u{1ffff}').filter(differ).take(20).collect();
+        assert!(differing.is_empty(), "{differing:?}");
+    }
+}

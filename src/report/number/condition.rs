@@ -1,0 +1,272 @@
+//! Value, bound, margin and guard band of a condition, as a report prints them. In: the outcome of a condition. Out: strings.
+
+use super::uncertain::{decimals_of, parts, plus_minus, power_of, tens, with_uncertainty};
+use super::{join, join_typeset, text};
+use crate::plan::Comparison;
+use crate::uncertainty::Known;
+use crate::units::Dimension;
+use crate::units::display::{minus, significant, trimmed, unit};
+use crate::verdict::{Bound, ConditionOutcome};
+
+/// The value of a condition with its expanded uncertainty U, in percent where the plan wrote percent; with u in parentheses
+/// where its budget gives no U.
+pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
+    let value = condition.value?;
+    let (scale, percent) = if in_percent(condition) {
+        (100.0, "\u{a0}%")
+    } else {
+        (1.0, "")
+    };
+    let known = condition.known().filter(|known| known.standard > 0.0);
+    let known = known.map(|known| Known {
+        standard: scale * known.standard,
+        ..known
+    });
+    if let (Some(known), None) = (known, condition.conforms) {
+        return Some(
+            with_uncertainty(scale * value, Some(known.standard), condition.dimension) + percent,
+        );
+    }
+    let parts = parts(scale * value, known, condition.dimension);
+    Some(
+        match parts.expanded {
+            Some(expanded) => join_typeset(&plus_minus(&parts.value, &expanded), &parts.unit),
+            None => text(scale * value, condition.dimension),
+        } + percent,
+    )
+}
+
+/// The bound of a condition as mathematics: `≤ 8.5 mm`, `8.5 … 11.5 J`, `< 1 %`.
+pub(crate) fn bound(condition: &ConditionOutcome) -> String {
+    /// Digits of a computed bound.
+    const DIGITS: usize = 5;
+    let percent = in_percent(condition);
+    let (scale, percent) = if percent {
+        (100.0, "\u{a0}%")
+    } else {
+        (1.0, "")
+    };
+    let digits =
+        |value: f64, factor: f64| minus(&trimmed(&rounded(scale * value / factor, DIGITS)));
+    let number = |value: f64| {
+        let (unit, factor) = unit(value, condition.dimension);
+        join(&digits(value, factor), &unit) + percent
+    };
+    match condition.bound {
+        None => "—".to_owned(),
+        Some(Bound::Compare { comparison, limit }) => {
+            format!("{} {}", comparison_sign(comparison), number(limit))
+        }
+        Some(Bound::Within { target, tolerance }) => {
+            let (unit, factor) = unit(target, condition.dimension);
+            // A tolerance below a thousandth of the target is printed in its own unit.
+            if unit.is_empty() || (tolerance >= 1e-3 * target.abs() && target != 0.0) {
+                join(
+                    &between(scale * target / factor, scale * tolerance / factor),
+                    &unit,
+                ) + percent
+            } else {
+                format!("{} within {}", number(target), number(tolerance))
+            }
+        }
+    }
+}
+
+/// The ends of a tolerance interval, to the third digit of the tolerance where it has no more digits, else to the second.
+fn between(target: f64, tolerance: f64) -> String {
+    let power = power_of(target.abs().max(tolerance));
+    let by = 10.0_f64.powi(power);
+    let (target, tolerance) = (target / by, tolerance / by);
+    let third: f64 = format!("{tolerance:.2e}").parse().unwrap_or(tolerance);
+    let whole = (third - tolerance).abs() <= 1e-9 * tolerance;
+    let ends = [target - tolerance, target + tolerance];
+    let ends = match decimals_of(target, tolerance) {
+        Some(second) => {
+            let decimals = second + usize::from(whole);
+            let mut ends = ends.map(|number| format!("{number:.decimals$}"));
+            // Zeros at the end of both are removed.
+            while ends[0].contains('.')
+                && ends
+                    .iter()
+                    .all(|text| text.ends_with('0') || text.ends_with('.'))
+            {
+                ends = ends.map(|mut text| {
+                    text.pop();
+                    text
+                });
+            }
+            ends.map(|text| minus(&text))
+        }
+        None => ends.map(|number| minus(&trimmed(&significant(number, 6)))),
+    };
+    let [low, high] = ends;
+    if power == 0 {
+        format!("{low} … {high}")
+    } else {
+        format!("({low} … {high}){}", tens(power))
+    }
+}
+
+/// The margin of a condition in the unit of its value; None where there is no margin.
+pub(in crate::report) fn margin(condition: &ConditionOutcome) -> Option<String> {
+    condition.bound?;
+    condition.margin.map(|margin| distance(margin, condition))
+}
+
+/// The guard band of a condition in the unit of its value; None where there is none.
+pub(in crate::report) fn guard_band(condition: &ConditionOutcome) -> Option<String> {
+    condition.guard_band.map(|band| distance(band, condition))
+}
+
+fn distance(distance: f64, condition: &ConditionOutcome) -> String {
+    /// Digits of a distance to a limit: a difference has no more.
+    const DIGITS: usize = 3;
+    let (scale, percent) = if in_percent(condition) {
+        (100.0, "\u{a0}%")
+    } else {
+        (1.0, "")
+    };
+    // In the unit of the value, or in its own where that would give a row of zeros.
+    let beside = condition.value.filter(|value| {
+        distance == 0.0 || (distance / unit(*value, condition.dimension).1).abs() >= 1e-3
+    });
+    let (unit, factor) = unit(beside.unwrap_or(distance), condition.dimension);
+    join(&minus(&rounded(scale * distance / factor, DIGITS)), &unit) + percent
+}
+
+/// A number to `digits` significant digits; a whole number in full.
+fn rounded(value: f64, digits: usize) -> String {
+    match value.abs() {
+        size if value.fract() == 0.0 && size < 1e9 => format!("{value:.0}"),
+        // A power of ten instead of a row of zeros.
+        size if size < 1e-3 => format!("{value:.*e}", digits.saturating_sub(1)),
+        // Rounded first: 0.009999999 is 0.0100, not 0.01000.
+        _ => significant(
+            format!("{value:.*e}", digits.saturating_sub(1))
+                .parse()
+                .unwrap_or(value),
+            digits,
+        ),
+    }
+}
+
+/// Whether the plan wrote a plain number as a percentage.
+fn in_percent(condition: &ConditionOutcome) -> bool {
+    let tolerance_only = matches!(condition.bound, Some(Bound::Within { .. }));
+    condition.dimension == Dimension::NUMBER && condition.text.contains('%') && !tolerance_only
+}
+
+/// The probability of conformity, as printed: `39 %`, `> 99.9 %`.
+pub(in crate::report) fn probability(fraction: f64) -> String {
+    match 100.0 * fraction {
+        percent if percent > 99.9 => ">\u{a0}99.9\u{a0}%".to_owned(),
+        percent if percent < 0.1 => "<\u{a0}0.1\u{a0}%".to_owned(),
+        percent if (10.0..90.0).contains(&percent) => format!("{percent:.0}\u{a0}%"),
+        percent => format!("{percent:.1}\u{a0}%"),
+    }
+}
+
+/// The printed sign of a comparison.
+const fn comparison_sign(comparison: Comparison) -> &'static str {
+    match comparison {
+        Comparison::Less => "<",
+        Comparison::LessEqual => "≤",
+        Comparison::Greater => ">",
+        Comparison::GreaterEqual => "≥",
+        Comparison::Equal => "=",
+        Comparison::NotEqual => "≠",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_margin_has_the_unit_of_the_value_or_its_own() {
+        let condition = |text: &str, dimension, bound: Bound, value| ConditionOutcome {
+            text: text.to_owned(),
+            verdict: crate::verdict::Verdict::Pass,
+            dimension,
+            value: Some(value),
+            uncertainty: None,
+            degrees: f64::INFINITY,
+            bound: Some(bound),
+            margin: Some(bound.margin(value)),
+            guard_band: None,
+            margin_degrees: f64::INFINITY,
+            conforms: None,
+            wider_than_tolerance: false,
+            reason: None,
+        };
+        let below = |limit| Bound::Compare {
+            comparison: Comparison::Less,
+            limit,
+        };
+        let travel = condition("x < 0.2 m", Dimension::LENGTH, below(0.2), 0.199_986_2);
+        assert_eq!(margin(&travel).unwrap(), "13.8\u{a0}µm");
+        let closes = condition("abs(e) < 1e-6", Dimension::NUMBER, below(1e-6), 0.0);
+        assert_eq!(bound(&closes), "< 1 × 10⁻⁶");
+        let percent = condition("abs(e) < 1 %", Dimension::NUMBER, below(0.01), 0.001_71);
+        assert_eq!(
+            (bound(&percent), value(&percent).unwrap()),
+            ("< 1\u{a0}%".to_owned(), "0.1710\u{a0}%".to_owned())
+        );
+        assert_eq!(margin(&percent).unwrap(), "0.829\u{a0}%");
+        let energy = Bound::Within {
+            target: 9.48,
+            tolerance: 0.948,
+        };
+        assert_eq!(
+            bound(&condition(
+                "e within 10 % of 9.48 J",
+                Dimension::ENERGY,
+                energy,
+                9.0
+            )),
+            "8.532 … 10.428\u{a0}J"
+        );
+        let reached = condition("e within 10 % of 9.48 J", Dimension::ENERGY, energy, 9.316);
+        assert_eq!(margin(&reached).unwrap(), "0.784\u{a0}J");
+        let stiff = Bound::Within {
+            target: 3e5,
+            tolerance: 1.5e3,
+        };
+        assert_eq!(
+            bound(&condition(
+                "k within 0.5 % of 300 kN/m",
+                Dimension::STIFFNESS,
+                stiff,
+                3e5
+            )),
+            "298.5 … 301.5\u{a0}kN/m"
+        );
+        let within = |target: f64, tolerance: f64, dimension| {
+            bound(&condition(
+                "x within y of z",
+                dimension,
+                Bound::Within { target, tolerance },
+                target,
+            ))
+        };
+        assert_eq!(
+            within(0.156_19, 0.002 * 0.156_19, Dimension::LENGTH),
+            "0.15588 … 0.15650\u{a0}m"
+        );
+        assert_eq!(
+            within(0.833_333_3, 0.000_833_333, Dimension::NUMBER),
+            "0.83250 … 0.83417"
+        );
+        assert_eq!(
+            within(1.7e-7, 2e-8, Dimension::NUMBER),
+            "(1.5 … 1.9) × 10⁻⁷"
+        );
+        assert_eq!(within(20.0, 1.0, Dimension::NUMBER), "19 … 21");
+        assert_eq!(within(100.0, 10.0, Dimension::FORCE), "90 … 110\u{a0}N");
+        assert_eq!(within(1.0, 1e-6, Dimension::NUMBER), "0.999999 … 1.000001");
+        assert_eq!(
+            within(0.0, 1e-6, Dimension::LENGTH),
+            "0\u{a0}mm within 1\u{a0}µm"
+        );
+    }
+}

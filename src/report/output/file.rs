@@ -1,0 +1,37 @@
+//! A file of the run folder, and the errors of making one. It knows no run.
+
+use crate::plan::{Format, Plan};
+
+/// Name of the summary.
+pub const SUMMARY: &str = "summary.json";
+
+/// A file of the run folder: path with `/`, relative to the folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputFile {
+    pub path: String,
+    pub bytes: Vec<u8>,
+}
+
+/// The reason why an output could not be made. The record of the run is complete all the same.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    #[error("the table `{table}` could not be written: {reason}")]
+    Table { table: String, reason: String },
+    #[error("`{path}` could not be kept: {reason}")]
+    Kept { path: String, reason: String },
+    #[error("the figure `{figure}` of `{procedure}` could not be drawn: {reason}")]
+    Figure {
+        figure: &'static str,
+        procedure: String,
+        reason: String,
+    },
+    #[error("the report could not be set on paper: {0}")]
+    Pdf(String),
+    #[error("the summary could not be written: {0}")]
+    Summary(#[from] serde_json::Error),
+}
+
+/// Whether the plan's report asks for a format; a report that names none asks for all.
+pub(in crate::report) fn wants(plan: &Plan, format: Format) -> bool {
+    plan.report.formats.is_empty() || plan.report.formats.contains(&format)
+}

@@ -1,0 +1,131 @@
+//! The input of every output: plan, record, assessment and provenance of one run. No field is read from the machine on a
+//! simulated rig, so that equal runs give equal bytes.
+
+use std::borrow::Cow;
+
+use super::status::Issues;
+use super::summary::Prediction;
+use crate::plan::{Link, Plan};
+use crate::record::Record;
+use crate::record::equipment::{Device, Equipment};
+use crate::rig::DeclaredNoise;
+use crate::verdict::Assessment;
+
+/// One run, complete or stopped, with its assessment.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    pub plan: &'a Plan,
+    pub record: &'a Record,
+    pub assessment: &'a Assessment,
+    pub provenance: &'a Provenance,
+}
+
+impl Run<'_> {
+    /// Measuring channels and limits of the run: as recorded, or else as the plan and the rig declare them.
+    pub(super) fn equipment(&self) -> Cow<'_, Equipment> {
+        let planned = || {
+            let noise = match &self.plan.rig.link {
+                Link::Virtual(link) => DeclaredNoise {
+                    force: link.noise,
+                    resolution: link.resolution,
+                },
+                Link::Real(link) => DeclaredNoise {
+                    force: link.readings.noise,
+                    resolution: link.readings.resolution,
+                },
+            };
+            Cow::Owned(Equipment::of(
+                self.plan,
+                Device::of(&self.record.rig, noise),
+            ))
+        };
+        self.provenance
+            .equipment
+            .as_ref()
+            .map_or_else(planned, Cow::Borrowed)
+    }
+}
+
+/// Origin of the numbers: identifiers, program, dates, operator and issues of the report.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Provenance {
+    /// First 16 hex digits of SHA-256 over plan, used files, `--set` values, seed and version.
+    pub run_id: String,
+    /// Number of the report where it differs from the run id: each record of one run has its own number.
+    pub number: Option<String>,
+    pub psd_version: String,
+    /// Build of that version.
+    pub build: Build,
+    /// SHA-256 of the plan's text, hex.
+    pub plan_sha256: String,
+    /// Date from the plan or `--date`; for a real run otherwise the day on which it began.
+    pub date: Option<String>,
+    /// Only for a run on a real rig.
+    pub real: Option<RealRun>,
+    /// Equipment from the first line of the record; None where the record states none or does not exist.
+    pub equipment: Option<Equipment>,
+    /// Prediction of the whole run, only for a completed rehearsal.
+    pub prediction: Option<Prediction>,
+    /// Only for a report that was issued or amended after the test.
+    pub issues: Option<Issues>,
+}
+
+impl Provenance {
+    /// The id of the report: that of the issue, or else of the record, or else of the run.
+    #[must_use]
+    pub fn report_id(&self) -> &str {
+        let own = self.number.as_ref().unwrap_or(&self.run_id);
+        self.issues.as_ref().map_or(own, |issues| &issues.report_id)
+    }
+
+    /// The text that the latest issue of the report states for a particular.
+    pub(super) fn restated(&self, field: &str) -> Option<&str> {
+        let mut changes = self
+            .issues
+            .iter()
+            .flat_map(|issues| &issues.all)
+            .flat_map(|issue| &issue.changes);
+        changes
+            .rfind(|change| change.field == field)
+            .map(|change| change.is.as_str())
+    }
+
+    /// The operator, as recorded.
+    #[must_use]
+    pub fn operator(&self) -> Option<&str> {
+        self.real.as_ref().and_then(|real| real.operator.as_deref())
+    }
+}
+
+/// Sources and toolchain of the program that made the run. A report that is generated again states the same build.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Build {
+    /// SHA-256 over the digests of its sources, hex.
+    pub sources: String,
+    /// Target, profile, compiler; empty in records of older versions.
+    pub toolchain: String,
+}
+
+/// Operator, machine and times of a real run, from its record. Times are UTC, ISO 8601.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RealRun {
+    pub operator: Option<String>,
+    /// The machine that controlled the rig.
+    pub host: Option<String>,
+    pub began: Option<String>,
+    /// Time of the last recorded reading, target or fault.
+    pub ended: Option<String>,
+    /// Differences between the wall clock and the time of the rig.
+    pub jumps: Vec<ClockJump>,
+    /// Number of entries of the record and hash of the last one; None where the record could not be kept.
+    pub sealed: Option<(u64, String)>,
+}
+
+/// The wall clock was set, or stopped, between two readings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClockJump {
+    /// Rig time of the reading after the jump \[s\].
+    pub time: f64,
+    /// Advance of the wall clock over the rig time \[s\]; negative where it falls behind.
+    pub seconds: f64,
+}

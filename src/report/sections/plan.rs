@@ -1,0 +1,59 @@
+//! The plan as it was run, and its files as attachments. In: a run. Out: blocks; files.
+
+use super::Source;
+use crate::plan::PlanFile;
+use crate::report::document::{Attachment, Block, Text};
+use crate::report::output::paths::plan_files;
+use crate::report::run::Run;
+use crate::report::wording::plan as wording;
+use crate::text::sanitize;
+
+/// Every file of the plan.
+pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
+    let plan = source.run.plan;
+    body.push(Block::section(wording::TITLE));
+    for (file, kept) in plan.files.iter().zip(plan_files(plan)) {
+        body.push(Block::part(file.name.as_str()));
+        listing(file, &kept.path, body);
+    }
+}
+
+/// A file of the language in full; the first lines of a data file, which may have thousands.
+fn listing(file: &PlanFile, kept: &str, body: &mut Vec<Block>) {
+    const FIRST: usize = 8;
+    // A tab is printed as four spaces.
+    let lines: Vec<String> = file
+        .text
+        .lines()
+        .map(|line| sanitize::printed(&line.replace('\t', "    ")))
+        .collect();
+    let left = lines.len().saturating_sub(FIRST);
+    let is_plan = file
+        .name
+        .rsplit('.')
+        .next()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("psd"));
+    if is_plan || left <= FIRST {
+        body.push(Block::Code { lines });
+        return;
+    }
+    body.push(Block::Code {
+        lines: lines.into_iter().take(FIRST).collect(),
+    });
+    body.push(Block::note(
+        Text::from(wording::more_lines(left))
+            .code(kept)
+            .and(wording::IN_THE_FOLDER),
+    ));
+}
+
+/// The plan and every file it used, under their names in the run folder.
+pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
+    let named = plan_files(run.plan).into_iter().zip(&run.plan.files);
+    named
+        .map(|(named, file)| Attachment {
+            name: named.path,
+            text: file.text.clone(),
+        })
+        .collect()
+}

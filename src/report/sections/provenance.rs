@@ -1,0 +1,130 @@
+//! Provenance: identifiers, program, rig and clocks, and the digests of plan and tables. In: a run. Out: blocks.
+
+use super::{Source, pairs};
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::output::paths::plan_files;
+use crate::report::output::sink::FileDigest;
+use crate::report::run::{RealRun, Run};
+use crate::report::status::issue;
+use crate::report::wording::provenance as wording;
+use crate::text::digest::sha256;
+
+/// The section.
+pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
+    let run = source.run;
+    body.push(Block::section(wording::TITLE));
+    body.push(origin(run));
+    body.push(Block::part(wording::FILES));
+    body.push(files(run, source.tables));
+    body.push(Block::note(if run.plan.rig.link.as_real().is_some() {
+        Text::from(wording::MANIFEST_REAL)
+            .code("psd verify")
+            .and(wording::VERIFIES)
+    } else {
+        Text::from(wording::MANIFEST_SIMULATED)
+    }));
+}
+
+fn origin(run: &Run<'_>) -> Block {
+    let settings: Vec<String> = run
+        .plan
+        .settings
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    let settings = if settings.is_empty() {
+        wording::NO_SETTINGS.to_owned()
+    } else {
+        settings.join("; ")
+    };
+    let simulated = if run.record.rig.simulated {
+        wording::SIMULATED
+    } else {
+        ""
+    };
+    let provenance = run.provenance;
+    let mut rows = vec![(wording::REPORT, Text::new().id(provenance.report_id()))];
+    rows.extend(
+        issue::first(provenance.issues.as_ref()).map(|issued| (wording::ISSUED, issued.into())),
+    );
+    rows.extend([
+        (wording::RUN, Text::new().id(&provenance.run_id)),
+        (
+            wording::PROGRAM,
+            format!("psd {}", provenance.psd_version).into(),
+        ),
+        (wording::SOURCES, id_or_unknown(&provenance.build.sources)),
+        (wording::BUILT_FOR, recorded(&provenance.build.toolchain)),
+        (
+            wording::PLAN_DIGEST,
+            Text::new().id(&provenance.plan_sha256),
+        ),
+        (wording::SETTINGS, settings.into()),
+        (
+            wording::RIG,
+            format!("{}{simulated}", run.record.rig.name).into(),
+        ),
+        (wording::FIRMWARE, recorded(&run.record.rig.firmware)),
+    ]);
+    match (&provenance.real, run.plan.rig.link.as_virtual()) {
+        (Some(real), _) => rows.extend(record(real)),
+        (None, Some(link)) => {
+            rows.push((wording::SEED, link.seed.to_string().into()));
+            rows.push((wording::CLOCKS, wording::SIMULATED_CLOCKS.into()));
+        }
+        (None, None) => {}
+    }
+    pairs(rows)
+}
+
+fn recorded(text: &str) -> Text {
+    if text.is_empty() {
+        Text::missing(wording::NOT_RECORDED)
+    } else {
+        text.into()
+    }
+}
+
+fn id_or_unknown(digits: &str) -> Text {
+    if digits.is_empty() {
+        Text::missing(wording::NOT_RECORDED)
+    } else {
+        Text::new().id(digits)
+    }
+}
+
+/// Digests of the files of the plan and of the tables. With them the paper alone is enough to verify the files.
+fn files(run: &Run<'_>, tables: &[FileDigest]) -> Block {
+    let row = |(path, digest): FileDigest| vec![Text::from(path), Text::new().id(digest)];
+    let plan = plan_files(run.plan)
+        .into_iter()
+        .map(|file| (file.path, sha256(&file.bytes)));
+    let [path, digest] = wording::FILE_COLUMNS;
+    Block::Table(Table {
+        columns: vec![Column::words(path, 1), Column::short(digest)],
+        rows: plan.chain(tables.iter().cloned()).map(row).collect(),
+    })
+}
+
+/// Operator, machine, times and the record of a real run.
+fn record(real: &RealRun) -> Vec<(&'static str, Text)> {
+    let (records, head) = real
+        .sealed
+        .as_ref()
+        .map_or((None, None), |(records, head)| (Some(records), Some(head)));
+    vec![
+        (wording::OPERATOR, Text::given(real.operator.as_deref())),
+        (wording::MACHINE, Text::given(real.host.as_deref())),
+        (wording::BEGAN, Text::given(real.began.as_deref())),
+        (wording::LAST_RECORDED, Text::given(real.ended.as_deref())),
+        (wording::CLOCKS, wording::REAL_CLOCKS.into()),
+        (
+            wording::RECORDS,
+            records.map_or_else(|| Text::given(None), |records| records.to_string().into()),
+        ),
+        (
+            wording::HEAD,
+            head.map_or_else(|| Text::given(None), |head| Text::new().id(head)),
+        ),
+    ]
+}

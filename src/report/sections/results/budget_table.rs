@@ -1,0 +1,379 @@
+//! The uncertainty budgets of a procedure: the contribution of each input to the uncertainty of the results that the
+//! requirements read. In: a run. Out: tables, and the results that are marked †. `summary.json` has the budget of every result.
+
+use super::with_spaces;
+use crate::plan::Condition;
+use crate::plan::formula::{Formula, ProcedureId, ResultReference, ResultValue};
+use crate::procedures;
+use crate::record::{History, NamedResult, ProcedureRecord};
+use crate::report::budget::{Budget, Line, Origin, budgets, coverage_factor};
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number::{self, percent};
+use crate::report::run::Run;
+use crate::report::wording::budget as wording;
+use crate::uncertainty::MOST_DRAWS;
+use crate::units::Dimension;
+use crate::units::display::{minus, significant, typeset, unit};
+
+/// Lines with a smaller fraction of u² are printed together.
+const SMALL: f64 = 1e-3;
+
+/// The mark of an uncertainty that is an estimate.
+pub(crate) const MARK: &str = " †";
+
+/// The budgets of the results that a requirement reads, with a note.
+pub(super) fn append(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    body: &mut Vec<Block>,
+) {
+    let mut budgets = budgets(run, index, procedure);
+    let requested = requested(run, index, &procedure.history);
+    budgets.retain(|budget| is_printed(budget, &requested));
+    if !budgets.is_empty() {
+        let scope = Scope::of(run);
+        body.extend(budgets.iter().map(|budget| table(budget, procedure, scope)));
+        body.push(Block::note(note(run, index, &procedure.history, &budgets)));
+    }
+}
+
+/// Whether the plan declares the uncertainty of the calibrations of force and displacement.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scope {
+    Complete,
+    /// Not declared, on a simulated rig.
+    PartialSimulated,
+    /// Not declared, on a real rig: the budget gives no expanded uncertainty.
+    PartialReal,
+}
+
+impl Scope {
+    pub fn of(run: &Run<'_>) -> Self {
+        match (
+            run.plan
+                .rig
+                .undeclared_calibrations(run.plan.degrees_of_freedom())
+                .is_empty(),
+            run.plan.rig.link.as_real(),
+        ) {
+            (true, _) => Self::Complete,
+            (false, None) => Self::PartialSimulated,
+            (false, Some(_)) => Self::PartialReal,
+        }
+    }
+}
+
+/// The note on the mark, where a result of the procedure has one.
+pub(super) fn mark_note(procedure: &ProcedureRecord) -> Option<Block> {
+    let is_marked = |result: &NamedResult| match &result.value {
+        ResultValue::Number { .. } => !is_reliable(result, 0),
+        ResultValue::List(values) => (0..values.len()).any(|entry| !is_reliable(result, entry)),
+    };
+    procedure
+        .results
+        .iter()
+        .any(is_marked)
+        .then(|| Block::note(wording::MARKED))
+}
+
+/// Whether nearly all of the uncertainty of a result, or of an entry of a list, comes from contributions that are smooth.
+pub(crate) fn is_reliable(result: &NamedResult, entry: usize) -> bool {
+    let contributions = || {
+        result
+            .contributions
+            .iter()
+            .filter(|part| part.entry == entry)
+    };
+    let all: f64 = contributions().map(|part| part.amount.powi(2)).sum();
+    let estimated: f64 = contributions()
+        .filter(|part| !part.smooth)
+        .map(|part| part.amount.powi(2))
+        .sum();
+    estimated <= SMALL * all
+}
+
+/// The results of this procedure that a requirement reads, and the entry of a list where it names one. Where no requirement
+/// reads a result of the procedure: the results that its slice names for a budget.
+fn requested(run: &Run<'_>, index: usize, history: &History) -> Vec<(&'static str, Option<usize>)> {
+    let mut read: Vec<(ResultReference, Option<usize>)> = Vec::new();
+    let conditions = run
+        .plan
+        .requirements
+        .iter()
+        .flat_map(|requirement| &requirement.conditions);
+    conditions
+        .flat_map(Condition::formulas)
+        .for_each(|formula| collect(formula, None, &mut read));
+    let own: Vec<(&str, Option<usize>)> = read
+        .into_iter()
+        .filter(|(reference, _)| reference.procedure == ProcedureId(index))
+        .map(|(reference, entry)| (reference.name, entry))
+        .collect();
+    if !own.is_empty() {
+        return own;
+    }
+    procedures::recorded(history)
+        .budgeted
+        .iter()
+        .map(|name| (*name, None))
+        .collect()
+}
+
+/// Every result that a formula reads, with the entry that it takes of it.
+fn collect(
+    formula: &Formula,
+    entry: Option<usize>,
+    into: &mut Vec<(ResultReference, Option<usize>)>,
+) {
+    match formula {
+        Formula::Constant(_) | Formula::Stated(_) | Formula::CriticalTimeStep => {}
+        Formula::Result(reference) => into.push((*reference, entry)),
+        Formula::Index(inner, index) => collect(inner, Some(*index), into),
+        Formula::Negate(inner) => collect(inner, entry, into),
+        Formula::Binary(_, left, right) => [left, right]
+            .into_iter()
+            .for_each(|side| collect(side, entry, into)),
+        Formula::List(parts) | Formula::Call(_, parts) => {
+            for part in parts {
+                collect(part, None, into);
+            }
+        }
+    }
+}
+
+/// Whether the budget of a result is printed. Where no entry of a list is named, that of its largest number is printed.
+fn is_printed(budget: &Budget<'_>, requested: &[(&'static str, Option<usize>)]) -> bool {
+    let mut requested = requested
+        .iter()
+        .filter(|(name, _)| *name == budget.result.name)
+        .map(|(_, entry)| *entry);
+    let (Some(entry), ResultValue::List(values)) = (budget.entry, &budget.result.value) else {
+        return requested.next().is_some();
+    };
+    let largest = values
+        .iter()
+        .enumerate()
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+        .map(|(index, _)| index);
+    requested.any(|named| named.or(largest) == Some(entry))
+}
+
+fn table(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Block {
+    let kind = if scope == Scope::Complete {
+        wording::BUDGET
+    } else {
+        wording::PARTIAL_BUDGET
+    };
+    let entry = budget.entry.map_or_else(String::new, |entry| {
+        format!(", {} {}", entry_kind(budget, procedure), entry + 1)
+    });
+    let result = with_spaces(budget.result.name);
+    let [input, sensitivity, contribution, fraction] = wording::COLUMNS;
+    let columns = vec![
+        Column::words(wording::budget_of(kind, result, entry), 3),
+        Column::words(input, 2),
+        Column::numbers(sensitivity),
+        Column::numbers(contribution),
+        Column::numbers(fraction),
+    ];
+    Block::Table(Table {
+        columns,
+        rows: rows(budget, procedure, scope),
+    })
+}
+
+/// The noun for one entry of the list.
+fn entry_kind(budget: &Budget<'_>, procedure: &ProcedureRecord) -> &'static str {
+    match budget.result.name {
+        "periods" => "mode",
+        name if name.contains("drift") || name.starts_with("storey") => "storey",
+        "residual_shear" => "storey",
+        "floor_displacement" => "floor",
+        _ => procedures::recorded(&procedure.history).entries,
+    }
+}
+
+fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Vec<Vec<Text>> {
+    let Budget {
+        result,
+        value,
+        uncertainty,
+        known,
+        lines,
+        ..
+    } = budget;
+    let amount =
+        |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
+    let (large, small): (Vec<&Line>, Vec<&Line>) = lines
+        .iter()
+        .partition(|line| budget.fraction(line) >= SMALL);
+    let mut rows: Vec<Vec<Text>> = large
+        .into_iter()
+        .map(|line| {
+            let sensitivity = line.sensitivity.map_or_else(
+                || "—".to_owned(),
+                |each| sensitivity(each, result.dimension, line),
+            );
+            let is_own =
+                line.origin == Origin::Result && line.input == own_input(budget, procedure);
+            let name = if is_own {
+                wording::OWN_SCATTER.into()
+            } else {
+                named(line)
+            };
+            vec![
+                name,
+                input(line).into(),
+                sensitivity.into(),
+                amount(line.contribution.abs()),
+                percent(budget.fraction(line)).into(),
+            ]
+        })
+        .collect();
+    if !small.is_empty() {
+        let together = small
+            .iter()
+            .map(|line| line.contribution.powi(2))
+            .sum::<f64>()
+            .sqrt();
+        let names: Vec<&str> = small.iter().map(|line| line.input.as_str()).collect();
+        rows.push(vec![
+            Text::new().soft(wording::small(names.join(", "))),
+            "".into(),
+            "—".into(),
+            amount(together),
+            percent((together / uncertainty).powi(2)).into(),
+        ]);
+    }
+    let combined = if scope == Scope::PartialReal {
+        wording::combined_without_calibrations(number::with_uncertainty(
+            *value,
+            Some(*uncertainty),
+            result.dimension,
+        ))
+    } else {
+        let parts = number::parts(*value, Some(*known), result.dimension);
+        let expanded = parts.expanded.unwrap_or_default();
+        let degrees = if coverage_factor::differs_from_two(*known) {
+            format!(", ν = {}", coverage_factor::degrees_text(*known))
+        } else {
+            String::new()
+        };
+        wording::combined(
+            number::plus_minus(&parts.value, &expanded),
+            parts.unit,
+            coverage_factor::factor(*known),
+            degrees,
+        )
+    };
+    rows.push(vec![
+        combined.into(),
+        "".into(),
+        "".into(),
+        amount(*uncertainty),
+        "100\u{a0}%".into(),
+    ]);
+    rows
+}
+
+/// The input name of the result's own fit.
+fn own_input(budget: &Budget<'_>, procedure: &ProcedureRecord) -> String {
+    let entry = budget
+        .entry
+        .map_or_else(String::new, |entry| format!("[{entry}]"));
+    format!("{}.{}{entry}", procedure.name, budget.result.name)
+}
+
+/// The name of an input; a name from the plan is set as code.
+fn named(line: &Line) -> Text {
+    let name = match line.origin {
+        Origin::Result | Origin::Plan => Text::new().code(&line.input),
+        Origin::Rig | Origin::Program => Text::from(line.input.as_str()),
+    };
+    let name = match line.draws {
+        Some(draws) => name.soft(wording::sampled(draws)),
+        None => name,
+    };
+    if line.smooth { name } else { name.and(MARK) }
+}
+
+fn input(line: &Line) -> String {
+    match (line.value, line.uncertainty, line.dimension) {
+        (Some(value), Some(u), Dimension::NUMBER) if line.origin == Origin::Rig => {
+            format!("{value} ({}\u{a0}%)", minus(&significant(100.0 * u, 2)))
+        }
+        (Some(0.0), Some(u), dimension) => format!("0 ({})", number::part_of(u, u, 2, dimension)),
+        (Some(value), Some(u), dimension) => {
+            number::with_uncertainty(value, Some(u.abs()), dimension)
+        }
+        _ => "—".to_owned(),
+    }
+}
+
+/// ∂y/∂x in readable units of both: `−13.2 µm per kN/m`; for a factor, the change per unit factor.
+fn sensitivity(each: f64, result: Dimension, line: &Line) -> String {
+    let size = line
+        .value
+        .filter(|value| *value != 0.0)
+        .or(line.uncertainty)
+        .unwrap_or(1.0);
+    let (unit, factor) = unit(size, line.dimension);
+    let change = number::text(each * factor, result);
+    if unit.is_empty() {
+        change
+    } else {
+        wording::per(change, typeset(&unit))
+    }
+}
+
+/// Method, coverage factor, inputs that the plan does not declare, and trials.
+fn note(run: &Run<'_>, index: usize, history: &History, budgets: &[Budget<'_>]) -> String {
+    let few_degrees = budgets
+        .iter()
+        .any(|budget| coverage_factor::differs_from_two(budget.known));
+    let factor = if few_degrees {
+        wording::STUDENT_FACTOR
+    } else {
+        wording::FACTOR_TWO
+    };
+    let mut text = wording::linearised(factor, procedures::recorded(history).uncertainty);
+    let planned = run.plan.procedures.get(index);
+    let undeclared = planned.map_or_else(Vec::new, |planned| {
+        run.plan
+            .undeclared(procedures::facts_of(&planned.kind).dependence)
+    });
+    if !undeclared.is_empty() {
+        text += &wording::not_declared(undeclared.join(", "));
+    }
+    if Scope::of(run) != Scope::Complete {
+        text += wording::PARTIAL;
+    }
+    if few_degrees {
+        text += wording::STUDENT_T;
+    }
+    let trials = budgets
+        .iter()
+        .flat_map(|budget| &budget.lines)
+        .filter_map(|line| line.draws)
+        .min();
+    if let Some(trials) = trials {
+        text += wording::SAMPLED;
+        if trials < usize::from(MOST_DRAWS) {
+            #[expect(clippy::cast_precision_loss, reason = "a few")]
+            let accuracy = 1.0 / (2.0 * trials as f64).sqrt();
+            text += &wording::few_trials(trials, percent(accuracy));
+        }
+    }
+    let large = budgets.iter().flat_map(|budget| {
+        budget
+            .lines
+            .iter()
+            .filter(|line| budget.fraction(line) >= SMALL)
+    });
+    if large.into_iter().any(|line| !line.smooth) {
+        text += " ";
+        text += wording::MARKED;
+    }
+    text
+}

@@ -1,0 +1,89 @@
+//! Tracking errors of the actuators of a frame: a sentence on all of them, a table with a row for each. In: results of a
+//! procedure. Out: a sentence; a table where an actuator missed a target.
+
+use super::actuators;
+use crate::physics::tracking::monitor::Tracking;
+use crate::plan::formula::ResultValue;
+use crate::record::ProcedureRecord;
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number::{self, percent};
+use crate::report::wording::actuators as wording;
+use crate::units::Dimension;
+
+/// All actuators over a run; the energy is that of the actuator with the largest one.
+pub(crate) fn sentence(procedure: &ProcedureRecord) -> Option<String> {
+    let all = Tracking {
+        energy_error: 0.0,
+        indicator: 0.0,
+        nrms_error: procedure.number("nrms_error")?,
+        peak_error: procedure.number("peak_error")?,
+    };
+    Some(actuators::tracking_error(
+        all,
+        procedure.number("tracking_energy_error"),
+        wording::THE_ACTUATORS,
+    ))
+}
+
+/// One row per actuator, from the ground up; none where every actuator reached its targets.
+pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
+    let list = |name: &str| match procedure.result(name).map(|result| &result.value) {
+        Some(ResultValue::List(values)) => values.as_slice(),
+        _ => &[],
+    };
+    let (energy, indicator) = (
+        list("floor_tracking_energy_error"),
+        list("floor_tracking_indicator"),
+    );
+    let (nrms, peak) = (list("floor_nrms_error"), list("floor_peak_error"));
+    let largest = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    };
+    if largest(peak) < actuators::ROUNDING {
+        return None;
+    }
+    let cell = |values: &[f64], floor: usize, dimension| -> Text {
+        values
+            .get(floor)
+            .map_or_else(
+                || "—".to_owned(),
+                |value| number::text_beside(*value, largest(values), dimension),
+            )
+            .into()
+    };
+    let fraction = |values: &[f64], floor: usize| -> Text {
+        values
+            .get(floor)
+            .map_or_else(|| "—".to_owned(), |value| percent(*value))
+            .into()
+    };
+    let [
+        floor,
+        peak_column,
+        nrms_column,
+        energy_column,
+        indicator_column,
+    ] = wording::COLUMNS;
+    let columns = vec![
+        Column::words(floor, 1),
+        Column::numbers(peak_column),
+        Column::numbers(nrms_column),
+        Column::numbers(energy_column),
+        Column::numbers(indicator_column),
+    ];
+    let row = |floor: usize| -> Vec<Text> {
+        vec![
+            (floor + 1).to_string().into(),
+            cell(peak, floor, Dimension::LENGTH),
+            fraction(nrms, floor),
+            fraction(energy, floor),
+            cell(indicator, floor, Dimension::AREA),
+        ]
+    };
+    Some(Block::Table(Table {
+        columns,
+        rows: (0..peak.len()).map(row).collect(),
+    }))
+}

@@ -1,0 +1,42 @@
+//! The particulars of the first page after ISO/IEC 17025, 7.8.2: laboratory, customer, item, method, plan. In: a run. Out: names
+//! and values, and the names of the missing ones.
+
+use crate::report::document::Text;
+use crate::report::run::Run;
+use crate::report::status::particulars::{FRONT, Wanted, missing_names, stated};
+use crate::report::status::report_status;
+use crate::report::wording::particulars as wording;
+
+/// Names and values that are stated; the plan with its digest last.
+pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {
+    let rows = FRONT.iter().filter_map(|particular| {
+        Some((
+            particular.name.into(),
+            stated(run, particular.field)?.into(),
+        ))
+    });
+    rows.chain([(wording::PLAN.into(), plan(run))]).collect()
+}
+
+/// Names of particulars that are not stated. Those that a notice below the verdict lists are left out.
+pub(in super::super) fn missing(run: &Run<'_>) -> Vec<&'static str> {
+    let in_notice = !report_status::missing_particulars(run).is_empty();
+    let wanted: &[Wanted] = if in_notice {
+        &[Wanted::WhereItMatters]
+    } else {
+        &[Wanted::Always, Wanted::WhereItMatters]
+    };
+    missing_names(run, wanted)
+}
+
+/// The plan as it was run: file, revision, and the first digits of its digest.
+fn plan(run: &Run<'_>) -> Text {
+    let file = run.plan.files.first().map_or("", |file| file.name.as_str());
+    let revision = stated(run, "revision").map_or_else(String::new, wording::revision);
+    let digest = run
+        .provenance
+        .plan_sha256
+        .get(..16)
+        .unwrap_or(&run.provenance.plan_sha256);
+    Text::from(format!("{file}{revision}, SHA-256 ")).id(format!("{digest}…"))
+}

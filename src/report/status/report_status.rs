@@ -1,0 +1,139 @@
+//! The status of a run's report: certifiable, or the reasons against it. In: a run. Out: its [`ReportStatus`], and every
+//! reason, the gravest first. Due dates are compared with the days of the record: no clock is read.
+
+use std::collections::BTreeSet;
+
+use super::days::last_day;
+use super::particulars;
+use crate::physics::self_test;
+use crate::record::Outcome;
+use crate::report::run::Run;
+use crate::report::wording::status as wording;
+use crate::run::rehearsal;
+
+/// Whether a report may be signed as the report of a test.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReportStatus {
+    /// A real rig, a completed run, and no field is missing.
+    Certifiable,
+    /// No real rig moved, or only the beginning of the plan ran to predict the rest.
+    Rehearsal,
+    /// The run did not come to its end, or its record has no end.
+    Incomplete,
+    /// A test of a specimen. Fields are missing that cannot be added after the test.
+    NotCertifiable { missing: Vec<String> },
+    /// A test of a specimen. Particulars of ISO/IEC 17025, 7.8.2.1, are missing; an issue of the report may add them.
+    ParticularsMissing { missing: Vec<String> },
+}
+
+impl ReportStatus {
+    /// The status of a run: the gravest reason against a certificate.
+    #[must_use]
+    pub fn of(run: &Run<'_>) -> Self {
+        Self::reasons(run)
+            .into_iter()
+            .next()
+            .unwrap_or(Self::Certifiable)
+    }
+
+    /// Every reason against a certificate, the gravest first; none where the report is certifiable.
+    #[must_use]
+    pub fn reasons(run: &Run<'_>) -> Vec<Self> {
+        let mut reasons = Vec::new();
+        if is_rehearsal(run) {
+            reasons.push(Self::Rehearsal);
+        }
+        if run.record.outcome != Outcome::Completed {
+            reasons.push(Self::Incomplete);
+        }
+        let missing = missing_fields(run);
+        if !missing.is_empty() {
+            reasons.push(Self::NotCertifiable { missing });
+        }
+        let missing = missing_particulars(run);
+        if !missing.is_empty() {
+            reasons.push(Self::ParticularsMissing { missing });
+        }
+        reasons
+    }
+
+    /// The name in `summary.json`.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Certifiable => "certifiable",
+            Self::Rehearsal => "rehearsal",
+            Self::Incomplete => "incomplete",
+            Self::NotCertifiable { .. } => "not certifiable",
+            Self::ParticularsMissing { .. } => "particulars missing",
+        }
+    }
+}
+
+/// The particulars that the report of a test must state and does not. A rehearsal is not a test: none is missing there.
+#[must_use]
+pub fn missing_particulars(run: &Run<'_>) -> Vec<String> {
+    if run.plan.rig.link.as_real().is_none() || is_rehearsal(run) {
+        Vec::new()
+    } else {
+        particulars::missing(run)
+    }
+}
+
+fn is_rehearsal(run: &Run<'_>) -> bool {
+    run.record.rig.simulated || rehearsal::told(run.plan).is_some()
+}
+
+/// The fields of operator, calibration and program that the report on a real rig must state and cannot. A simulated rig has
+/// neither operator nor calibration.
+#[must_use]
+pub fn missing_fields(run: &Run<'_>) -> Vec<String> {
+    if run.plan.rig.link.as_real().is_none() {
+        return Vec::new();
+    }
+    let mut missing = Vec::new();
+    let is_given = |text: Option<&str>| text.is_some_and(|text| !text.trim().is_empty());
+    if !is_given(run.provenance.operator()) {
+        missing.push(wording::OPERATOR.to_owned());
+    }
+    let channels = &run.equipment().channels;
+    if !channels
+        .iter()
+        .all(|channel| is_given(channel.certificate.as_deref()))
+    {
+        missing.push(wording::CERTIFICATE.to_owned());
+    }
+    for channel in channels
+        .iter()
+        .filter(|channel| channel.calibrated.is_none())
+    {
+        missing.push(wording::calibrated_range(channel.measures.name()));
+    }
+    // Force and displacement with the same due date are one calibration.
+    let days: BTreeSet<Option<&str>> = channels
+        .iter()
+        .map(|channel| channel.due.as_deref())
+        .collect();
+    for channel in channels {
+        let calibration = if days.len() > 1 {
+            wording::calibration_of(channel.measures.name())
+        } else {
+            wording::CALIBRATION.to_owned()
+        };
+        match (channel.due.as_deref(), last_day(run.provenance)) {
+            (None, _) => missing.push(wording::due_date(calibration)),
+            (Some(_), None) => missing.push(wording::DAY_OF_THE_TEST.to_owned()),
+            (Some(due), Some(day)) if due < day => {
+                missing.push(wording::overdue(calibration, due, day));
+            }
+            (Some(_), Some(_)) => {}
+        }
+    }
+    if !self_test::passed() {
+        missing.push(wording::PASSING_PROGRAM.to_owned());
+    }
+    // A field that two axes miss is listed once.
+    let mut listed = BTreeSet::new();
+    missing.retain(|field| listed.insert(field.clone()));
+    missing
+}

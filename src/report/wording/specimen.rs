@@ -1,0 +1,460 @@
+//! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a behaviour, and a
+//! function that prints a number. Out: labelled strings, for the report and for `psd check --explain`.
+
+use crate::physics::structure::beam::first_mode_mass_factor;
+use crate::physics::structure::portal_limit::mechanism_limit;
+use crate::physics::structure::portal_mass::{EquivalentMasses, equivalent_masses};
+use crate::plan::{
+    Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal,
+    Sections, Unloading,
+};
+use crate::units::Dimension;
+
+/// Prints a stated number, or one that follows from stated numbers.
+pub type Printed<'s> = &'s dyn Fn(f64, Dimension) -> String;
+
+/// The rows of a behaviour: its model and parameters, then derived values.
+#[must_use]
+pub fn rows(behaviour: &Behaviour, shown: Printed<'_>) -> Vec<(&'static str, String)> {
+    let mut rows = vec![("virtual behaviour", words(behaviour, shown))];
+    derived(behaviour, shown, &mut rows);
+    if !behaviour.parts().is_empty()
+        || matches!(
+            behaviour,
+            Behaviour::Table(_) | Behaviour::Multilinear { .. }
+        )
+    {
+        rows.push((
+            "stiffness at first",
+            shown(behaviour.initial_stiffness(), Dimension::STIFFNESS),
+        ));
+    }
+    if behaviour.capacity().is_finite() && !matches!(behaviour, Behaviour::Portal(_)) {
+        rows.push((
+            "largest force",
+            shown(behaviour.capacity(), Dimension::FORCE),
+        ));
+    }
+    rows
+}
+
+/// A behaviour with its parameters as one string.
+#[must_use]
+pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
+    use Dimension as Of;
+    let list = |name: &str, values: &[(&str, f64, Dimension)]| {
+        let values: Vec<String> = values
+            .iter()
+            .map(|(name, value, dimension)| format!(", {name} {}", shown(*value, *dimension)))
+            .collect();
+        format!("{name}{}", values.concat())
+    };
+    let joined = |parts: &[Behaviour], word: &str| {
+        let parts: Vec<String> = parts
+            .iter()
+            .map(|part| format!("[{}]", words(part, shown)))
+            .collect();
+        parts.join(word)
+    };
+    match behaviour {
+        Behaviour::Elastic { stiffness } => {
+            list("elastic", &[("stiffness", *stiffness, Of::STIFFNESS)])
+        }
+        Behaviour::Bilinear {
+            stiffness,
+            yield_force,
+            hardening,
+        } => list(
+            "bilinear",
+            &[
+                ("stiffness", *stiffness, Of::STIFFNESS),
+                ("yield force", *yield_force, Of::FORCE),
+                ("hardening", *hardening, Of::NUMBER),
+            ],
+        ),
+        Behaviour::WearingBilinear {
+            stiffness,
+            yield_force,
+            hardening,
+            deterioration,
+        } => {
+            let plain = Behaviour::Bilinear {
+                stiffness: *stiffness,
+                yield_force: *yield_force,
+                hardening: *hardening,
+            };
+            words(&plain, shown)
+                + &deteriorating(*deterioration, yield_force * yield_force / stiffness, shown)
+        }
+        Behaviour::Multilinear { corners } => {
+            let corners: Vec<String> = corners
+                .iter()
+                .map(|[x, force]| {
+                    format!("{} at {}", shown(*force, Of::FORCE), shown(*x, Of::LENGTH))
+                })
+                .collect();
+            format!(
+                "multilinear, kinematic hardening, corners {}",
+                corners.join(", ")
+            )
+        }
+        Behaviour::BoucWen {
+            stiffness,
+            yield_force,
+            hardening,
+            sharpness,
+            beta,
+        } => list(
+            "Bouc–Wen",
+            &[
+                ("stiffness", *stiffness, Of::STIFFNESS),
+                ("yield force", *yield_force, Of::FORCE),
+                ("hardening", *hardening, Of::NUMBER),
+                ("n", *sharpness, Of::NUMBER),
+                ("β", *beta, Of::NUMBER),
+                ("γ", 1.0 - beta, Of::NUMBER),
+            ],
+        ),
+        Behaviour::Pinching(pinching) => {
+            let model = list(
+                "pinching",
+                &[
+                    ("stiffness", pinching.stiffness, Of::STIFFNESS),
+                    ("yield force", pinching.yield_force, Of::FORCE),
+                    ("hardening", pinching.hardening, Of::NUMBER),
+                    ("force factor", pinching.force_factor, Of::NUMBER),
+                    (
+                        "displacement factor",
+                        pinching.displacement_factor,
+                        Of::NUMBER,
+                    ),
+                    (
+                        "unloading exponent",
+                        pinching.unloading_exponent,
+                        Of::NUMBER,
+                    ),
+                ],
+            );
+            let unit = pinching.yield_force * pinching.yield_force / pinching.stiffness;
+            model
+                + &capped(pinching, shown)
+                + &pinching
+                    .deterioration
+                    .map_or_else(String::new, |lost| deteriorating(lost, unit, shown))
+        }
+        Behaviour::Degrading {
+            stiffness,
+            half_displacement,
+            residual,
+        } => list(
+            "degrading",
+            &[
+                ("stiffness", *stiffness, Of::STIFFNESS),
+                ("half of the loss at", *half_displacement, Of::LENGTH),
+                ("residual", *residual, Of::NUMBER),
+            ],
+        ),
+        Behaviour::Bolted(bolted) => list(
+            "bolted",
+            &[
+                ("stiffness", bolted.stiffness, Of::STIFFNESS),
+                ("bearing force", bolted.bearing_force, Of::FORCE),
+                ("clearance", bolted.clearance, Of::LENGTH),
+                ("slip force", bolted.slip_force, Of::FORCE),
+            ],
+        ),
+        Behaviour::Table(table) => {
+            let ends = [table.points.first(), table.points.last()]
+                .map(|point| point.map_or(0.0, |[x, _]| *x));
+            let unloading = match table.unloading {
+                Unloading::InitialStiffness => "unloading parallel to its steepest stretch",
+                Unloading::AlongTheCurve => "unloading along the curve",
+            };
+            let scale = if table.scale == 1.0 {
+                String::new()
+            } else {
+                format!(", its forces times {:.4}", table.scale)
+            };
+            let (low, high) = (shown(ends[0], Of::LENGTH), shown(ends[1], Of::LENGTH));
+            format!(
+                "table {}, {} points over {low} to {high}, {unloading}{scale}",
+                table.file,
+                table.points.len()
+            )
+        }
+        Behaviour::Fracture { of, at } => {
+            let at = match at {
+                Breaks::Displacement(bound) => shown(*bound, Of::LENGTH),
+                Breaks::Force(bound) => shown(*bound, Of::FORCE),
+            };
+            format!("[{}], breaks at {at}", words(of, shown))
+        }
+        Behaviour::Series(parts) => format!("in series: {}", joined(parts, " behind ")),
+        Behaviour::Parallel(parts) => format!("in parallel: {}", joined(parts, " beside ")),
+        Behaviour::Rate {
+            of,
+            reference_velocity,
+            exponent,
+        } => {
+            let (velocity, exponent) = (
+                shown(*reference_velocity, Of::VELOCITY),
+                shown(*exponent, Of::NUMBER),
+            );
+            format!(
+                "[{}], on the load cell times 1 + (v/{velocity})^{exponent} while it moves",
+                words(of, shown)
+            )
+        }
+        Behaviour::Maxwell {
+            of,
+            stiffness,
+            time_constant,
+        } => {
+            let (stiffness, tau) = (
+                shown(*stiffness, Of::STIFFNESS),
+                shown(*time_constant, Of::TIME),
+            );
+            format!(
+                "[{}], beside it {stiffness} that relax with a time constant of {tau}",
+                words(of, shown)
+            )
+        }
+        Behaviour::Logarithmic {
+            of,
+            share,
+            reference_time,
+            longest,
+        } => {
+            let share = shown(*share, Of::NUMBER);
+            let [time, longest] = [*reference_time, *longest].map(|time| shown(time, Of::TIME));
+            format!(
+                "[{}], of which {share}·ln(1 + t/{time}) relaxes, until {longest}",
+                words(of, shown)
+            )
+        }
+        Behaviour::Beam(beam) => beam_words(beam, shown),
+        Behaviour::Portal(portal) => portal_words(portal, shown),
+    }
+}
+
+fn capped(pinching: &Pinching, shown: Printed<'_>) -> String {
+    pinching.capping.map_or_else(String::new, |capping| {
+        let displacement = shown(capping.displacement, Dimension::LENGTH);
+        let [slope, residual] =
+            [capping.slope, capping.residual].map(|number| shown(number, Dimension::NUMBER));
+        format!(
+            ", falling from {displacement} on with {slope} of its stiffness, to {residual} of its strength"
+        )
+    })
+}
+
+/// Cyclic deterioration, mode by mode; `unit` is `F_y` `x_y` \[J\].
+fn deteriorating(lost: Deterioration, unit: f64, shown: Printed<'_>) -> String {
+    let residual = shown(lost.residual, Dimension::NUMBER);
+    let modes = [
+        (
+            format!("strength lost with energy: all but {residual} of it"),
+            lost.strength,
+        ),
+        ("post-capping strength".to_owned(), lost.capping),
+        ("unloading stiffness".to_owned(), lost.unloading),
+        ("reloading stiffness".to_owned(), lost.reloading),
+    ];
+    let active = modes
+        .into_iter()
+        .filter(|(_, capacity)| capacity.is_finite())
+        .map(|(words, capacity)| {
+            format!(
+                ", {words} with {}",
+                shown(capacity * unit, Dimension::ENERGY)
+            )
+        });
+    format!(
+        "{}, exponent {}",
+        active.collect::<String>(),
+        shown(lost.exponent, Dimension::NUMBER)
+    )
+}
+
+fn beam_words(beam: &Beam, shown: Printed<'_>) -> String {
+    let shear = beam.shear.map_or_else(String::new, |shear| {
+        format!(", shear stiffness {}", shown(shear, Dimension::FORCE))
+    });
+    format!(
+        "beam, {}, length {}, modulus {}, second moment {}{shear}: stiffness {}",
+        support(beam.ends, shown),
+        shown(beam.length, Dimension::LENGTH),
+        shown(beam.youngs_modulus, Dimension::PRESSURE),
+        shown(beam.second_moment, Dimension::SECOND_MOMENT),
+        shown(beam.stiffness, Dimension::STIFFNESS)
+    )
+}
+
+fn support(ends: Ends, shown: Printed<'_>) -> String {
+    match ends {
+        Ends::Cantilever => "cantilever".to_owned(),
+        Ends::SimplySupported => "simply supported".to_owned(),
+        Ends::BuiltIn => "built in".to_owned(),
+        Ends::PartlyBuiltIn {
+            rotational_stiffness,
+        } => {
+            let stiffness = shown(rotational_stiffness, Dimension::ENERGY).replace('J', "N·m");
+            format!("partly built in ({stiffness} per radian)")
+        }
+    }
+}
+
+fn portal_words(portal: &Portal, shown: Printed<'_>) -> String {
+    let beam_and_columns = |sections: Sections, unit: &str| {
+        let one = |value: f64| shown(value, Dimension::ENERGY).replace('J', unit);
+        if sections.are_same() {
+            one(sections.beam)
+        } else {
+            format!(
+                "{} of the beam and {} of the columns",
+                one(sections.beam),
+                one(sections.column)
+            )
+        }
+    };
+    // N·m² is not among the dimensions: printed as an energy, with its unit replaced.
+    let section = portal
+        .bending_stiffness
+        .map_or_else(String::new, |bending| {
+            format!(", EI {}", beam_and_columns(bending, "N·m²"))
+        });
+    let masses = portal
+        .masses
+        .map_or_else(String::new, |masses| frame_words(masses, shown));
+    let loads = match portal.loads {
+        Loads::Sway => "sway load".to_owned(),
+        Loads::Beam => "load at midspan".to_owned(),
+        Loads::Combined {
+            beam_load,
+            sway_load,
+        } => format!(
+            "loads in the ratio {} at midspan to {} sideways",
+            shown(beam_load, Dimension::FORCE),
+            shown(sway_load, Dimension::FORCE)
+        ),
+    };
+    format!(
+        "portal, fixed feet, span {}, height {}, plastic moment {}{section}{masses}, {loads}: stiffness {}",
+        shown(portal.span, Dimension::LENGTH),
+        shown(portal.height, Dimension::LENGTH),
+        beam_and_columns(portal.plastic_moment, "N·m"),
+        shown(portal.stiffness, Dimension::STIFFNESS)
+    )
+}
+
+fn frame_words(masses: FrameMasses, shown: Printed<'_>) -> String {
+    let FrameMasses {
+        per_length,
+        midspan,
+        corner,
+    } = masses;
+    let one = |value: f64| shown(value, Dimension::MASS_PER_LENGTH);
+    let members = match (per_length.beam > 0.0, per_length.are_same()) {
+        (false, _) => String::new(),
+        (true, true) => format!(", mass {}", one(per_length.beam)),
+        (true, false) => format!(
+            ", mass {} of the beam and {} of the columns",
+            one(per_length.beam),
+            one(per_length.column)
+        ),
+    };
+    let lump = |mass: f64, position: &str| {
+        if mass > 0.0 {
+            format!(", {} {position}", shown(mass, Dimension::MASS))
+        } else {
+            String::new()
+        }
+    };
+    members + &lump(midspan, "at midspan") + &lump(corner, "at each corner")
+}
+
+/// Equivalent masses of a frame, each with its shape function and its fraction of the total mass.
+fn portal_masses(
+    masses: EquivalentMasses,
+    shown: Printed<'_>,
+    rows: &mut Vec<(&'static str, String)>,
+) {
+    let all = shown(masses.whole, Dimension::MASS);
+    let equivalent = |mass: f64, shape: &str| {
+        format!(
+            "{} ({:.4} of the frame's {all}, {shape})",
+            shown(mass, Dimension::MASS),
+            mass / masses.whole
+        )
+    };
+    rows.push((
+        "elastic equivalent mass",
+        equivalent(masses.elastic, "static deflection as the shape"),
+    ));
+    rows.extend(masses.plastic.map(|plastic| {
+        (
+            "plastic equivalent mass",
+            equivalent(plastic, "the mechanism as the shape"),
+        )
+    }));
+    rows.push((
+        "lumped equivalent mass",
+        equivalent(
+            masses.lumped,
+            "half of each member at its ends, as the paper's Fig. 5",
+        ),
+    ));
+}
+
+/// Values derived from a geometry: the mass of a beam in its first mode, mechanism and masses of a portal.
+fn derived(behaviour: &Behaviour, shown: Printed<'_>, rows: &mut Vec<(&'static str, String)>) {
+    match behaviour {
+        Behaviour::Beam(beam) => {
+            let factor = first_mode_mass_factor(beam);
+            let text = match beam.own_mass {
+                Some(own) => format!(
+                    "{} ({factor:.4} qAL, static deflection as the shape); the paper's qAL/2 is {}",
+                    shown(factor * own, Dimension::MASS),
+                    shown(own / 2.0, Dimension::MASS)
+                ),
+                None => format!("{factor:.4} of the beam's mass qAL; the paper's is a half"),
+            };
+            rows.push(("first-mode equivalent mass", text));
+        }
+        Behaviour::Portal(portal) => {
+            let mechanism = portal.mechanism();
+            rows.push((
+                "mechanism",
+                format!("{}: {}", mechanism.name(), mechanism.hinges()),
+            ));
+            let loads = Mechanism::ALL
+                .into_iter()
+                .filter(|mechanism| portal.collapse_load(*mechanism).is_finite());
+            let loads: Vec<String> = loads
+                .map(|mechanism| {
+                    format!(
+                        "{} {}",
+                        mechanism.name(),
+                        shown(portal.collapse_load(mechanism), Dimension::FORCE)
+                    )
+                })
+                .collect();
+            rows.push(("collapse loads", loads.join(", ")));
+            rows.push(("capacity", shown(portal.capacity(), Dimension::FORCE)));
+            rows.push((
+                "yields at",
+                shown(portal.capacity() / portal.stiffness, Dimension::LENGTH),
+            ));
+            if let Some(masses) = equivalent_masses(portal) {
+                portal_masses(masses, shown, rows);
+            }
+            if let Some(most) = mechanism_limit(portal).filter(|most| most.is_finite()) {
+                rows.push(("follows its mechanism up to", shown(most, Dimension::FORCE)));
+            }
+        }
+        _ => behaviour
+            .parts()
+            .iter()
+            .for_each(|part| derived(part, shown, rows)),
+    }
+}
