@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::report::{Provenance, Run, vectors};
 use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};
@@ -13,8 +13,8 @@ use psd::verdict::assess;
 struct Plans(PathBuf);
 
 impl Loader for Plans {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
-        fs::read_to_string(self.0.join(path)).map_err(|_| LoadFault::NotFound)
+    fn load(&self, path: &str) -> Result<String, LoadError> {
+        fs::read_to_string(self.0.join(path)).map_err(|_| LoadError::NotFound)
     }
 }
 

@@ -19,7 +19,7 @@ fn bless() -> bool {
 }
 
 /// The pages of the book, relative to `docs/`, in order of name.
-fn pages() -> Vec<PathBuf> {
+pub(crate) fn pages() -> Vec<PathBuf> {
     let (mut folders, mut pages) = (vec![docs()], Vec::new());
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(folder).expect("a folder of the book") {

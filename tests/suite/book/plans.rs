@@ -4,19 +4,19 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::{LoadFault, Loader, Options, check};
+use psd::language::check::{LoadError, Loader, Options, check};
 use psd::text::diagnostic::render::{Appearance, render_all};
 
 /// Reads files beside the page; a ground motion is always there.
 struct Beside(PathBuf);
 
 impl Loader for Beside {
-    fn load(&self, path: &str) -> Result<String, LoadFault> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
         let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
         match fs::read_to_string(self.0.join(path)) {
             Ok(text) => Ok(text),
             Err(_) if path == "ground.csv" => Ok(ground.to_owned()),
-            Err(_) => Err(LoadFault::NotFound),
+            Err(_) => Err(LoadError::NotFound),
         }
     }
 }
