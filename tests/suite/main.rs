@@ -1,5 +1,6 @@
 //! All integration tests in one binary: one link, one module a concern.
 
+mod book;
 mod cli;
 mod cli_rig;
 mod cli_screen;

@@ -1,5 +1,5 @@
 //! Every fault that a stand-in can have, against a whole run: the manual's table says how each ends, and each ends so. In: the
-//! rows of `docs/rigs.md`. Out: the end of the run, its words, a sound record, a rig that is held.
+//! rows of `docs/reference/emulator-faults.md`. Out: the end of the run, its words, a sound record, a rig that is held.
 
 use std::sync::Mutex;
 
@@ -25,7 +25,7 @@ fn quoted(cell: &str) -> Vec<String> {
 }
 
 fn rows() -> Vec<Row> {
-    let manual = include_str!("../../docs/rigs.md");
+    let manual = include_str!("../../docs/reference/emulator-faults.md");
     let (_, section) = manual
         .split_once("## What can be made to go wrong")
         .unwrap();
