@@ -117,9 +117,9 @@ fn results(folder: &Path) -> Vec<(String, f64)> {
     named.collect()
 }
 
-/// The same plan, of which the floors do not stop: a step takes 1.6 s, beside which what a busy machine is late is little.
+/// The same plan, of which the floors do not stop: a step takes 2.4 s, beside which what a busy machine is late is little.
 fn gliding() -> Stage {
-    let mode = "  time_step     = 10 ms\n  mode          = continuous(time_scale: 160)";
+    let mode = "  time_step     = 10 ms\n  mode          = continuous(time_scale: 240)";
     let plan = plan_with(&[("  time_step     = 10 ms", mode), SHORT]);
     stage_of(
         &plan,
@@ -234,7 +234,7 @@ fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on(
     let cut_off = gliding();
     killed(&cut_off, 13);
     // Nobody tells it where to go on: at the end of its way it holds by itself.
-    std::thread::sleep(std::time::Duration::from_secs(4));
+    std::thread::sleep(std::time::Duration::from_secs(6));
     cut_off.goes_on(&[]);
     same(&cut_off);
 }

@@ -18,14 +18,16 @@ fn stepper(plan: &str) -> String {
         .split_once("\", dialect: native, reply_timeout: 2 s)")
         .unwrap();
     let devices = format!(
-        "  actuator   = serial(port: \"{port}\", dialect: grbl, reply_timeout: 1 s)\n  \
-           load_cell  = serial(port: \"{port}-cell\", dialect: indicator, reply_timeout: 1 s)\n  \
+        "  actuator   = serial(port: \"{port}\", dialect: grbl, reply_timeout: 3 s)\n  \
+           load_cell  = serial(port: \"{port}-cell\", dialect: indicator, reply_timeout: 3 s)\n  \
            sign       = negative\n  \
            datum      = here"
     );
     let plan = format!("{before}{devices}{after}").replace("duration  = 24 ms", "duration  = 3 ms");
     let plan = plan.replace("samples    = 1", "samples    = 1\n  resolution = 2.5 um");
+    // Every step of the ramp takes a second: a signal comes before its end.
     plan.replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm")
+        .replace("pause         = 0 s", "pause         = 1 s")
         .replace("probe(0.1 mm", "probe(0.4 mm")
 }
 
@@ -141,7 +143,7 @@ fn stopped_at_zero() -> Stage {
     let console = |plan: &str| {
         let plan = plan.replace(
             "dialect: native, reply_timeout: 2 s",
-            "dialect: instron, reply_timeout: 1 s",
+            "dialect: instron, reply_timeout: 3 s",
         );
         plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um")
             .replace("0.8 mm step", "0.3 mm step")
