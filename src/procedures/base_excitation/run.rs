@@ -15,7 +15,6 @@ use crate::record::{History, ShakeHistory};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, of_base_shear};
-use crate::run::stop::Stop;
 
 pub(crate) fn perform(
     plan: &Shake,

@@ -73,7 +73,8 @@ pub(crate) fn mechanism(
     {
         checker.diagnostics.push(specimens::beyond_mechanism(
             portal.mechanism(),
-            (force, most),
+            force,
+            most,
             entry.value.span,
         ));
     }
