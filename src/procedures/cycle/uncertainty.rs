@@ -10,20 +10,26 @@ use crate::plan::formula::ProcedureId;
 use crate::procedures::loop_sampling::{left_open_by, of_open};
 use crate::procedures::results::{Layout, give, values};
 use crate::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
+use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
 /// Results with an entry a cycle.
-const LISTS: [&str; 4] = ["amplitudes", "energies", "damping_ratios", "stiffnesses"];
+const LISTS: [&str; 4] = [
+    schema::AMPLITUDES.name,
+    schema::ENERGIES.name,
+    schema::DAMPING_RATIOS.name,
+    schema::STIFFNESSES.name,
+];
 
 /// Results that follow from the loops.
 const OF_LOOPS: [&str; 6] = [
-    "dissipated_energy",
-    "max_force",
-    "min_force",
-    "equivalent_damping_ratio",
-    "stiffness",
-    "last_stiffness",
+    schema::DISSIPATED_ENERGY.name,
+    schema::MAX_FORCE.name,
+    schema::MIN_FORCE.name,
+    schema::EQUIVALENT_DAMPING_RATIO.name,
+    schema::STIFFNESS.name,
+    schema::LAST_STIFFNESS.name,
 ];
 
 /// Loops as they were read.
@@ -156,14 +162,14 @@ fn of_sampling(history: &CycleHistory, open: &[f64]) -> Vec<(&'static str, usize
     let of_each = uncertain.iter().zip(&ratios).enumerate();
     let lists = of_each.flat_map(|(entry, (energy, ratio))| {
         [
-            ("energies", entry, *energy),
-            ("damping_ratios", entry, *ratio),
+            (schema::ENERGIES.name, entry, *energy),
+            (schema::DAMPING_RATIOS.name, entry, *ratio),
         ]
     });
     let whole = [
-        ("dissipated_energy", 0, uncertain.iter().sum()),
+        (schema::DISSIPATED_ENERGY.name, 0, uncertain.iter().sum()),
         (
-            "equivalent_damping_ratio",
+            schema::EQUIVALENT_DAMPING_RATIO.name,
             0,
             ratios.last().copied().unwrap_or(0.0),
         ),

@@ -1,5 +1,7 @@
 //! Constants that the reports of all procedures that integrate share.
 
+use crate::schema::procedures::base_excitation as schema;
+
 /// The method by which the contributions to the uncertainty were found.
 pub(crate) const UNCERTAINTY: &str = "each input in turn was moved by ± its standard uncertainty and the run integrated again along its own recorded \
     force–displacement path; half the difference of the results is the contribution, the root sum of squares is u (JCGM 100:2008). \
@@ -7,4 +9,4 @@ pub(crate) const UNCERTAINTY: &str = "each input in turn was moved by ± its sta
     again in half and a quarter of it, differs by. The contact law and the slowness of the test are not among the inputs";
 
 /// Results of a frame that have a budget where no requirement reads any.
-pub(crate) const FRAME_BUDGET: &[&str] = &["max_drift", "max_base_shear"];
+pub(crate) const FRAME_BUDGET: &[&str] = &[schema::MAX_DRIFT.name, schema::MAX_BASE_SHEAR.name];

@@ -14,17 +14,18 @@ use crate::procedures::loop_sampling::{left_open_by, of_open};
 use crate::procedures::results::{give, largest};
 use crate::record::{NamedResult, RampStep};
 use crate::rig::DeclaredNoise;
+use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
 /// What is read directly.
 pub(crate) const DIRECT: [&str; 6] = [
-    "secant_stiffness",
-    "max_force",
-    "max_displacement",
-    "loop_energy",
-    "relaxation",
-    "tangent_stiffness",
+    schema::SECANT_STIFFNESS.name,
+    schema::MAX_FORCE.name,
+    schema::MAX_DISPLACEMENT.name,
+    schema::LOOP_ENERGY.name,
+    schema::RELAXATION.name,
+    schema::TANGENT_STIFFNESS.name,
 ];
 
 /// A ramp as it was read.
@@ -175,7 +176,7 @@ pub(crate) fn propagate(
         let of_loops = DIRECT
             .iter()
             .zip(&mut contributions)
-            .find(|(name, _)| **name == "loop_energy");
+            .find(|(name, _)| **name == schema::LOOP_ENERGY.name);
         if let Some((_, parts)) = of_loops {
             parts.push(Contribution::new(
                 Source::LoopSampling { procedure },
