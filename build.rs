@@ -47,15 +47,18 @@ fn sha256(bytes: &[u8]) -> String {
 /// The other inputs of the machine code: target, profile, compiler.
 fn toolchain() -> String {
     println!("cargo::rerun-if-env-changed=RUSTC");
-    let told = |name| env::var(name).unwrap_or_else(|_| "unknown".to_owned());
-    let version = Command::new(told("RUSTC")).arg("--version").output().ok();
+    let variable = |name| env::var(name).unwrap_or_else(|_| "unknown".to_owned());
+    let version = Command::new(variable("RUSTC"))
+        .arg("--version")
+        .output()
+        .ok();
     let version = version.and_then(|output| String::from_utf8(output.stdout).ok());
     let version = version.map_or_else(|| "rustc unknown".to_owned(), |text| text.trim().to_owned());
     format!(
         "{}, {} profile at optimisation {}, {version}",
-        told("TARGET"),
-        told("PROFILE"),
-        told("OPT_LEVEL")
+        variable("TARGET"),
+        variable("PROFILE"),
+        variable("OPT_LEVEL")
     )
 }
 

@@ -55,7 +55,7 @@ pub enum Operator {
     Power,
 }
 
-/// Of one number or of a list, by its name in the language.
+/// A function of one number or of a list; `ALL` has its name in the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     Abs,

@@ -1,9 +1,9 @@
-//! What the column of a table is, and those that several procedures have: the words of CSV and Parquet, of `golden` and of
-//! comparisons. Columns of words are not here: they are held to the letter.
+//! Columns of tables, with those that several procedures have: names for CSV and Parquet, for `golden` and for
+//! comparisons. Columns of text are not here: they are compared literally.
 
 use crate::units::Dimension;
 
-/// A column of a table, SI.
+/// A column of a table, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
     pub name: &'static str,

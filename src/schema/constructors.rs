@@ -1,4 +1,4 @@
-//! Constructors of the entries of the schema: `Field::quantity(…).above_zero().required(…)`. They read like the sentence of the reference.
+//! Constructors of the entries of the schema, to be chained: `Field::quantity(…).above_zero().required(…)`.
 
 use super::types::{Field, FieldType, Kind, Need, Range, ResultKind, RigKind, Variant};
 use crate::units::Dimension;
@@ -124,14 +124,14 @@ impl Field {
         Self::new(name, FieldType::Condition, doc)
     }
 
-    /// Must stand; the example is a line that is right.
+    /// The field is required; the example is a valid line.
     pub(super) const fn required(mut self, example: &'static str) -> Self {
         self.need = Need::Required;
         self.example = example;
         self
     }
 
-    /// Must stand on a rig of this kind; elsewhere the words hold.
+    /// The field is required on a rig of this kind; `otherwise` describes the default on the other.
     pub(super) const fn required_on(
         mut self,
         rig: RigKind,
@@ -236,7 +236,7 @@ impl ResultKind {
         }
     }
 
-    /// Of an impact on a storey only.
+    /// An impact has it on a storey only.
     pub(super) const fn of_storey(self) -> Self {
         Self {
             of_storey: true,
@@ -270,7 +270,7 @@ impl ResultKind {
         }
     }
 
-    /// The same, each with its uncertainty.
+    /// The same, each with its standard uncertainty.
     pub(super) const fn measured_list(
         name: &'static str,
         dimension: Dimension,

@@ -2,7 +2,7 @@
 
 use crate::plan::formula::Function;
 
-/// A function, and what it takes.
+/// A function, and its arguments.
 #[derive(Debug)]
 pub struct FunctionKind {
     pub name: &'static str,

@@ -1,4 +1,4 @@
-//! Known words of the language that this version does not carry out.
+//! Known keywords that this version does not implement.
 
 use super::types::{BlockKind, Kind, Naming};
 

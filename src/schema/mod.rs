@@ -1,4 +1,4 @@
-//! The vocabulary as data: every block, field, variant, default, range, result and function,
+//! The schema of the language as data: every block, field, variant, default, range, result and function,
 //! written once. The check, the suggestions, the reference and the tools read it. It knows no
 //! syntax and no plan.
 
@@ -10,7 +10,7 @@ mod later;
 mod reference;
 mod types;
 
-pub(crate) use blocks::{curves, procedures};
+pub(crate) use blocks::{curves, ground, procedures, specimen, striker};
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use reference::reference;
@@ -21,9 +21,9 @@ pub use types::{
 /// Every kind of block, in the order of the reference.
 pub const BLOCKS: &[&BlockKind] = &[
     &blocks::plan_block::PLAN,
-    &blocks::declarations::SPECIMEN,
-    &blocks::declarations::STRIKER,
-    &blocks::frames::GROUND,
+    &blocks::specimen::SPECIMEN,
+    &blocks::striker::STRIKER,
+    &blocks::ground::GROUND,
     &blocks::limits::LIMITS,
     &blocks::rig::RIG,
     &blocks::procedures::stiffness_ramp::BLOCK,
@@ -40,10 +40,10 @@ pub const BLOCKS: &[&BlockKind] = &[
     &later::STUDY,
 ];
 
-/// Items that are not blocks, for suggestions.
+/// Keywords of items that are not blocks, for suggestions.
 pub const ITEM_WORDS: &[&str] = &["use", "param", "let", "require"];
 
-/// The kind whose keyword begins these words: the longest that fits.
+/// The kind whose keyword begins these words; the longest one that matches.
 #[must_use]
 pub fn block_of_words(words: &[&str]) -> Option<&'static BlockKind> {
     BLOCKS
@@ -53,7 +53,7 @@ pub fn block_of_words(words: &[&str]) -> Option<&'static BlockKind> {
         .max_by_key(|block| block.keyword.len())
 }
 
-/// The kind of block the program calls `kind`.
+/// The entry of a kind of block.
 #[must_use]
 pub fn block(kind: Kind) -> &'static BlockKind {
     BLOCKS

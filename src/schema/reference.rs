@@ -1,4 +1,4 @@
-//! The vocabulary as text: the generated part of the language reference, in Markdown. In: the tables of blocks,
+//! The schema as text: the generated part of the language reference, in Markdown. In: the tables of blocks,
 //! functions, units and diagnostic codes. Out: one text. Knows no plan.
 
 use std::fmt::Write as _;
@@ -25,7 +25,7 @@ pub fn reference() -> String {
     text
 }
 
-// Writing to a text cannot fail, so that the results of `write!` say nothing.
+// Writing to a string cannot fail, so that the results of `write!` are ignored.
 
 fn write_block(text: &mut String, block: &BlockKind) {
     let naming = match block.naming {
@@ -81,7 +81,7 @@ fn write_block(text: &mut String, block: &BlockKind) {
     }
 }
 
-/// A choice's words, each with its arguments below it; those of a list that stands in this block already are not said again.
+/// The variants of a choice, each with its arguments below it; a list that this block has already is not repeated.
 fn write_variants(
     text: &mut String,
     variants: &[Variant],
@@ -141,7 +141,7 @@ fn write_variants(
     }
 }
 
-/// Whether every word of a choice that takes arguments stands in this block already.
+/// Whether every variant with arguments is in this block already.
 fn is_written(variants: &[Variant], written: &[Vec<&'static str>]) -> bool {
     let mut with = variants
         .iter()
@@ -185,7 +185,7 @@ fn write_values(text: &mut String, head: &str, values: &[ResultKind]) {
     }
 }
 
-/// What a field takes: `mass in kg, above 0`, `one of …`.
+/// The type of a field: `mass in kg, above 0`, `one of …`.
 fn takes(field: &Field) -> String {
     match field.ty {
         FieldType::Text => "a text".to_owned(),
@@ -228,7 +228,7 @@ fn measure(dimension: Dimension) -> String {
     }
 }
 
-/// The range of a value, `, above 0`; a limit of a dimension stands in its SI unit.
+/// The range of a value, `, above 0`; a limit with a dimension is in its SI unit.
 fn allowed(range: Range, dimension: Dimension) -> String {
     let shown = |value: f64| {
         let value = if dimension == Dimension::NUMBER {

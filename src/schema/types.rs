@@ -1,8 +1,8 @@
-//! What an entry of the vocabulary is made of, and small look-ups in it.
+//! The types of the schema's entries, and small look-ups in them.
 
 use crate::units::Dimension;
 
-/// Which block the program deals with.
+/// The kind of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Plan,
@@ -22,20 +22,20 @@ pub enum Kind {
     Inspect,
     Report,
     Golden,
-    /// A known word of the language that this version does not carry out.
+    /// A known keyword that this version does not implement.
     Later,
 }
 
-/// What stands between the keyword and the brace.
+/// The part between the keyword and the brace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Naming {
     /// A name, always: `striker pendulum { … }`.
     Named,
-    /// A text: `plan "Title" { … }`.
+    /// A title: `plan "Title" { … }`.
     Titled,
     /// Nothing: `report { … }`.
     Unnamed,
-    /// A name or nothing: `limits { … }` holds for the plan, `limits frame_limits { … }` is for rigs to name.
+    /// A name or nothing: `limits { … }` applies to the plan, `limits frame_limits { … }` is for rigs to name.
     MaybeNamed,
 }
 
@@ -45,14 +45,14 @@ pub struct BlockKind {
     pub kind: Kind,
     pub keyword: &'static [&'static str],
     pub naming: Naming,
-    /// Whether it is run, in the order written.
+    /// Whether it is run, in the order of the plan.
     pub procedure: bool,
     pub fields: &'static [Field],
-    /// Values other expressions may read besides the fields: `pendulum.energy`.
+    /// Values that other expressions may read besides the fields: `pendulum.energy`.
     pub exports: &'static [ResultKind],
-    /// What a procedure leaves: `hit.max_displacement`.
+    /// The results of a procedure: `hit.max_displacement`.
     pub results: &'static [ResultKind],
-    /// Shown where one is missing: a short block that is right.
+    /// Shown where a block is missing: a short valid one.
     pub example: &'static str,
     pub doc: &'static str,
 }
@@ -70,25 +70,25 @@ pub struct Field {
     pub range: Range,
     pub example: &'static str,
     pub doc: &'static str,
-    /// False for a known word that this version does not carry out.
+    /// False for a known field that this version does not implement.
     pub available: bool,
-    /// Whether it says something of a real rig only, so that it has no use on a virtual one.
+    /// Whether it applies to a real rig only, so that it has no effect on a virtual one.
     pub real_rig_only: bool,
-    /// Whether it says something of a frame only.
+    /// Whether it applies to a frame only.
     pub of_frames: bool,
     /// Whether its number is an angle, which is written with its unit.
     pub angle: bool,
 }
 
-/// What a field takes.
+/// The type of the value of a field.
 #[derive(Clone, Copy, Debug)]
 pub enum FieldType {
     Text,
-    /// A list of texts.
+    /// A list of strings.
     Texts,
-    /// One of the variants of the list in which the field stands, that is: a behaviour inside a behaviour.
+    /// One of the variants of the list that contains the field: a model inside a model.
     Inner,
-    /// Several of them, written after each other or as a list; the only argument of its variant.
+    /// Several of them, one after another or as a list; the only argument of its variant.
     Inners,
     /// One number with its unit.
     Quantity(Dimension),
@@ -115,21 +115,21 @@ pub enum FieldType {
     ResultName,
     /// A column of a table: `hit.displacement_m`, or `displacement_m` of every table.
     ColumnName,
-    /// How near a number must be: in its own unit, or in `%` of its size.
+    /// A tolerance: in the unit of the number, or in `%` of its absolute value.
     Tolerance,
-    /// Conditions on the results of a blow, as in `require`.
+    /// Conditions on the results of an impact, as in `require`.
     Condition,
 }
 
 impl FieldType {
-    /// Whether its value can stand in a calculation: one number, or several.
+    /// Whether its value is allowed in a calculation: one number, or several.
     #[must_use]
     pub const fn is_numeric(self) -> bool {
         matches!(self, Self::Quantity(_) | Self::Quantities(_) | Self::Count)
     }
 }
 
-/// Whether a field must stand, and what holds where it does not.
+/// Whether a field is required, and its default where it is not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Need {
     Required,
@@ -139,23 +139,23 @@ pub enum Need {
         number: f64,
         unit: &'static str,
     },
-    /// In the language's words or a person's: `rigid`, `critical / 20`, "the specimen's".
+    /// The default in the syntax of the language or in words: `rigid`, `critical / 20`, "the specimen's".
     Said(&'static str),
-    /// Must stand where the run is on a rig of this kind; the words say what holds on the other.
+    /// Required where the run is on a rig of this kind; the string describes the default on the other.
     RequiredOn(RigKind, &'static str),
 }
 
-/// What a rig moves.
+/// The kind of a rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RigKind {
-    /// Numbers.
+    /// It moves numbers.
     Virtual,
-    /// A specimen.
+    /// It moves a specimen.
     Real,
 }
 
 impl RigKind {
-    /// The word of a sentence: `virtual`.
+    /// The adjective in a message: `virtual`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -169,7 +169,7 @@ impl RigKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     pub low: f64,
-    /// Whether `low` itself is refused.
+    /// Whether `low` itself is excluded.
     pub above: bool,
     pub high: f64,
 }
@@ -192,7 +192,7 @@ impl Range {
     }
 }
 
-/// A value that can be read from outside a block.
+/// A value that can be read from outside its block.
 #[expect(
     clippy::struct_excessive_bools,
     reason = "each says one thing of a result, and none follows from another"
@@ -201,18 +201,18 @@ impl Range {
 pub struct ResultKind {
     pub name: &'static str,
     pub dimension: Dimension,
-    /// Whether it carries a standard uncertainty, read as `.u`.
+    /// Whether it has a standard uncertainty, read as `.u`.
     pub measured: bool,
-    /// Whether it counts something: a whole number.
+    /// Whether it is a count: a whole number.
     pub count: bool,
-    /// Whether it is several numbers of one dimension, read as a list: `max(fatigue.energies)`.
+    /// Whether it is a list of numbers of one dimension: `max(fatigue.energies)`.
     pub list: bool,
     /// Whether an impact has it only on a storey of a frame.
     pub of_storey: bool,
     pub doc: &'static str,
 }
 
-/// One word of a choice, with the arguments it takes.
+/// One variant of a choice, with its arguments.
 #[derive(Debug)]
 pub struct Variant {
     pub name: &'static str,

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 /// Whether a character has an effect beyond its glyph: control characters, direction marks, invisible characters,
 /// tags, and code points that are not characters.
 #[must_use]
-pub fn steers(c: char) -> bool {
+pub fn is_control_like(c: char) -> bool {
     c.is_control()
         || matches!(
             c,
@@ -60,7 +60,7 @@ fn colour(text: &str) -> Option<usize> {
 pub fn printed(text: &str) -> String {
     text.chars()
         .map(|c| {
-            if steers(c) {
+            if is_control_like(c) {
                 char::REPLACEMENT_CHARACTER
             } else {
                 c
@@ -75,7 +75,7 @@ pub fn page(markup: &str) -> String {
     markup
         .chars()
         .map(|c| {
-            if steers(c) && c != '\n' {
+            if is_control_like(c) && c != '\n' {
                 char::REPLACEMENT_CHARACTER
             } else {
                 c
@@ -104,7 +104,7 @@ pub fn cell(text: &str) -> String {
 pub fn json(document: &str) -> String {
     let mut safe = String::with_capacity(document.len());
     for c in document.chars() {
-        if steers(c) && c != '\n' {
+        if is_control_like(c) && c != '\n' {
             for unit in c.encode_utf16(&mut [0; 2]) {
                 let _ = write!(safe, "\\u{unit:04x}");
             }
@@ -124,8 +124,9 @@ const PART_BYTES: usize = 200;
 /// its end. A name that is plain already is unchanged.
 #[must_use]
 pub fn file_part(name: &str) -> String {
-    let is_plain =
-        |c: char| !steers(c) && !matches!(c, '/' | '\\' | ':' | '*' | '?' | '"' | '<' | '>' | '|');
+    let is_plain = |c: char| {
+        !is_control_like(c) && !matches!(c, '/' | '\\' | ':' | '*' | '?' | '"' | '<' | '>' | '|')
+    };
     let mut part: String = name
         .chars()
         .take(PART_CHARS)
@@ -175,7 +176,7 @@ fn escaped(text: &str, stays: impl Fn(char) -> bool) -> String {
 }
 
 fn push(text: &mut String, c: char, stays: impl Fn(char) -> bool) {
-    if steers(c) && !stays(c) {
+    if is_control_like(c) && !stays(c) {
         text.extend(c.escape_unicode());
     } else {
         text.push(c);
@@ -247,7 +248,10 @@ mod tests {
     fn json_keeps_its_values() {
         let value = serde_json::json!({ "a": "\u{202e}\u{7f}\u{e0041}\u{85}\u{0}\"\\ é" });
         let safe = json(&serde_json::to_string_pretty(&value).unwrap());
-        assert!(!safe.chars().any(|c| steers(c) && c != '\n'), "{safe}");
+        assert!(
+            !safe.chars().any(|c| is_control_like(c) && c != '\n'),
+            "{safe}"
+        );
         assert_eq!(
             serde_json::from_str::<serde_json::Value>(&safe).unwrap(),
             value

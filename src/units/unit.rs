@@ -15,7 +15,7 @@ pub struct UnitName {
     pub symbol: &'static str,
     pub factor: f64,
     pub dimension: Dimension,
-    /// Whether SI prefixes may stand before it.
+    /// Whether SI prefixes are allowed.
     pub prefixes: bool,
     pub doc: &'static str,
 }

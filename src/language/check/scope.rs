@@ -192,7 +192,7 @@ impl<'a> Scope<'a> {
         match self.names.get(name.node.as_str()) {
             Some((before, first)) => {
                 diagnostics.push(message::declared_twice(&name.node, name.span, *first));
-                // Of two declarations of different sorts, neither is known to be meant.
+                // It is unknown which of two declarations of different sorts is meant.
                 if std::mem::discriminant(before) != std::mem::discriminant(&meaning) {
                     self.names.insert(&name.node, (Meaning::Poisoned, *first));
                 }

@@ -1,4 +1,4 @@
-//! What a virtual specimen can be: the words of `behaviour`.
+//! The restoring-force models of a specimen: the variants of `behaviour`.
 
 use crate::schema::types::{Field, Variant};
 use crate::units::Dimension;

@@ -1,4 +1,4 @@
-//! Multilinear curves fitted to what was measured: the words that ask for one, and what it leaves.
+//! Multilinear curves that are fitted to readings: the variant that requests one, and its results.
 
 use crate::physics::identification::multilinear_fit::MOST_BREAKS;
 use crate::schema::types::{Field, ResultKind, Variant};

@@ -1,9 +1,9 @@
-//! The devices of a real rig: how each is reached and what it speaks. Fields of `rig` name them.
+//! The devices of a real rig: their ports and protocols. Fields of `rig` name them.
 
 use crate::schema::types::{Field, Variant};
 use crate::units::Dimension;
 
-/// Longest time that may be waited for anything, s.
+/// Longest time-out or wait \[s\].
 pub(crate) const LONGEST_WAIT: f64 = 3600.0;
 
 const WORD_ORDER: Field = Field::choice(

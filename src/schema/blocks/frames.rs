@@ -1,7 +1,7 @@
-//! Many degrees of freedom: the storeys of a frame, and `ground`.
+//! Many degrees of freedom: the storeys of a frame, and its matrices.
 
 use super::behaviours::{BEHAVIOURS, STIFFNESS};
-use crate::schema::types::{BlockKind, Field, Kind, Naming, Variant};
+use crate::schema::types::{Field, Variant};
 use crate::units::Dimension;
 
 const STOREY: &[Variant] = &[Variant::with(
@@ -98,28 +98,3 @@ pub(crate) const DAMPING_UNCERTAINTY: Field = Field::quantity(
 )
 .or(0.0, "%")
 .within(0.0, 0.2);
-
-pub(crate) const GROUND: BlockKind = BlockKind {
-    kind: Kind::Ground,
-    keyword: &["ground"],
-    naming: Naming::Named,
-    procedure: false,
-    fields: &[
-        Field::text(
-            "record",
-            "file: a table with the header `time_s,acceleration_m_per_s2`, or an `.AT2` file of the PEER database",
-        )
-        .required("record = \"ground.csv\""),
-        Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, ""),
-        Field::quantity("scale_uncertainty", Dimension::NUMBER, "standard uncertainty of the accelerations, of them")
-            .or(0.0, "%")
-            .within(0.0, 0.2),
-        Field::quantity("unit", Dimension::ACCELERATION, "what 1 in the record is worth, where its header does not say")
-            .above_zero()
-            .or_said("as its header says"),
-    ],
-    exports: &[],
-    results: &[],
-    example: "ground quake { record = \"ground.csv\" }",
-    doc: "The motion of the ground, from a file",
-};

@@ -1,4 +1,4 @@
-//! `golden { … }`: how near a rerun must come to the blessed results.
+//! `golden { … }`: how near a rerun must come to the accepted results.
 
 use crate::schema::types::{BlockKind, Field, FieldType, Kind, Naming, Variant};
 use crate::units::Dimension;

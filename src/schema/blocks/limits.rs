@@ -1,4 +1,4 @@
-//! `limits { … }`: what nothing may drive the rig past.
+//! `limits { … }`: the limits that no command may exceed.
 
 use crate::schema::types::{BlockKind, Field, Kind, Naming};
 use crate::units::Dimension;

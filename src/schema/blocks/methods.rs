@@ -1,9 +1,9 @@
-//! How a run is integrated and driven: words that every procedure that integrates shares.
+//! Integration and control of a run: fields that every procedure that integrates shares.
 
 use crate::schema::types::{Field, Variant};
 use crate::units::Dimension;
 
-/// −⅓ ≤ α ≤ 0; the end is the double nearest to −⅓.
+/// −⅓ ≤ α ≤ 0; the bound is the double nearest to −⅓.
 const ALPHA: Field = Field::quantity(
     "alpha",
     Dimension::NUMBER,

@@ -1,4 +1,4 @@
-//! `plan "Title" { … }`: the edition of the language and the data of the certificate.
+//! `plan "Title" { … }`: the edition of the language and the administrative data of the report.
 
 use crate::schema::types::{BlockKind, Field, Kind, Naming, Variant};
 

@@ -1,4 +1,4 @@
-//! `report { … }`: what a run leaves for people.
+//! `report { … }`: the files that a run writes for its readers.
 
 use crate::schema::types::{BlockKind, Field, Kind, Naming, Variant};
 

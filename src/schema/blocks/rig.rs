@@ -1,4 +1,4 @@
-//! `rig NAME { … }`: what moves the specimen.
+//! `rig NAME { … }`: the rig that moves the specimen.
 
 use super::devices::{LONGEST_WAIT, SERIAL, TCP};
 use crate::schema::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
@@ -153,7 +153,7 @@ const SIGN: &[Variant] = &[
     ),
 ];
 
-/// Where the zero of the plan's displacements lies.
+/// The zero of the plan's displacements.
 const DATUM: &[Variant] = &[
     Variant::word(
         "machine",
@@ -165,7 +165,7 @@ const DATUM: &[Variant] = &[
     ),
 ];
 
-/// What one axis says of itself: each in place of what the rig says of all.
+/// The entries of one axis, each in place of the rig's own.
 const AXIS: &[Variant] = &[Variant::with(
     "axis",
     &[

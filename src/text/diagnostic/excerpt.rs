@@ -7,7 +7,7 @@ use std::ops::Range;
 use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use super::{Diagnostic, Label};
-use crate::text::sanitize::steers;
+use crate::text::sanitize::is_control_like;
 pub use crate::text::sanitize::{escape, one_line};
 use crate::text::source::{FileId, Position, SourceFile, Sources, Span};
 
@@ -21,14 +21,14 @@ const AROUND: usize = 2;
 /// The lines around the spans of a diagnostic, one segment after the other; the file of the first span is the first.
 #[derive(Debug)]
 pub struct Excerpt {
-    stretches: Vec<Stretch>,
+    segments: Vec<Segment>,
     /// The true position of each span, by its offset in the shown text.
     positions: Vec<(usize, Position)>,
 }
 
 /// Some lines of one file.
 #[derive(Debug)]
-struct Stretch {
+struct Segment {
     /// Line numbers in the file.
     name: String,
     text: String,
@@ -46,7 +46,7 @@ impl Excerpt {
         folder: &str,
     ) -> (Self, Vec<LabeledSpan>) {
         let mut excerpt = Self {
-            stretches: Vec::new(),
+            segments: Vec::new(),
             positions: Vec::new(),
         };
         let mut labels = Vec::new();
@@ -64,32 +64,32 @@ impl Excerpt {
                 .iter()
                 .enumerate()
                 .filter(|(_, label)| label.span.file == id);
-            let mut places: Vec<Place<'_>> = here
-                .map(|(index, label)| Place::of(label, index == 0, sources))
+            let mut marked: Vec<Marked<'_>> = here
+                .map(|(index, label)| Marked::new(label, index == 0, sources))
                 .collect();
-            places.sort_by_key(|place| place.line);
-            for near in places.chunk_by(|one, next| next.line - one.line <= 2 * AROUND) {
+            marked.sort_by_key(|mark| mark.line);
+            for near in marked.chunk_by(|one, next| next.line - one.line <= 2 * AROUND) {
                 let before = near[0].line.saturating_sub(AROUND);
                 let lines = sources.lines(id, before..near[near.len() - 1].line + AROUND + 1);
                 let inside =
                     |range: &Range<usize>| range.start - lines.start..range.end - lines.start;
                 let ranges: Vec<Range<usize>> =
-                    near.iter().map(|place| inside(&place.range)).collect();
+                    near.iter().map(|mark| inside(&mark.range)).collect();
                 let (text, shown) = show(&file.text[lines.clone()], &ranges);
-                for (place, shown) in near.iter().zip(shown) {
+                for (mark, shown) in near.iter().zip(shown) {
                     let span = SourceSpan::new((start + shown.start).into(), shown.len());
-                    let text = Some(escape(&place.label.text)).filter(|text| !text.is_empty());
+                    let text = Some(escape(&mark.label.text)).filter(|text| !text.is_empty());
                     excerpt
                         .positions
-                        .push((span.offset(), sources.position(place.label.span)));
-                    labels.push(if place.primary {
+                        .push((span.offset(), sources.position(mark.label.span)));
+                    labels.push(if mark.primary {
                         LabeledSpan::new_primary_with_span(text, span)
                     } else {
                         LabeledSpan::new_with_span(text, span)
                     });
                 }
                 let length = text.len();
-                excerpt.stretches.push(Stretch {
+                excerpt.segments.push(Segment {
                     name: escape(&format!("{folder}{}", file.name)),
                     text,
                     start,
@@ -104,7 +104,7 @@ impl Excerpt {
 }
 
 /// A label, and its span in the shown text.
-struct Place<'a> {
+struct Marked<'a> {
     label: &'a Label,
     primary: bool,
     /// Bytes of the file.
@@ -113,8 +113,8 @@ struct Place<'a> {
     line: usize,
 }
 
-impl<'a> Place<'a> {
-    fn of(label: &'a Label, primary: bool, sources: &Sources) -> Self {
+impl<'a> Marked<'a> {
+    fn new(label: &'a Label, primary: bool, sources: &Sources) -> Self {
         let range = clip(sources.file(label.span.file), label.span.range());
         let line = sources
             .position(Span::new(label.span.file, range.start, range.start))
@@ -138,33 +138,33 @@ impl SourceCode for Excerpt {
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
         // A span over two segments is rejected: the drawing library then draws two snippets.
         let end = span.offset() + span.len();
-        let stretch = self
-            .stretches
+        let segment = self
+            .segments
             .iter()
-            .find(|stretch| {
-                stretch.start <= span.offset() && end <= stretch.start + stretch.text.len()
+            .find(|segment| {
+                segment.start <= span.offset() && end <= segment.start + segment.text.len()
             })
             .ok_or(MietteError::OutOfBounds)?;
-        let local = SourceSpan::new((span.offset() - stretch.start).into(), span.len());
-        let contents = stretch
+        let local = SourceSpan::new((span.offset() - segment.start).into(), span.len());
+        let contents = segment
             .text
             .as_str()
             .read_span(&local, lines_before, lines_after)?;
         // Without context the library asks for line and column of a span: the true ones, whatever was cut or escaped.
-        let place = self
+        let mark = self
             .positions
             .iter()
             .find(|(offset, _)| *offset == span.offset() && lines_before == 0 && lines_after == 0);
-        let (line, column) = place.map_or(
-            (stretch.before + contents.line(), contents.column()),
+        let (line, column) = mark.map_or(
+            (segment.before + contents.line(), contents.column()),
             |(_, at)| (at.line - 1, at.column - 1),
         );
         let moved = SourceSpan::new(
-            (contents.span().offset() + stretch.start).into(),
+            (contents.span().offset() + segment.start).into(),
             contents.span().len(),
         );
         Ok(Box::new(MietteSpanContents::new_named(
-            stretch.name.clone(),
+            segment.name.clone(),
             contents.data(),
             moved,
             line,
@@ -186,20 +186,19 @@ fn clip(file: &SourceFile, range: Range<usize>) -> Range<usize> {
     start..text.ceil_char_boundary(range.end.clamp(start, line_end))
 }
 
-/// The text to show, and each of the `spans` in it.
-fn show(text: &str, places: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
+/// The text to show, and each of the `marked` ranges in it.
+fn show(text: &str, marked: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
     let mut shown = String::with_capacity(text.len());
-    let mut moved = vec![0..0; places.len()];
+    let mut moved = vec![0..0; marked.len()];
     let mut line_start = 0;
     for line in text.split_inclusive('\n') {
         let body = line.trim_end_matches(['\n', '\r']);
-        let inside = |place: &Range<usize>| {
-            line_start <= place.start && place.start <= line_start + body.len()
-        };
-        let first = places
+        let inside =
+            |mark: &Range<usize>| line_start <= mark.start && mark.start <= line_start + body.len();
+        let first = marked
             .iter()
-            .filter(|place| inside(place))
-            .map(|place| place.start - line_start)
+            .filter(|mark| inside(mark))
+            .map(|mark| mark.start - line_start)
             .min()
             .unwrap_or(0);
         let window = window(body, first);
@@ -208,20 +207,20 @@ fn show(text: &str, places: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
         }
         for (offset, character) in body[window.clone()].char_indices() {
             let offset = line_start + window.start + offset;
-            mark(places, &mut moved, offset, shown.len());
+            move_bounds(marked, &mut moved, offset, shown.len());
             push_shown(&mut shown, character);
         }
         // A span after the window ends at its end.
-        for (place, moved) in places
+        for (mark, moved) in marked
             .iter()
             .zip(&mut moved)
-            .filter(|(place, _)| inside(place))
+            .filter(|(mark, _)| inside(mark))
         {
             let end = line_start + window.end;
-            if place.start >= end {
+            if mark.start >= end {
                 moved.start = shown.len();
             }
-            if place.end >= end {
+            if mark.end >= end {
                 moved.end = shown.len();
             }
         }
@@ -235,12 +234,12 @@ fn show(text: &str, places: &[Range<usize>]) -> (String, Vec<Range<usize>>) {
 }
 
 /// Records that the byte `original` is shown at `now`.
-fn mark(places: &[Range<usize>], moved: &mut [Range<usize>], original: usize, now: usize) {
-    for (place, moved) in places.iter().zip(moved) {
-        if place.start == original {
+fn move_bounds(marked: &[Range<usize>], moved: &mut [Range<usize>], original: usize, now: usize) {
+    for (mark, moved) in marked.iter().zip(moved) {
+        if mark.start == original {
             moved.start = now;
         }
-        if place.end == original {
+        if mark.end == original {
             moved.end = now;
         }
     }
@@ -266,7 +265,7 @@ fn window(body: &str, first: usize) -> Range<usize> {
 }
 
 fn push_shown(text: &mut String, character: char) {
-    if steers(character) && character != '\t' {
+    if is_control_like(character) && character != '\t' {
         text.extend(character.escape_unicode());
     } else {
         text.push(character);
@@ -294,9 +293,9 @@ mod tests {
             .to_vec();
         let (excerpt, labels) = Excerpt::new(&diagnostic, &sources, "");
         let shown: Vec<(usize, usize)> = excerpt
-            .stretches
+            .segments
             .iter()
-            .map(|stretch| (stretch.before, stretch.text.lines().count()))
+            .map(|segment| (segment.before, segment.text.lines().count()))
             .collect();
         assert_eq!(shown, [(1, 5), (69_998, 7), (79_997, 3)]);
         for label in labels {

@@ -90,7 +90,7 @@ fn text<'a>(files: &'a [OutputFile], path: &str) -> &'a str {
 /// What of a text would steer, newlines apart.
 fn steering(text: &str) -> String {
     text.chars()
-        .filter(|c| sanitize::steers(*c) && *c != '\n')
+        .filter(|c| sanitize::is_control_like(*c) && *c != '\n')
         .collect()
 }
 

@@ -4,21 +4,23 @@ use crate::language::check::checker::Checker;
 use crate::language::check::messages::{names as message, values};
 use crate::plan::Striker;
 use crate::plan::formula::{Formula, Operator, Stated};
+use crate::schema::striker::{
+    ANGLE, ARM, DROP_HEIGHT, GAP, GRAVITY, MASS, MASS_UNCERTAINTY, VELOCITY, VELOCITY_UNCERTAINTY,
+};
 use crate::text::source::Span;
 use crate::uncertainty::Source;
-use crate::units::Dimension;
 
 /// Standard gravity \[m/s²\].
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// The fields that each give the velocity; an angle needs its arm.
-const FORMS: [&str; 3] = ["velocity", "drop_height", "angle"];
+const FORMS: [&str; 3] = [VELOCITY.name, DROP_HEIGHT.name, ANGLE.name];
 
 /// A striker whose entries are all valid; None where an error was reported.
 pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     let declared = &checker.scope.blocks[block];
     let (kind, name, head) = (declared.kind, declared.name, declared.block.head);
-    let mass = checker.constant(block, "mass");
+    let mass = checker.constant(block, MASS.name);
     let mut forms: Vec<(&str, Span)> = FORMS
         .into_iter()
         .filter_map(|form| {
@@ -30,12 +32,12 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
         .collect();
     forms.sort_by_key(|(_, span)| span.start);
     match forms.as_slice() {
-        [] if checker.field(block, "arm").is_some() || checker.misspelt(block, &FORMS) => {}
+        [] if checker.field(block, ARM.name).is_some() || checker.misspelt(block, &FORMS) => {}
         [] => checker.diagnostics.push(message::missing_field(
             kind,
             name,
             head,
-            "velocity",
+            VELOCITY.name,
             "velocity = 1 m/s",
         )),
         [_] => {}
@@ -48,12 +50,12 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
         }
     }
     for (form, other, example) in [
-        ("angle", "arm", "arm = 1 m"),
-        ("arm", "angle", "angle = 60 deg"),
+        (ANGLE.name, ARM.name, "arm = 1 m"),
+        (ARM.name, ANGLE.name, "angle = 60 deg"),
     ] {
         let pairless =
             checker.field(block, form).is_some() && checker.field(block, other).is_none();
-        let lacking = form == "angle" || forms.is_empty();
+        let lacking = form == ANGLE.name || forms.is_empty();
         if pairless && lacking && !checker.misspelt(block, &[other]) {
             checker
                 .diagnostics
@@ -61,16 +63,16 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
         }
     }
     // Every entry is read, so that every error is reported.
-    for field in ["drop_height", "arm", "angle"] {
+    for field in [DROP_HEIGHT.name, ARM.name, ANGLE.name] {
         checker.quantity(block, field);
     }
     let (velocity, gap, gravity) = (
         velocity(checker, block),
-        checker.constant(block, "gap"),
-        checker.constant(block, "gravity"),
+        checker.constant(block, GAP.name),
+        checker.constant(block, GRAVITY.name),
     );
-    let mass_uncertainty = uncertainty(checker, block, "mass_uncertainty", mass);
-    let velocity_uncertainty = uncertainty(checker, block, "velocity_uncertainty", velocity);
+    let mass_uncertainty = uncertainty(checker, block, MASS_UNCERTAINTY.name, mass);
+    let velocity_uncertainty = uncertainty(checker, block, VELOCITY_UNCERTAINTY.name, velocity);
     if let (Some(mass), Some(velocity)) = (mass, velocity)
         && !(0.5 * mass * velocity * velocity).is_finite()
     {
@@ -99,7 +101,8 @@ pub fn uncertainty(
     let uncertainty = checker.constant(block, field)?;
     match (value, checker.field(block, field)) {
         (Some(value), Some((_, entry))) if uncertainty > MOST_UNCERTAIN * value => {
-            let dimension = entry_dimension(field);
+            let kind = checker.scope.blocks[block].kind;
+            let dimension = kind.field(field)?.dimension()?;
             checker.fail(values::too_uncertain(
                 field,
                 uncertainty,
@@ -115,25 +118,17 @@ pub fn uncertainty(
 /// Largest relative standard uncertainty of a value: beyond it first-order propagation fails, and 0 is within reach.
 pub const MOST_UNCERTAIN: f64 = 0.2;
 
-fn entry_dimension(field: &str) -> Dimension {
-    if field == "velocity_uncertainty" {
-        Dimension::VELOCITY
-    } else {
-        Dimension::MASS
-    }
-}
-
 /// `velocity`, else √(2·gn·h), where a pendulum falls by h = L(1 − cos θ).
 fn velocity(checker: &mut Checker, block: usize) -> Option<f64> {
-    if checker.field(block, "velocity").is_some() {
-        return checker.constant(block, "velocity");
+    if checker.field(block, VELOCITY.name).is_some() {
+        return checker.constant(block, VELOCITY.name);
     }
-    let height = if checker.field(block, "drop_height").is_some() {
-        checker.constant(block, "drop_height")?
+    let height = if checker.field(block, DROP_HEIGHT.name).is_some() {
+        checker.constant(block, DROP_HEIGHT.name)?
     } else {
         let (arm, angle) = (
-            checker.constant(block, "arm"),
-            checker.constant(block, "angle"),
+            checker.constant(block, ARM.name),
+            checker.constant(block, ANGLE.name),
         );
         // 1 − cos θ = 2 sin²(θ/2), which keeps the digits of a small angle.
         arm? * 2.0 * (0.5 * angle?).sin().powi(2)
@@ -157,10 +152,10 @@ pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formu
         )
     };
     let mass = |checker: &mut Checker| {
-        let value = checker.constant(block, "mass")?;
+        let value = checker.constant(block, MASS.name)?;
         stated(
             checker,
-            "mass_uncertainty",
+            MASS_UNCERTAINTY.name,
             Source::StrikerMass(index),
             value,
         )
@@ -168,7 +163,7 @@ pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formu
     let speed = |checker: &mut Checker, value| {
         stated(
             checker,
-            "velocity_uncertainty",
+            VELOCITY_UNCERTAINTY.name,
             Source::StrikerVelocity(index),
             value,
         )
@@ -176,16 +171,16 @@ pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formu
     let times =
         |a: Formula, b: Formula| Formula::Binary(Operator::Multiply, Box::new(a), Box::new(b));
     let formula = match name {
-        "mass" => mass(checker)?,
-        "gap" => Formula::Constant(checker.constant(block, "gap")?),
+        _ if name == MASS.name => mass(checker)?,
+        _ if name == GAP.name => Formula::Constant(checker.constant(block, GAP.name)?),
         _ => {
             let value = velocity(checker, block)?;
             let velocity = speed(checker, value)?;
             match name {
-                "velocity" => velocity,
-                "drop_height" => {
-                    let height = match checker.field(block, "drop_height") {
-                        Some(_) => checker.constant(block, "drop_height")?,
+                _ if name == VELOCITY.name => velocity,
+                _ if name == DROP_HEIGHT.name => {
+                    let height = match checker.field(block, DROP_HEIGHT.name) {
+                        Some(_) => checker.constant(block, DROP_HEIGHT.name)?,
                         None => value * value / (2.0 * STANDARD_GRAVITY),
                     };
                     // h (v/v₀)²: the stated height, with the uncertainty that follows from the velocity.

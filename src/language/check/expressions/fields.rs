@@ -105,7 +105,7 @@ impl<'a> Checker<'a> {
                         .iter()
                         .any(|frame| has(frame))
             }
-            // The missing parts of a separate load cell are reported in its context.
+            // The missing parts of a separate load cell are reported instead.
             Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
             // Storeys have their own stiffnesses.
             Kind::Unload => {

@@ -1,4 +1,5 @@
-//! `let` and `param`: their values. A value given from outside the plan, by `--set` or by binding, takes the context of a parameter's own.
+//! `let` and `param`: their values. A value given from outside the plan, by `--set` or by binding, replaces the one of a
+//! parameter. In: the syntax tree and the values from outside. Out: constants with their dimensions.
 
 use std::collections::BTreeMap;
 

@@ -2,7 +2,7 @@
 
 use super::shown;
 use crate::language::syntax::ast::Ident;
-use crate::plan::{Dialect, PortPlan};
+use crate::plan::{Dialect, Gate, PortPlan};
 use crate::schema::Field;
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
@@ -365,8 +365,9 @@ pub fn drift_within_noise(
     ))
 }
 
-/// A `probe` \[m\] with which the softest acceptable specimen \[N/m\] gives too little force beside the noise of a reading \[N\].
-pub fn gate_within_noise(probe: f64, softest: f64, noise: f64, at: Span) -> Diagnostic {
+/// A probe with which the softest acceptable specimen gives too little force beside the noise of a reading \[N\].
+pub fn gate_within_noise(gate: &Gate, noise: f64, at: Span) -> Diagnostic {
+    let (probe, softest) = (gate.probe.abs(), gate.stiffness.low);
     // Two digits, rounded up.
     let least = GATE_OVER_NOISE * noise / softest;
     let digit = 10f64.powf(least.log10().floor() - 1.0);

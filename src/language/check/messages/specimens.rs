@@ -21,11 +21,11 @@ pub fn backbone_lists_differ(
     .help("give both lists as many entries")
 }
 
-/// `place` is the index from 0.
-pub fn backbone_point(place: usize, span: Span, label: &str, help: &str) -> Diagnostic {
+/// `index` counts from 0.
+pub fn backbone_point(index: usize, span: Span, label: &str, help: &str) -> Diagnostic {
     Diagnostic::new(
         Code::CornersDoNotFit,
-        format!("corner {} does not follow from the one before", place + 1),
+        format!("corner {} does not follow from the one before", index + 1),
     )
     .at(span, label)
     .help(help)
@@ -69,9 +69,20 @@ pub fn capped_before_yield(displacement: f64, yielded: f64, span: Span) -> Diagn
     .help(format!("a `capping_displacement` beyond {yielded}"))
 }
 
-/// `lost`: the fraction of a force that is lost after a long time.
-pub fn relaxes_away(share: f64, lost: f64, longest: f64, span: Span) -> Diagnostic {
-    let longest = shown(longest, Dimension::TIME);
+/// The loss of force of a logarithmic relaxation.
+#[derive(Clone, Copy)]
+pub struct RelaxationLoss {
+    /// a of a·ln(1 + t/t₀): fraction of the force that is lost each time 1 + t/t₀ grows e-fold.
+    pub share: f64,
+    /// Fraction of the force that is lost at the end.
+    pub lost: f64,
+    /// Duration of the relaxation \[s\].
+    pub longest: f64,
+}
+
+pub fn relaxes_away(loss: RelaxationLoss, span: Span) -> Diagnostic {
+    let RelaxationLoss { share, lost, .. } = loss;
+    let longest = shown(loss.longest, Dimension::TIME);
     let percent = |number: f64| crate::units::display::significant(100.0 * number, 3);
     Diagnostic::new(
         Code::OutOfRange,

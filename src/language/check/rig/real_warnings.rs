@@ -68,12 +68,9 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         .field(block, "gate")
         .or_else(|| checker.field(block, "axes"));
     if let (Some((gate, noise)), Some((_, entry))) = (drowned, given) {
-        checker.diagnostics.push(message::gate_within_noise(
-            gate.probe.abs(),
-            gate.stiffness.low,
-            noise,
-            entry.value.span,
-        ));
+        checker
+            .diagnostics
+            .push(message::gate_within_noise(&gate, noise, entry.value.span));
     }
     let unpinned =
         |device: &DeviceLink| device.dialect == Dialect::Native && device.serial_number.is_none();

@@ -327,7 +327,7 @@ fn hostile_labels_stand_where_they_are_shown() {
         assert!(
             !picture
                 .chars()
-                .any(|c| crate::text::sanitize::steers(c) && c != '\n'),
+                .any(|c| crate::text::sanitize::is_control_like(c) && c != '\n'),
             "{label:?}:\n{picture}"
         );
     }

@@ -5,20 +5,21 @@ pub mod record;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::frames as message;
 use crate::plan::Ground;
+use crate::schema::ground::{RECORD, SCALE, SCALE_UNCERTAINTY, UNIT};
 
 /// A ground motion with a valid record; None where an error was reported.
 pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
     let name = checker.scope.blocks[block].name;
-    let scale = checker.constant(block, "scale");
-    let scale_uncertainty = checker.constant(block, "scale_uncertainty");
-    let stated = checker.field(block, "unit").map(|(_, entry)| entry);
+    let scale = checker.constant(block, SCALE.name);
+    let scale_uncertainty = checker.constant(block, SCALE_UNCERTAINTY.name);
+    let stated = checker.field(block, UNIT.name).map(|(_, entry)| entry);
     let unit = match stated {
-        Some(_) => checker.constant(block, "unit").map(Some),
+        Some(_) => checker.constant(block, UNIT.name).map(Some),
         None => Some(None),
     };
-    let (_, written) = checker.field(block, "record")?;
+    let (_, written) = checker.field(block, RECORD.name)?;
     let at = written.value.span;
-    let record = checker.text_field(block, "record")?;
+    let record = checker.text_field(block, RECORD.name)?;
     let file = checker.data_file(&record, at)?;
     let record = match record::read(&file.name, &file.text) {
         Ok(record) => record,

@@ -259,7 +259,14 @@ fn logarithmic<'a>(
     }
     let lost = lost_after_long(share, reference_time, longest);
     if lost >= 1.0 {
-        return checker.fail(message::relaxes_away(share, lost, longest, span));
+        return checker.fail(message::relaxes_away(
+            message::RelaxationLoss {
+                share,
+                lost,
+                longest,
+            },
+            span,
+        ));
     }
     Some(Behaviour::Logarithmic {
         of,

@@ -11,12 +11,17 @@ use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{frames as message, values};
 use crate::language::syntax::ast::ExprKind;
 use crate::plan::{Behaviour, Frame, MOST_STOREYS, Storey};
+use crate::schema::specimen as fields;
 use crate::schema::{Field, FieldType};
 use crate::text::source::{Span, Spanned};
 use crate::units::Dimension;
 
 /// Fields that make a specimen a frame.
-pub const FIELDS: [&str; 3] = ["storeys", "mass_matrix", "stiffness_matrix"];
+pub const FIELDS: [&str; 3] = [
+    fields::STOREYS.name,
+    fields::MASS_MATRIX.name,
+    fields::STIFFNESS_MATRIX.name,
+];
 
 /// Relative difference within which a stiffness equals that of its model: the last digits of a sum or a quotient.
 const SAME: f64 = 1e-9;
@@ -25,18 +30,21 @@ const SAME: f64 = 1e-9;
 const WITHIN: f64 = 3.0;
 
 /// Uncertainties of the matrices, with the field that each belongs to.
-const MATRIX_UNCERTAINTIES: [&str; 2] = ["mass_matrix_uncertainty", "stiffness_matrix_uncertainty"];
+const MATRIX_UNCERTAINTIES: [&str; 2] = [
+    fields::MASS_MATRIX_UNCERTAINTY.name,
+    fields::STIFFNESS_MATRIX_UNCERTAINTY.name,
+];
 
 /// Fields of a specimen of one degree of freedom, which a frame does not have.
 const OF_ONE: [&str; 8] = [
-    "mass",
-    "mass_uncertainty",
-    "length",
-    "area",
-    "density",
-    "behaviour",
-    "damping",
-    "coulomb",
+    fields::MASS.name,
+    fields::MASS_UNCERTAINTY.name,
+    fields::LENGTH.name,
+    fields::AREA.name,
+    fields::DENSITY.name,
+    fields::BEHAVIOUR.name,
+    fields::DAMPING.name,
+    fields::COULOMB.name,
 ];
 
 pub fn is_frame(checker: &Checker, block: usize) -> bool {
@@ -52,9 +60,11 @@ pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
     }
     // Until it is known there is none: a storey that reads the mass of its own frame gets no value.
     checker.frames.insert(block, None);
-    let frame = report_once(checker, block).and_then(|()| match checker.field(block, "storeys") {
-        Some(_) => storeys(checker, block).map(Frame::of_storeys),
-        None => matrices(checker, block),
+    let frame = report_once(checker, block).and_then(|()| {
+        match checker.field(block, fields::STOREYS.name) {
+            Some(_) => storeys(checker, block).map(Frame::of_storeys),
+            None => matrices(checker, block),
+        }
     });
     let frame = frame.map(Rc::new);
     checker.frames.insert(block, frame.clone());
@@ -63,8 +73,9 @@ pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
 
 /// A specimen is either storeys, or two matrices, or one degree of freedom.
 fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
-    let storeys = checker.field(block, "storeys");
-    let matrices = ["mass_matrix", "stiffness_matrix"].map(|field| checker.field(block, field));
+    let storeys = checker.field(block, fields::STOREYS.name);
+    let matrices = [fields::MASS_MATRIX.name, fields::STIFFNESS_MATRIX.name]
+        .map(|field| checker.field(block, field));
     let first = storeys.or(matrices[0]).or(matrices[1])?.1;
     let of_matrices = MATRIX_UNCERTAINTIES.map(|field| checker.field(block, field));
     let beside_storeys = matrices
@@ -83,12 +94,14 @@ fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
         return checker.fail(message::specimen_twice(&first.key, other));
     }
     match (storeys, matrices) {
-        (None, [Some((_, mass)), None]) => {
-            checker.fail(message::matrix_alone(&mass.key, "stiffness_matrix"))
-        }
-        (None, [None, Some((_, stiffness))]) => {
-            checker.fail(message::matrix_alone(&stiffness.key, "mass_matrix"))
-        }
+        (None, [Some((_, mass)), None]) => checker.fail(message::matrix_alone(
+            &mass.key,
+            fields::STIFFNESS_MATRIX.name,
+        )),
+        (None, [None, Some((_, stiffness))]) => checker.fail(message::matrix_alone(
+            &stiffness.key,
+            fields::MASS_MATRIX.name,
+        )),
         _ => Some(()),
     }
 }
@@ -97,7 +110,7 @@ fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
 pub fn no_matrix_uncertainties(checker: &mut Checker, block: usize) -> Option<()> {
     for (field, matrix) in MATRIX_UNCERTAINTIES
         .into_iter()
-        .zip(["mass_matrix", "stiffness_matrix"])
+        .zip([fields::MASS_MATRIX.name, fields::STIFFNESS_MATRIX.name])
     {
         if let Some((_, entry)) = checker.field(block, field) {
             return checker.fail(message::matrix_uncertainty_alone(&entry.key, matrix));
@@ -107,9 +120,9 @@ pub fn no_matrix_uncertainties(checker: &mut Checker, block: usize) -> Option<()
 }
 
 fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
-    let (entry, written) = checker.field(block, "storeys")?;
+    let (entry, written) = checker.field(block, fields::STOREYS.name)?;
     let context = checker.context_of(block, entry);
-    let chosen = checker.choices(block, "storeys")?;
+    let chosen = checker.choices(block, fields::STOREYS.name)?;
     let span = written.value.span;
     if chosen.is_empty() {
         return checker.fail(values::empty_list(span));
@@ -228,11 +241,11 @@ fn storey<'a>(
 
 /// The frame from the files of its matrices, with the files.
 fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
-    let mass = matrix_of(checker, block, "mass_matrix");
-    let stiffness = matrix_of(checker, block, "stiffness_matrix");
+    let mass = matrix_of(checker, block, fields::MASS_MATRIX.name);
+    let stiffness = matrix_of(checker, block, fields::STIFFNESS_MATRIX.name);
     let ((mass_file, mass), (stiffness_file, stiffness)) = (mass?, stiffness?);
     if mass.len() != stiffness.len() {
-        let (_, written) = checker.field(block, "stiffness_matrix")?;
+        let (_, written) = checker.field(block, fields::STIFFNESS_MATRIX.name)?;
         let diagnostic = message::matrices_of_two_sizes(
             &stiffness_file,
             stiffness.len(),

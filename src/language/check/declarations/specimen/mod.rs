@@ -16,7 +16,7 @@ use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::physics::structure::portal_limit::mechanism_limit;
 use crate::plan::formula::{Formula, Function, Stated};
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
-use crate::schema::{FieldType, Kind};
+use crate::schema::{FieldType, Kind, specimen as fields};
 use crate::text::source::Span;
 use crate::uncertainty::Source;
 use behaviour::{Material, Written};
@@ -26,7 +26,7 @@ pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {
     if frame::is_frame(checker, block) {
         return frame::frame(checker, block).map(|frame| frame.total_mass_uncertainty());
     }
-    checker.constant(block, "mass_uncertainty")
+    checker.constant(block, fields::MASS_UNCERTAINTY.name)
 }
 
 /// A specimen whose entries are all valid; None where an error was reported.
@@ -45,13 +45,20 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     }
     let no_matrices = frame::no_matrix_uncertainties(checker, block);
     let mass = mass(checker, block);
-    if checker.misspelt(block, &["mass", "density", "area", "length"])
-        || invalid_portal(checker, block)
+    if checker.misspelt(
+        block,
+        &[
+            fields::MASS.name,
+            fields::DENSITY.name,
+            fields::AREA.name,
+            fields::LENGTH.name,
+        ],
+    ) || invalid_portal(checker, block)
     {
         // A misspelt or invalid entry has its own diagnostic.
     } else if mass.is_none()
         && names_portal(checker, block)
-        && checker.field(block, "length").is_none()
+        && checker.field(block, fields::LENGTH.name).is_none()
     {
         checker
             .diagnostics
@@ -61,12 +68,12 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
             declared.kind,
             name,
             head,
-            "mass",
+            fields::MASS.name,
             "mass = 0.73 kg",
         ));
     } else if mass.is_none()
-        && checker.field(block, "mass").is_none()
-        && let Some(missing) = ["density", "area", "length"]
+        && checker.field(block, fields::MASS.name).is_none()
+        && let Some(missing) = [fields::DENSITY.name, fields::AREA.name, fields::LENGTH.name]
             .into_iter()
             .find(|field| checker.field(block, field).is_none())
     {
@@ -76,19 +83,19 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     }
     beam_has_mass(checker, block, mass);
     // Every number is evaluated, also those that the mass does not need, so that all errors are reported in one pass.
-    for field in ["length", "area", "density"] {
+    for field in [fields::LENGTH.name, fields::AREA.name, fields::DENSITY.name] {
         checker.quantity(block, field);
     }
     // A real specimen needs no model; that a virtual one lacks it has its own diagnostic.
-    let behaviour = match checker.field(block, "behaviour") {
+    let behaviour = match checker.field(block, fields::BEHAVIOUR.name) {
         None if checker.real_rig.is_some() => Some(None),
         _ => behaviour(checker, block, head).map(Some),
     };
     let (damping, coulomb) = (
-        checker.constant(block, "damping"),
-        checker.constant(block, "coulomb"),
+        checker.constant(block, fields::DAMPING.name),
+        checker.constant(block, fields::COULOMB.name),
     );
-    let mass_uncertainty = uncertainty(checker, block, "mass_uncertainty", mass);
+    let mass_uncertainty = uncertainty(checker, block, fields::MASS_UNCERTAINTY.name, mass);
     no_matrices?;
     Some(Specimen {
         name: name?.node.clone(),
@@ -107,13 +114,13 @@ fn beam_has_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
     let declared = &checker.scope.blocks[block];
     let beam = |written: &Expr| behaviour::names(written, "beam");
     let named = checker
-        .field(block, "behaviour")
+        .field(block, fields::BEHAVIOUR.name)
         .is_some_and(|(_, entry)| beam(&entry.value));
     let (Some(half), Some(name)) = (half.filter(|_| named && !checker.recorded), declared.name)
     else {
         return;
     };
-    if checker.field(block, "mass").is_some() {
+    if checker.field(block, fields::MASS.name).is_some() {
         return;
     }
     let masses = behaviour(checker, block, declared.block.head)
@@ -127,23 +134,28 @@ fn beam_has_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {
-    ["mass", "density", "area", "length"]
-        .into_iter()
-        .any(|field| checker.field(block, field).is_some())
+    [
+        fields::MASS.name,
+        fields::DENSITY.name,
+        fields::AREA.name,
+        fields::LENGTH.name,
+    ]
+    .into_iter()
+    .any(|field| checker.field(block, field).is_some())
 }
 
 /// `mass`, else the mass from a portal's geometry, else q·A·L/2, the equivalent mass at midspan (Melo et al. 2006, Fig. 5).
 fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
-    if checker.field(block, "mass").is_some() {
-        return checker.constant(block, "mass");
+    if checker.field(block, fields::MASS.name).is_some() {
+        return checker.constant(block, fields::MASS.name);
     }
     if let Some(elastic) = mass_of_portal(checker, block) {
         return Some(elastic);
     }
     let (density, area, length) = (
-        checker.constant(block, "density")?,
-        checker.constant(block, "area")?,
-        checker.constant(block, "length")?,
+        checker.constant(block, fields::DENSITY.name)?,
+        checker.constant(block, fields::AREA.name)?,
+        checker.constant(block, fields::LENGTH.name)?,
     );
     Some(density * area * length / 2.0)
 }
@@ -160,9 +172,9 @@ fn mass_of_portal(checker: &mut Checker, block: usize) -> Option<f64> {
 
 /// Whether a specimen without a stated mass is a portal.
 fn names_portal(checker: &Checker, block: usize) -> bool {
-    checker.field(block, "mass").is_none()
+    checker.field(block, fields::MASS.name).is_none()
         && checker
-            .field(block, "behaviour")
+            .field(block, fields::BEHAVIOUR.name)
             .is_some_and(|(_, entry)| behaviour::names(&entry.value, "portal"))
 }
 
@@ -173,7 +185,7 @@ fn invalid_portal(checker: &mut Checker, block: usize) -> bool {
 
 /// The expression that gives the mass: as it is written, or that of the geometry where no mass is stated.
 fn mass_from(checker: &mut Checker, block: usize) -> Option<String> {
-    match checker.field(block, "mass") {
+    match checker.field(block, fields::MASS.name) {
         Some((_, entry)) if matches!(entry.value.kind, ExprKind::Number { .. }) => None,
         Some((_, entry)) => Some(checker.text(entry.value.span).to_owned()),
         None if mass_of_portal(checker, block).is_some() => Some("elastic_mass".to_owned()),
@@ -183,15 +195,18 @@ fn mass_from(checker: &mut Checker, block: usize) -> Option<String> {
 
 /// q·A \[kg/m\].
 fn mass_per_length(checker: &mut Checker, block: usize) -> Option<f64> {
-    Some(checker.constant(block, "density")? * checker.constant(block, "area")?)
+    Some(
+        checker.constant(block, fields::DENSITY.name)?
+            * checker.constant(block, fields::AREA.name)?,
+    )
 }
 
 /// q·A·L \[kg\].
 fn own_mass(checker: &mut Checker, block: usize) -> Option<f64> {
     let (density, area, length) = (
-        checker.constant(block, "density")?,
-        checker.constant(block, "area")?,
-        checker.constant(block, "length")?,
+        checker.constant(block, fields::DENSITY.name)?,
+        checker.constant(block, fields::AREA.name)?,
+        checker.constant(block, fields::LENGTH.name)?,
     );
     Some(density * area * length)
 }
@@ -205,7 +220,7 @@ pub fn exported(
 ) -> Option<Formula> {
     let value = export(checker, block, name, requested_at)?;
     let specimen = checker.scope.index_in_kind(block);
-    if name != "mass" {
+    if name != fields::MASS.name {
         return Some(Formula::Constant(value));
     }
     if frame::is_frame(checker, block) {
@@ -241,7 +256,7 @@ pub fn exported(
             Formula::Constant(value)
         });
     }
-    let uncertainty = checker.constant(block, "mass_uncertainty")?;
+    let uncertainty = checker.constant(block, fields::MASS_UNCERTAINTY.name)?;
     Some(
         Stated {
             source: Source::SpecimenMass(specimen),
@@ -257,7 +272,9 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
     let declared = &checker.scope.blocks[block];
     if frame::is_frame(checker, block) {
         return match name {
-            "mass" => frame::frame(checker, block).map(|frame| frame.total_mass()),
+            _ if name == fields::MASS.name => {
+                frame::frame(checker, block).map(|frame| frame.total_mass())
+            }
             _ => checker.fail(frames::no_one_of_its_kind(
                 declared.name,
                 name,
@@ -265,11 +282,11 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
             )),
         };
     }
-    if name == "mass" {
+    if name == fields::MASS.name {
         return mass(checker, block);
     }
     // Known only with a model; that a virtual specimen lacks one has its own diagnostic.
-    if checker.real_rig.is_some() && checker.field(block, "behaviour").is_none() {
+    if checker.real_rig.is_some() && checker.field(block, fields::BEHAVIOUR.name).is_none() {
         return checker.fail(message::property_without_behaviour(
             declared.name,
             name,
@@ -330,10 +347,13 @@ pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Opt
             .iter()
             .all(|field| checker.field(block, field).is_some())
     };
-    let own_mass = stated(checker, &["density", "area", "length"])
-        .then(|| own_mass(checker, block))
-        .flatten();
-    let mass_per_length = stated(checker, &["density", "area"])
+    let own_mass = stated(
+        checker,
+        &[fields::DENSITY.name, fields::AREA.name, fields::LENGTH.name],
+    )
+    .then(|| own_mass(checker, block))
+    .flatten();
+    let mass_per_length = stated(checker, &[fields::DENSITY.name, fields::AREA.name])
         .then(|| mass_per_length(checker, block))
         .flatten();
     let material = Material {
@@ -342,18 +362,20 @@ pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Opt
     };
     let behaviour = checker.within_entry(
         block,
-        "behaviour",
+        fields::BEHAVIOUR.name,
         requested_at,
         |checker, expr, context| {
-            let FieldType::Choice(variants) =
-                checker.scope.blocks[block].kind.field("behaviour")?.ty
+            let FieldType::Choice(variants) = checker.scope.blocks[block]
+                .kind
+                .field(fields::BEHAVIOUR.name)?
+                .ty
             else {
                 return None;
             };
             behaviour::behaviour(
                 checker,
                 &Written {
-                    field: "behaviour",
+                    field: fields::BEHAVIOUR.name,
                     variants,
                     expr,
                     context,
@@ -388,7 +410,7 @@ pub fn warn_of_short_tables(
             continue;
         };
         let mut named = Vec::new();
-        if let Some((_, entry)) = checker.field(block, "behaviour") {
+        if let Some((_, entry)) = checker.field(block, fields::BEHAVIOUR.name) {
             behaviour::tables_named(&entry.value, &mut named);
         }
         // In series or in parallel with a spring the displacement of the specimen is not that of the table.

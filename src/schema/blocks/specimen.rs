@@ -1,0 +1,130 @@
+//! The block `specimen`: mass, restoring-force model, storeys and matrices. Its reader, `language::check::declarations::specimen`, names the
+//! fields by these constants.
+
+use super::behaviours::BEHAVIOURS;
+pub(crate) use super::frames::{
+    MASS_MATRIX, MASS_MATRIX_UNCERTAINTY, STIFFNESS_MATRIX, STIFFNESS_MATRIX_UNCERTAINTY, STOREYS,
+};
+use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind};
+use crate::units::Dimension;
+
+pub(crate) const MASS: Field = Field::quantity("mass", Dimension::MASS, "equivalent mass at the struck section")
+            .above_zero()
+            .or_said("density * area * length / 2, or that of a `portal` as it deflects elastically; a `beam` says it");
+
+pub(crate) const MASS_UNCERTAINTY: Field = Field::quantity(
+    "mass_uncertainty",
+    Dimension::MASS,
+    "standard uncertainty of the mass",
+)
+.or(0.0, "kg")
+.at_least_zero();
+
+pub(crate) const LENGTH: Field =
+    Field::quantity("length", Dimension::LENGTH, "length of the beam").above_zero();
+
+pub(crate) const AREA: Field =
+    Field::quantity("area", Dimension::AREA, "area of the cross-section").above_zero();
+
+pub(crate) const DENSITY: Field =
+    Field::quantity("density", Dimension::DENSITY, "density of the material").above_zero();
+
+pub(crate) const BEHAVIOUR: Field =
+    Field::choice("behaviour", BEHAVIOURS, "what a virtual rig bends").required_on(
+        RigKind::Virtual,
+        "behaviour = elastic(stiffness: 300 kN/m)",
+        "",
+    );
+
+pub(crate) const DAMPING: Field = Field::quantity(
+    "damping",
+    Dimension::DAMPING,
+    "c of c·v on the virtual load cell while the actuator moves",
+)
+.or(0.0, "N*s/m")
+.at_least_zero();
+
+pub(crate) const COULOMB: Field = Field::quantity(
+    "coulomb",
+    Dimension::FORCE,
+    "friction on the virtual load cell",
+)
+.or(0.0, "N")
+.at_least_zero();
+
+pub(crate) const SPECIMEN: BlockKind = BlockKind {
+    kind: Kind::Specimen,
+    keyword: &["specimen"],
+    naming: Naming::Named,
+    procedure: false,
+    fields: &[
+        MASS,
+        MASS_UNCERTAINTY,
+        LENGTH,
+        AREA,
+        DENSITY,
+        BEHAVIOUR,
+        DAMPING,
+        COULOMB,
+        STOREYS,
+        MASS_MATRIX,
+        STIFFNESS_MATRIX,
+        MASS_MATRIX_UNCERTAINTY,
+        STIFFNESS_MATRIX_UNCERTAINTY,
+    ],
+    exports: &[
+        ResultKind::new(
+            MASS.name,
+            Dimension::MASS,
+            "equivalent mass; of storeys, all floors together",
+        ),
+        ResultKind::new(
+            "stiffness",
+            Dimension::STIFFNESS,
+            "stiffness of the behaviour at no displacement",
+        ),
+        ResultKind::new(
+            "capacity",
+            Dimension::FORCE,
+            "largest force of a behaviour that has one",
+        ),
+        ResultKind::new(
+            "elastic_mass",
+            Dimension::MASS,
+            "of a beam or portal, by its elastic deflection",
+        ),
+        ResultKind::new(
+            "plastic_mass",
+            Dimension::MASS,
+            "of a portal, by the mechanism that governs",
+        ),
+        ResultKind::new(
+            "lumped_mass",
+            Dimension::MASS,
+            "of a beam or portal, its members' halves at their ends",
+        ),
+        ResultKind::new(
+            "beam_collapse_load",
+            Dimension::FORCE,
+            "of a portal, W + H of the beam mechanism",
+        ),
+        ResultKind::new(
+            "sway_collapse_load",
+            Dimension::FORCE,
+            "of a portal, W + H of the sway mechanism",
+        ),
+        ResultKind::new(
+            "combined_collapse_load",
+            Dimension::FORCE,
+            "of a portal, W + H of the combined mechanism",
+        ),
+        ResultKind::new(
+            "mechanism_limit",
+            Dimension::FORCE,
+            "of a portal under one load, the largest that its mechanism follows",
+        ),
+    ],
+    results: &[],
+    example: "specimen beam {\n  mass = 0.73 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}",
+    doc: "The structure on the rig",
+};

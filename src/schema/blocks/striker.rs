@@ -1,0 +1,108 @@
+//! The block `striker`. Its reader, `language::check::declarations::striker`, names the fields by these constants.
+
+use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
+use crate::units::Dimension;
+
+pub(crate) const MASS: Field = Field::quantity("mass", Dimension::MASS, "mass of the striker")
+    .required("mass = 20 kg")
+    .above_zero();
+
+pub(crate) const MASS_UNCERTAINTY: Field = Field::quantity(
+    "mass_uncertainty",
+    Dimension::MASS,
+    "standard uncertainty of the mass",
+)
+.or(0.0, "kg")
+.at_least_zero();
+
+pub(crate) const VELOCITY: Field = Field::quantity(
+    "velocity",
+    Dimension::VELOCITY,
+    "velocity at the start, towards the structure; or `drop_height`, or `arm` and `angle`",
+)
+.above_zero()
+.or_said("sqrt(2 gn * drop_height), or sqrt(2 gn * arm * (1 - cos(angle)))");
+
+pub(crate) const VELOCITY_UNCERTAINTY: Field = Field::quantity(
+    "velocity_uncertainty",
+    Dimension::VELOCITY,
+    "standard uncertainty of the velocity, however it is given",
+)
+.or(0.0, "m/s")
+.at_least_zero();
+
+pub(crate) const DROP_HEIGHT: Field = Field::quantity(
+    "drop_height",
+    Dimension::LENGTH,
+    "height of fall that gives the velocity",
+)
+.above_zero();
+
+pub(crate) const ARM: Field = Field::quantity(
+    "arm",
+    Dimension::LENGTH,
+    "length of a pendulum, to its centre of mass",
+)
+.above_zero();
+
+pub(crate) const ANGLE: Field = Field::angle(
+    "angle",
+    "from which a pendulum is let go, measured from where it hangs",
+)
+.above_zero_up_to(std::f64::consts::PI);
+
+pub(crate) const GRAVITY: Field = Field::quantity(
+    "gravity",
+    Dimension::ACCELERATION,
+    "acceleration along its way: `1 gn` for a weight that falls",
+)
+.or(0.0, "m/s^2")
+.at_least_zero();
+
+pub(crate) const GAP: Field = Field::quantity(
+    "gap",
+    Dimension::LENGTH,
+    "distance to the structure at the start",
+)
+.or(0.0, "mm")
+.at_least_zero();
+
+pub(crate) const STRIKER: BlockKind = BlockKind {
+    kind: Kind::Striker,
+    keyword: &["striker"],
+    naming: Naming::Named,
+    procedure: false,
+    fields: &[
+        MASS,
+        MASS_UNCERTAINTY,
+        VELOCITY,
+        VELOCITY_UNCERTAINTY,
+        DROP_HEIGHT,
+        ARM,
+        ANGLE,
+        GRAVITY,
+        GAP,
+    ],
+    exports: &[
+        ResultKind::new(MASS.name, Dimension::MASS, "mass of the striker"),
+        ResultKind::new(VELOCITY.name, Dimension::VELOCITY, "velocity at the start"),
+        ResultKind::new(
+            "energy",
+            Dimension::ENERGY,
+            "kinetic energy at the start, ½ m v²",
+        ),
+        ResultKind::new(
+            DROP_HEIGHT.name,
+            Dimension::LENGTH,
+            "height of fall, v² / (2 gn)",
+        ),
+        ResultKind::new(
+            GAP.name,
+            Dimension::LENGTH,
+            "distance to the structure at the start",
+        ),
+    ],
+    results: &[],
+    example: "striker pendulum {\n  mass = 20 kg\n  velocity = 1 m/s\n}",
+    doc: "A computed body that strikes the structure",
+};
