@@ -4,8 +4,8 @@
 //! text → syntax (Ast) → check (Plan) → run (Record) → verdict → report
 //! ```
 //!
-//! Each arrow is one public function that takes the left and gives the right. No stage calls back, and no stage after
-//! `check` sees text. The stages are engines. What is particular to one procedure lies in its folder of `procedures`.
+//! Each arrow is one public function. No stage calls back, and no stage after `check` reads text. The stages are engines:
+//! everything that concerns one procedure only is in its folder of `procedures`.
 
 pub mod text;
 pub mod units;

@@ -1,4 +1,4 @@
-//! Rows of words → aligned text, two blanks between columns and two before.
+//! Aligned columns. In: rows of cells. Out: text with two spaces before and between columns.
 
 /// Aligned rows, each ending with a newline. A row may be shorter than others.
 pub fn columns(rows: &[Vec<String>]) -> String {

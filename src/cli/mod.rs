@@ -18,15 +18,15 @@ use clap::Parser as _;
 pub use exit::Exit;
 use exit::Failure;
 
-/// Runs one command line, the program's name first, and says how it ended.
+/// Runs one command line, which begins with the name of the program, and returns its exit.
 #[must_use]
 pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
-    // If it cannot be caught, a file that grows too large ends the program, and the rig's own watchdog holds.
+    // Where the signal cannot be caught, a file over the size limit ends the program, and the watchdog of the rig holds it.
     let _ = operator::watch::catch_full_files();
     let arguments = match args::Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are results on stdout; a wrong command line is told on stderr. A closed pipe is not our fault.
+            // Help and version go to stdout, errors of the command line to stderr. A closed pipe is not an error.
             let _ = error.print();
             return if error.use_stderr() {
                 Exit::Wrong

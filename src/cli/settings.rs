@@ -1,4 +1,4 @@
-//! Arguments and surroundings → settings. The one file that asks the environment and the terminal anything.
+//! Settings of the output. In: arguments, environment and terminal. Out: settings. No other file reads the environment.
 
 use std::io::IsTerminal as _;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use super::args::Color;
 use crate::text::diagnostic::render::Appearance;
 
-/// How to talk to whoever started the program.
+/// Colours, characters and terminals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -21,14 +21,14 @@ pub struct Settings {
     pub unicode: bool,
     /// Standard error is a terminal: a progress bar makes sense.
     pub stderr_terminal: bool,
-    /// Standard output is a terminal: what is shown there is for a person.
+    /// Standard output is a terminal.
     pub stdout_terminal: bool,
-    /// Someone can be asked: standard input and standard error are a terminal.
+    /// The operator can be asked: standard input and standard error are a terminal.
     pub can_ask: bool,
 }
 
 impl Settings {
-    /// No terminal, no colour, nobody to ask.
+    /// No terminal, no colour, no operator.
     #[cfg(test)]
     pub const PLAIN: Self = Self {
         color: false,
@@ -62,7 +62,7 @@ impl Settings {
         }
     }
 
-    /// How diagnostics of a plan are drawn; names of files are given from where the person stands.
+    /// The style of diagnostics; file names are relative to the working folder.
     pub fn appearance(self, plan: &Path) -> Appearance {
         let width = (!self.stderr_terminal).then_some(100);
         Appearance {
@@ -81,7 +81,7 @@ impl Settings {
         }
     }
 
-    /// A bad finding on standard output.
+    /// The colour of a bad finding on standard output.
     pub fn paint_bad(self, text: &str) -> String {
         if self.stdout_color {
             format!("\u{1b}[1;31m{text}\u{1b}[0m")

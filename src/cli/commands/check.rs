@@ -9,14 +9,14 @@ use crate::cli::settings::Settings;
 use crate::text::diagnostic::excerpt::one_line;
 use crate::text::diagnostic::json;
 
-/// Checks every plan, and says what each would do where asked.
+/// Checks every plan, and with `--explain` prints the prediction of its run.
 pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Failure> {
     let mut exit = Exit::Met;
     let mut found = Vec::new();
     for path in &arguments.plans {
         let checked = match plan_file::open(path, &arguments.plan_settings) {
             Ok(checked) => checked,
-            // One file that cannot be read does not hide what is wrong with the others.
+            // A file that cannot be read does not stop the check of the others.
             Err(failure) => {
                 print_message(&failure.report(settings));
                 found.push(json::unreadable(

@@ -1,4 +1,4 @@
-//! `psd compare RUN RUN…`: runs side by side. In: run folders, read from their records, or folders of blessed results. Out:
+//! `psd compare RUN RUN…`: runs side by side. In: run folders, read from their records, or folders of accepted results. Out:
 //! tables on standard output, and with `--out` a page, a CSV and the figures. It opens no rig and changes no run.
 
 use std::path::Path;
@@ -18,7 +18,7 @@ use crate::report::comparison::page;
 use crate::report::summary::Summary;
 use crate::report::{Figures, OutputError, OutputFile, Run, figure_data};
 
-/// Lays runs side by side.
+/// Compares runs.
 pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {
     let sides = arguments
         .runs
@@ -106,7 +106,7 @@ fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
     })
 }
 
-/// Blessed results hold the same numbers, and no plan.
+/// Accepted results hold the same numbers, without a plan.
 fn from_results(name: String, folder: &Path) -> Result<Side, Failure> {
     let truth = truth_in(folder)?;
     let Some(summary) = truth.text(SUMMARY) else {

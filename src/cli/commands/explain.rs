@@ -8,7 +8,7 @@ use crate::cli::settings::Settings;
 use crate::text::diagnostic::Code;
 use crate::text::suggest::nearest;
 
-/// Gives the page of `code`.
+/// Prints the page of `code`.
 pub fn explain(code: Option<&str>, settings: Settings) -> Result<Exit, Failure> {
     let text = match code {
         None => list(settings),
@@ -33,7 +33,7 @@ fn unknown(written: &str, wanted: &str) -> Failure {
     Failure::command_line(format!("no diagnostic has the code `{written}`")).help(help)
 }
 
-/// A page as it is written, its heading and the words of its fences set off where there is colour.
+/// A page with its heading and code blocks coloured where colour is on.
 fn page(code: Code, settings: Settings) -> String {
     let mut text = String::new();
     for line in code.page().trim_end().lines() {

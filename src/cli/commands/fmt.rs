@@ -1,5 +1,5 @@
-//! `psd fmt`: the canonical layout. In: files and folders. Out: the files rewritten, or with `--check` what would
-//! change. A file with syntax errors is left as it is.
+//! `psd fmt`: the canonical layout. In: files and folders. Out: the files rewritten, or with `--check` the names of those
+//! that would change. A file with syntax errors is not changed.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
         )?;
         return Ok(Exit::Missed);
     }
-    // Guards a person's work against the formatter itself: what it wrote must read without fault and stay as it is.
+    // A check of the formatter: its output must parse without errors and be stable.
     if canonical(path, &formatted, settings).as_deref() != Some(formatted.as_str()) {
         return Err(Failure::file(
             path,
@@ -65,7 +65,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     Ok(Exit::Met)
 }
 
-/// The canonical text. None, and told, if the file has syntax errors.
+/// The canonical text. None where the file has syntax errors, which are printed.
 fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
     let mut sources = Sources::default();
     let file = sources.add(name_of(path), text);
@@ -80,7 +80,7 @@ fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
     Some(syntax::format(&ast, text))
 }
 
-/// Writes beside the file and renames, so that at no moment half a plan is on disk. A link stays a link.
+/// Writes a new file and renames it, so that the plan on disk is always complete. A link stays a link.
 fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     let place = path.canonicalize()?;
     let temporary = place.with_file_name(format!(".{}.{}", name_of(&place), std::process::id()));
@@ -95,7 +95,7 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
         std::fs::rename(&temporary, &place)
     };
     write().inspect_err(|_| {
-        // The first error is the one to tell.
+        // The first error is reported.
         let _ = std::fs::remove_file(&temporary);
     })
 }

@@ -1,6 +1,6 @@
-//! `psd issue RUN` and `psd report RUN --amend`: a report that states what is known only after the test, or that takes the
-//! place of another and says so. In: a run folder that verifies, the particulars to state, the day, by whom and why. Out: a
-//! folder of its own beside it, with the same record; the one that it is made from stays as it is. No measured number changes.
+//! `psd issue RUN` and `psd report RUN --amend`: a report that states particulars known only after the test, or that replaces
+//! another report. In: a run folder that verifies, the particulars, the day, the issuer and the reason. Out: a new folder beside
+//! it with the same record; the original folder is not changed. No measured number changes.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ use crate::text::diagnostic::excerpt::one_line;
 /// The largest file of particulars, bytes.
 const PARTICULARS_BYTES: u64 = 1 << 20;
 
-/// What is to be made of a report.
+/// The issue of a report.
 struct Wanted<'a> {
     run: &'a Path,
     out: Option<&'a Path>,
@@ -34,7 +34,7 @@ struct Wanted<'a> {
     particulars: Vec<(String, String)>,
 }
 
-/// Issues a report: who authorises it, on which day, and what else is known only after the test.
+/// Issues a report: issuer, day, and particulars that are known only after the test.
 pub fn issue(arguments: &IssueArguments, settings: Settings) -> Result<Exit, Failure> {
     let mut particulars = particulars(&arguments.set_particular, arguments.particulars.as_deref())?;
     if let Some((field, _)) = particulars
@@ -105,7 +105,7 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     };
     refuse_rival(run, &report.id, &manifest.digest)?;
     let before = IssueFile::of(&folder).map_err(|fault| Failure::file(run, fault))?;
-    // The day of the issue is that of the report, whatever it was before.
+    // The day of the issue is the day of the report.
     let particulars = [
         wanted.particulars,
         vec![("issued".to_owned(), wanted.date.to_owned())],
@@ -153,11 +153,11 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
         report.id
     ));
     print_result(&format!("{}\n", place.path().display()))?;
-    // Whatever the verdict of the run: the report has been made.
+    // The exit does not depend on the verdict of the run.
     Ok(Exit::Met)
 }
 
-/// One report is replaced by one other: a second one beside it would be its rival, and nobody could tell which holds.
+/// A report is replaced only once: of two replacements beside each other none would be the valid one.
 fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), Failure> {
     let run = run
         .canonicalize()
@@ -168,7 +168,7 @@ fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), F
     let failed = |error: std::io::Error| Failure::file(shelf, plain(&error));
     for entry in std::fs::read_dir(shelf).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        // What is no issue is somebody else's file.
+        // A file that is not an issue is ignored.
         let Ok(bytes) = std::fs::read(path.join(ISSUE)) else {
             continue;
         };
@@ -186,7 +186,7 @@ fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), F
     Ok(())
 }
 
-/// `RUN-issued`; of an amendment `RUN-amended-1`, or the next number that is free.
+/// `RUN-issued`; for an amendment `RUN-amended-1`, or the next free number.
 fn beside(run: &Path, kind: OneKind) -> PathBuf {
     let run = run.canonicalize().unwrap_or_else(|_| run.to_owned());
     let name = run
@@ -208,7 +208,7 @@ fn beside(run: &Path, kind: OneKind) -> PathBuf {
         .unwrap_or_else(|| named(u32::MAX))
 }
 
-/// What is to be stated, of the command line and of the file, in that order; each once.
+/// The particulars of the command line and of the file, in this order, each once.
 fn particulars(
     given: &[(String, String)],
     file: Option<&Path>,
@@ -235,7 +235,7 @@ fn particulars(
     Ok(all)
 }
 
-/// A file of particulars: `field = text`, one a line; empty lines and those that begin with `#` say nothing.
+/// A file of particulars: `field = text`, one per line; empty lines and lines that begin with `#` are ignored.
 fn of_file(path: &Path) -> Result<Vec<(String, String)>, Failure> {
     let failed = |error: std::io::Error| Failure::file(path, plain(&error));
     if path.metadata().map_err(failed)?.len() > PARTICULARS_BYTES {

@@ -1,4 +1,4 @@
-//! `psd limits`: how large a plan may be. Each bound is read from the one constant that holds it.
+//! `psd limits`: the largest size of a plan. Each limit is read from the constant that defines it.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::procedures::{damping_sweep, stiffness_ramp};
 use crate::record::journal;
 use crate::text::diagnostic::render;
 
-/// Gives every bound of the language.
+/// Prints every limit of the language.
 pub fn limits() -> Result<Exit, Failure> {
     let counted = [
         (syntax::FILE_BYTES, "bytes of one file"),

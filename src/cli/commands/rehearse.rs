@@ -1,6 +1,6 @@
-//! `psd run --rehearse`: gate and leading stiffness ramps on the rig, on record; then the rest on a virtual specimen as
-//! stiff as they found it. In: a checked plan. Out: a run folder marked as a rehearsal, and how far the whole run would
-//! stay from each limit. It reads no result of the real run, for there is none yet.
+//! `psd run --rehearse`: pre-test check and leading stiffness ramps on the rig, recorded; then the rest on a virtual specimen
+//! with the measured stiffness. In: a checked plan. Out: a run folder marked as a rehearsal, and the predicted margin of the
+//! whole run to each limit.
 
 use super::explain_plan::DryRun;
 use super::run::{Ran, on_its_rig};
@@ -19,7 +19,7 @@ use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// Measures, predicts, and says with the exit code whether every limit would be kept.
+/// Measures and predicts; the exit code states whether every limit would be kept.
 pub fn rehearse(
     plan: &Plan,
     arguments: &RunArguments,
@@ -58,8 +58,7 @@ pub fn rehearse(
     Ok(exit.max(predicted))
 }
 
-/// What the record of a rehearsal foretells of the whole run, by no more than it: None where it is none, or did not come to its
-/// end.
+/// The prediction of the whole run from the record of a rehearsal; None for any other run and for an incomplete rehearsal.
 pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
     let plan = part
         .rehearses
@@ -69,7 +68,7 @@ pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
     Some(DryRun::on(plan, &stand_in, told(plan, &stand_in)).prediction())
 }
 
-/// On what it is predicted.
+/// The description of the model.
 fn told(plan: &Plan, stand_in: &Plan) -> String {
     let specimen = VirtualRig::specimen_of(stand_in);
     let storeys = specimen

@@ -1,4 +1,4 @@
-//! `psd report RUN`: the results anew, from the record alone. In: the folder of a run. Out: every file the run wrote, byte
+//! `psd report RUN`: the results again, from the record alone. In: the folder of a run. Out: every file the run wrote, byte
 //! for byte, into a folder that has none, or not all of them, with a copy of the record where that is another folder; with an amendment, a report
 //! of its own beside the one it takes the place of. It opens no rig, changes no record and overwrites nothing; of a run that is
 //! still going on it makes nothing.
@@ -46,7 +46,7 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     };
     let beside = held_issue(&kept).map(|(name, held)| (name.to_owned(), held.digest.clone()));
     let beside: Vec<(String, String)> = kept.kept().into_iter().chain(beside).collect();
-    // What a manifest lists lies beside it: another folder is a whole run folder, and verifies.
+    // The files of the manifest are copied: the new folder is a complete run folder and verifies.
     if folder != *run {
         beside
             .iter()
@@ -67,7 +67,7 @@ fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
     std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
 }
 
-/// Tells the verdict of a record played back, and writes its results.
+/// Prints the verdict of a replayed record, and writes its results.
 pub fn finish_replayed(
     folder: &Path,
     played: &PlayedBack,
@@ -108,7 +108,7 @@ pub fn finish_replayed(
     Ok(exit.max(Exit::Fault))
 }
 
-/// The run folder itself, if its results did not come to their end: the manifest is written last.
+/// The run folder, where its results are incomplete: the manifest is written last.
 fn without_results(run: &Path) -> Result<PathBuf, Failure> {
     if run.join(MANIFEST).exists() {
         return Err(

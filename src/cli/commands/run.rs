@@ -1,5 +1,5 @@
-//! `psd run`: check → run → verdict → files. Nothing moves while an error stands, and nothing moves before there is a
-//! record to keep it in.
+//! `psd run`: check → run → verdict → files. Nothing moves while the plan has an error, and nothing moves before the record
+//! is open.
 
 use super::rehearse::rehearse;
 use crate::cli::args::{Format, RunArguments};
@@ -101,17 +101,17 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     Ok(exit)
 }
 
-/// A run that came to an end, one way or another.
+/// A run that has ended, complete or not.
 pub(crate) struct Ran {
     pub(crate) folder: RunFolder,
     pub(crate) provenance: Provenance,
     pub(crate) recorded: Recorded,
-    /// Why the person at the held rig wants the run to go on.
+    /// The reason of the operator to resume the run from hold.
     pub(crate) resume: Option<String>,
 }
 
 impl Ran {
-    /// Goes on with a run that was held, where the person at it wants that; None: it ends here.
+    /// Resumes a run on hold where the operator asks for it; None where it ends here.
     pub(crate) fn goes_on(
         &self,
         plan: &Plan,
@@ -132,7 +132,7 @@ impl Ran {
     }
 }
 
-/// Runs the plan on the rig that it names, and keeps the record.
+/// Runs the plan on its rig, and keeps the record.
 pub(crate) fn on_its_rig(
     plan: &Plan,
     arguments: &RunArguments,
@@ -145,7 +145,7 @@ pub(crate) fn on_its_rig(
     }
 }
 
-/// Nothing is read of the machine, and no time passes.
+/// A run on a virtual rig: no data of the machine are read, and no time passes.
 fn on_a_virtual_rig(
     plan: &Plan,
     arguments: &RunArguments,
@@ -180,7 +180,7 @@ fn on_a_virtual_rig(
     })
 }
 
-/// The rig is asked who it is before there is a folder: a rig that does not answer leaves nothing behind.
+/// A run on a real rig. The rig is identified before the folder is created: a rig that does not answer leaves no folder.
 fn on_a_real_rig(
     plan: &Plan,
     arguments: &RunArguments,

@@ -1,5 +1,5 @@
-//! `psd sign RUN --key FILE` and `psd keygen FILE`: who vouches for a run folder. In: a folder that verifies, and a key that
-//! lies elsewhere. Out: one signature file over its manifest. Overwrites nothing.
+//! `psd sign RUN --key FILE` and `psd keygen FILE`: the signature of a run folder. In: a folder that verifies, and a key
+//! outside of it. Out: one signature file over its manifest. Overwrites nothing.
 
 use std::path::Path;
 
@@ -55,7 +55,7 @@ pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failu
     Ok(Exit::Met)
 }
 
-/// The role as the plan writes it. A plan that names who signs takes nobody else.
+/// The role as the plan writes it. A plan that names signatories accepts no others.
 fn role<'a>(given: Option<&'a str>, roles: &'a [String]) -> Result<Option<&'a str>, Failure> {
     let known = || {
         roles
@@ -67,7 +67,7 @@ fn role<'a>(given: Option<&'a str>, roles: &'a [String]) -> Result<Option<&'a st
     match given {
         None if roles.len() > 1 => Err(Failure::command_line("the plan names several who sign")
             .help(format!("say with `--role` as whom you sign: {}", known()))),
-        // One alone is whoever signs.
+        // A single role need not be named.
         None => Ok(roles.first().map(String::as_str)),
         Some(given) if roles.is_empty() => Ok(Some(given)),
         Some(given) => roles

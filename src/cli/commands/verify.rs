@@ -14,11 +14,11 @@ use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
 use crate::record::journal::{FileFault, FileStorage};
 use crate::text::diagnostic::excerpt::one_line;
 
-/// Proves what can be proven of a run folder. Of a run that is still going on nothing can.
+/// Verifies a run folder. A run that is still in progress cannot be verified.
 pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, Failure> {
     let _still = match FileStorage::keep_still(&journal_of(&arguments.run)) {
         Err(fault @ FileFault::InUse { .. }) => return Err(fault.into()),
-        // Whatever else is wrong with it is told below; a file system may know no locks.
+        // Other errors are reported below; a file system may have no locks.
         still => still.ok(),
     };
     let mut folder = Folder::read(&arguments.run)?;
@@ -55,7 +55,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
     })
 }
 
-/// Nobody signs or amends what does not verify.
+/// An error where the run does not verify: it can be neither signed nor amended.
 pub fn refuse_unproven(run: &Path, findings: &[Finding]) -> Result<(), Failure> {
     match findings.iter().find(|finding| !finding.sound) {
         Some(finding) => Err(Failure::file(

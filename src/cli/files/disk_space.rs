@@ -1,5 +1,5 @@
-//! Whether a run fits on its disk, before anything moves. In: a plan, and what the file system has left. Out: nothing, or
-//! [`NoRoom`] with both figures. It frees nothing.
+//! Disk space for a run, checked before anything moves. In: a plan, and the free space of the file system. Out: nothing, or
+//! [`NoRoom`] with both numbers. It deletes nothing.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::run::storage_bound;
 use crate::text::diagnostic::Code;
 use crate::text::diagnostic::excerpt::escape;
 
-/// The disk is too small for what the run may write.
+/// The disk has too little space for the run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: the run may write {}, and its disk has {} left; nothing has moved", folder.display(), amount(*need), amount(*room))]
 pub struct NoRoom {
@@ -25,7 +25,7 @@ pub struct NoRoom {
 impl NoRoom {
     pub const CODE: Code = Code::NoRoom;
 
-    /// What to do.
+    /// Advice.
     pub fn help(&self) -> String {
         let lacking = amount(self.need - self.room);
         format!(
@@ -35,10 +35,10 @@ impl NoRoom {
     }
 }
 
-/// Asks the disk of a record that is about to be written, of which `written` bytes are there already.
+/// Checks the disk space for a record, of which `written` bytes exist already.
 ///
 /// # Errors
-/// It has no room, or does not say.
+/// Too little space, or the file system does not report it.
 pub fn enough(
     folder: &Path,
     storage: &FileStorage,
@@ -58,7 +58,7 @@ pub fn enough(
     Ok(())
 }
 
-/// A record that no command reads back proves nothing, and its run cannot be gone on with.
+/// A record that is too long to be read back cannot be verified, and its run cannot be resumed.
 fn can_be_read(folder: &Path, record: u64) -> Result<(), Failure> {
     if record <= MOST_BYTES {
         return Ok(());
@@ -83,7 +83,7 @@ fn fits(folder: &Path, need: u64, room: u64) -> Result<(), NoRoom> {
     }
 }
 
-/// Bytes for people: `12.4 MB`.
+/// A number of bytes with a readable unit: `12.4 MB`.
 fn amount(bytes: u64) -> String {
     const UNITS: [&str; 4] = ["kB", "MB", "GB", "TB"];
     #[expect(clippy::cast_precision_loss, reason = "three digits are shown")]
@@ -111,7 +111,7 @@ mod tests {
     use crate::tests::testing::{elastic_plan, ramp};
     use std::io;
 
-    /// A disk with so many bytes left.
+    /// A disk with this many free bytes.
     struct Small(usize);
 
     impl Storage for Small {
@@ -132,7 +132,7 @@ mod tests {
         }
     }
 
-    /// Whether the run came to its end on such a disk, where it was begun.
+    /// Whether the run completed on such a disk.
     fn ran_on(room: u64) -> Result<bool, NoRoom> {
         let plan = elastic_plan(1e5, vec![ProcedureKind::StiffnessRamp(ramp(1e-4))]);
         fits(

@@ -1,6 +1,6 @@
-//! A plan as it is written, run to be held against blessed results or to become them. In: the plan's file. Out: every file
-//! that a run gives, or, where the plan fails to check, its diagnostics. A virtual rig, nobody who answers otherwise than
-//! `--yes`, nothing kept: the same plan gives the same files wherever it runs.
+//! The run of a plan for a comparison with its accepted results, or to accept them. In: the plan's file. Out: every file of
+//! the run, or the diagnostics where the plan has errors. The rig is simulated, every question is answered as by `--yes`,
+//! and nothing is kept: the same plan gives the same files everywhere.
 
 use std::path::Path;
 
@@ -19,22 +19,22 @@ use crate::run::{Inspection, Observer};
 use crate::text::diagnostic::render::{Appearance, render_all};
 use crate::verdict;
 
-/// What a plan gives.
+/// The results of a plan.
 pub struct Trial {
-    /// Every file, or those alone that are compared.
+    /// All files, or only those that are compared.
     pub files: Vec<OutputFile>,
     pub tolerances: Tolerances,
-    /// `pass`; None where the plan fails to check.
+    /// Verdict such as `pass`; None where the plan has errors.
     pub verdict: Option<&'static str>,
-    /// How the run ended; None where there was none.
+    /// Outcome of the run; None where the plan has errors.
     pub ended: Option<Outcome>,
 }
 
-/// Which of a plan's files are made.
+/// The extent of the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     All,
-    /// Numbers and words: no picture is drawn and no paper set.
+    /// Summary, tables and figure data: no image and no report.
     Compared,
 }
 
@@ -108,7 +108,7 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     })
 }
 
-/// Whether the plan, as the command line sets it up, can be blessed: only as it is written, on its virtual rig.
+/// Whether the results of this run can be accepted: only those of an unchanged plan on its virtual rig.
 pub fn is_as_written(plan: &Plan, settings: &PlanSettings) -> bool {
     plan.rig.link.as_virtual().is_some()
         && settings.set.is_empty()

@@ -1,5 +1,5 @@
-//! Files of a plan. In: paths. Out: their text. What a plan may `use` is confined to its folder: relative paths of
-//! regular files, no way up and no link out, at most [`FILE_BYTES`] of UTF-8.
+//! Files of a plan. In: paths. Out: their text. A plan may `use` only files below its folder: relative paths of
+//! regular files, no parent folder and no link to the outside, at most [`FILE_BYTES`] of UTF-8.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -10,10 +10,10 @@ use crate::language::check::{LoadError, Loader};
 use crate::language::syntax::limits::FILE_BYTES;
 use crate::text::source::Position;
 
-/// Gives files of one folder and what is under it.
+/// Loads files of one folder and of the folders below it.
 #[derive(Debug)]
 pub struct FolderLoader {
-    /// Without links, so that a file's true place can be compared with it.
+    /// The folder with links resolved, for comparison with the resolved path of a file.
     folder: PathBuf,
 }
 
@@ -57,7 +57,7 @@ impl Loader for FolderLoader {
     }
 }
 
-/// The text of the plan itself. It may be a link: the person named it.
+/// The text of the plan. It may be a link, because the operator named it.
 pub fn read_plan(path: &Path) -> Result<String, Failure> {
     let metadata = path
         .metadata()
@@ -72,7 +72,7 @@ pub fn read_plan(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// Why a file is no text of a plan, and where, if it is a byte of it.
+/// The reason why a file is not a text, and the position of the byte where there is one.
 struct Unread {
     reason: String,
     at: Option<Position>,
@@ -85,7 +85,7 @@ impl From<String> for Unread {
 }
 
 fn read(path: &Path) -> Result<String, Unread> {
-    // Asked before opening: to open a pipe or a device may wait for ever.
+    // Checked before opening: opening a pipe or a device may block.
     if !path.metadata().map_err(|error| plain(&error))?.is_file() {
         return Err("it is not a regular file".to_owned().into());
     }
@@ -110,7 +110,7 @@ fn read(path: &Path) -> Result<String, Unread> {
     })
 }
 
-/// Line and column, from 1, of what comes after these bytes.
+/// Line and column, from 1, of the byte after these.
 fn place(before: &[u8]) -> (usize, usize) {
     let line = before
         .rsplit(|byte| *byte == b'\n')
@@ -122,7 +122,7 @@ fn place(before: &[u8]) -> (usize, usize) {
     )
 }
 
-/// The system's word for an error, without its number.
+/// The message of an I/O error without its number.
 pub fn plain(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),

@@ -1,4 +1,4 @@
-//! A plan on disk → a checked plan, and its diagnostics told. What `run` and `check` have in common.
+//! A plan on disk, read and checked, for `run` and `check`. In: a path. Out: the checked plan; its diagnostics are printed.
 
 use std::path::Path;
 
@@ -13,12 +13,12 @@ use crate::language::check::{Checked, Options, check};
 use crate::text::diagnostic::{json, render};
 use crate::text::source::{Position, Span};
 
-/// Reads and checks a plan. Its name inside the program is its file's name: where it lies is recorded nowhere.
+/// Reads and checks a plan. Inside the program it has the name of its file; its folder is not recorded.
 pub fn open(path: &Path, settings: &PlanSettings) -> Result<Checked, Failure> {
     open_to_run(path, settings, false)
 }
 
-/// [`open`] for a run that is about to begin; `unattended` where nobody is named and nobody can be asked.
+/// [`open`] before a run; `unattended` where no operator is named and none can be asked.
 pub fn open_to_run(
     path: &Path,
     settings: &PlanSettings,
@@ -49,7 +49,7 @@ pub fn open_to_run(
     Ok(check(&name_of(path), &text, &loader, &options))
 }
 
-/// Draws what the checker found, for a person.
+/// Prints the diagnostics for the operator.
 pub fn show(checked: &Checked, path: &Path, settings: Settings) {
     print_message(&render::render_all(
         &checked.diagnostics,
@@ -58,7 +58,7 @@ pub fn show(checked: &Checked, path: &Path, settings: Settings) {
     ));
 }
 
-/// What the checker found, for an editor.
+/// The diagnostics as JSON, for an editor.
 pub fn diagnostics(checked: &Checked, path: &Path) -> Vec<Value> {
     let (name, folder) = (name_of(path), folder_of(path));
     checked
@@ -68,7 +68,7 @@ pub fn diagnostics(checked: &Checked, path: &Path) -> Vec<Value> {
         .collect()
 }
 
-/// Where the fault of a rig that cannot be opened is to be looked for: the field whose port the fault names.
+/// The position in the plan of a rig that cannot be opened: the field with the port that the fault names.
 pub fn place_of_link(checked: &Checked, path: &Path, fault: &str) -> Option<String> {
     let text = |span: &Span| {
         checked

@@ -1,5 +1,5 @@
-//! Where a run's numbers come from. In: the plan as it was checked. Out: [`Provenance`]. A function of the plan and
-//! this program's version alone, so that the same plan gives the same id everywhere.
+//! The provenance of a run. In: the checked plan. Out: [`Provenance`], a function of the plan and the version of this
+//! program only: the same plan has the same id everywhere.
 
 use sha2::{Digest as _, Sha256};
 
@@ -10,11 +10,11 @@ use crate::run::rehearsal;
 use crate::run::replay::Header;
 use crate::text::digest::{hex, sha256};
 
-/// The sources that this program was built from, and what with.
+/// Digest of the sources of this program, and its toolchain.
 pub const BUILD: &str = env!("PSD_BUILD");
 pub const TOOLCHAIN: &str = env!("PSD_TOOLCHAIN");
 
-/// This program.
+/// The build of this program.
 pub fn this_build() -> Build {
     Build {
         sources: BUILD.to_owned(),
@@ -22,8 +22,8 @@ pub fn this_build() -> Build {
     }
 }
 
-/// The provenance of a run of `plan` by this version of the program; `date` as the command line gave it, which the plan has
-/// taken over already.
+/// The provenance of a run of `plan` by this version of the program; `date` is that of the command line, which the plan
+/// states too.
 pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
     let version = env!("CARGO_PKG_VERSION");
     let run_id = run_id(plan, version, date);
@@ -43,8 +43,8 @@ pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
     }
 }
 
-/// The number of a run's report, where the plan alone does not give it: of a real rig, and of a run that did not come to its end, no two
-/// records are the same. The run's id, and the head of its record.
+/// The number of a report where the run id is not enough: records of real rigs and of incomplete runs differ from each other. It is
+/// the run id with the head of the record.
 pub fn report_number(run_id: &str, plan: &Plan, ended: bool, head: Option<&str>) -> Option<String> {
     let follows_from_the_plan = plan.rig.link.as_real().is_none() && ended;
     let head = head
@@ -53,7 +53,7 @@ pub fn report_number(run_id: &str, plan: &Plan, ended: bool, head: Option<&str>)
     Some(format!("{run_id}-{head}"))
 }
 
-/// The provenance of a run on a real rig: no two are the same, so that who, where and when are part of its id.
+/// The provenance of a run on a real rig. Operator, machine and time are part of its id.
 pub fn of_real_run(plan: &Plan, date: Option<&str>, circumstances: &Circumstances) -> Provenance {
     let provenance = of(plan, date);
     let Circumstances {
@@ -78,10 +78,10 @@ pub fn of_real_run(plan: &Plan, date: Option<&str>, circumstances: &Circumstance
     }
 }
 
-/// The id of the run that a record begins with, from what its header says and its plan as it was then.
+/// The run id of a record, from its header and its plan.
 pub fn recorded_id(header: &Header, plan: &Plan) -> String {
     let planned = run_id(plan, &header.psd, header.date.as_deref());
-    // A run by hand, or by a client, on a virtual rig has people and no day.
+    // A run by hand or by a client on a virtual rig has an operator and no date.
     let is_real = plan.rig.link.as_real().is_some() && header.began.is_some();
     if is_real {
         real_id(&planned, &[&header.operator, &header.host, &header.began])
@@ -98,8 +98,8 @@ fn real_id(planned: &str, told: &[&Option<String>; 3]) -> String {
     sha256(text.join(" ").as_bytes())[..16].to_owned()
 }
 
-/// The day it began, by the record. The day that plan or command line states counts where it is the same day in another time
-/// zone.
+/// The day on which the run began, from the record. The day of the plan or the command line is used where it is the same day in
+/// another time zone.
 pub fn date_of_real_run(plan: &Plan, began: Option<&str>) -> Option<String> {
     let stated = stated_date(plan);
     let began = began.and_then(|began| began.get(..10)).map(str::to_owned);
@@ -110,7 +110,7 @@ pub fn date_of_real_run(plan: &Plan, began: Option<&str>) -> Option<String> {
     }
 }
 
-/// The day that the plan states, or the command line in its place.
+/// The day of the command line, or else of the plan.
 pub fn stated_date(plan: &Plan) -> Option<String> {
     plan.particulars
         .iter()
@@ -118,7 +118,7 @@ pub fn stated_date(plan: &Plan) -> Option<String> {
         .map(|(_, date)| date.clone())
 }
 
-/// A line for who starts a test on another day than the plan states; empty where it is that day.
+/// A message where the test starts on a different day from the plan's; empty where it is the same.
 pub fn told_of_another_day(plan: &Plan, began: Option<&str>) -> String {
     match (stated_date(plan), began.and_then(|began| began.get(..10))) {
         (Some(stated), Some(today)) if !same_day(Some(&stated), Some(today)) => {
@@ -130,7 +130,7 @@ pub fn told_of_another_day(plan: &Plan, began: Option<&str>) -> String {
     }
 }
 
-/// Whether two days can be one in two time zones; what is no day is none.
+/// Whether two days may be the same day in two time zones; false where one is not a day.
 pub fn same_day(one: Option<&str>, other: Option<&str>) -> bool {
     let day = |text: Option<&str>| text?.parse::<jiff::civil::Date>().ok();
     let apart = day(one)
@@ -172,7 +172,7 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
         part("date");
         part(date);
     }
-    // A rehearsal is not the run that it rehearses.
+    // A rehearsal has an id different from that of its run.
     if rehearsal::told(plan).is_some() {
         digest.update(rehearsal::REHEARSAL);
     }

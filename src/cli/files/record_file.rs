@@ -1,5 +1,5 @@
-//! The journal of a run folder. In: a plan about to run, or a folder. Out: a journal that is open, or what one holds and
-//! the plan checked again from it. The record is enough: nothing else of the machine is read.
+//! The journal of a run folder. In: a plan before its run, or a folder. Out: an open journal, or the content of one with the
+//! plan checked again from it. It reads no other file of the machine.
 
 use std::path::{Path, PathBuf};
 
@@ -23,25 +23,25 @@ use crate::text::digest::sha256;
 /// Name of the journal in its run folder.
 pub const JOURNAL: &str = "journal.psdj";
 
-/// What only a real rig's record says of the place and the people.
+/// Operator, machine and times, which only the record of a real rig states.
 #[derive(Clone, Debug, Default)]
 pub struct Circumstances {
     pub operator: Option<String>,
     pub host: Option<String>,
     /// UTC.
     pub began: Option<String>,
-    /// Protocol of the clients that drive the rig, real or not.
+    /// Protocol of the client that controls the rig, real or not.
     pub served: Option<String>,
 }
 
 impl Circumstances {
-    /// Who, where and when: what makes a run on a real rig another than every other.
+    /// Operator, machine and time, which distinguish a run on a real rig from every other.
     pub const fn told(&self) -> [&Option<String>; 3] {
         [&self.operator, &self.host, &self.began]
     }
 }
 
-/// What a run starts from, on the device that answered.
+/// The header of a run on the connected device.
 pub fn header(
     plan: &Plan,
     device: Device,
@@ -78,7 +78,7 @@ pub fn header(
     }
 }
 
-/// What a rig says of itself.
+/// Identity and declared errors of a rig.
 pub fn device(rig: &dyn Rig) -> Device {
     Device::of(&rig.identity(), rig.declared_noise())
 }
@@ -88,12 +88,12 @@ pub fn texts(plan: &Plan) -> Vec<String> {
     plan.files.iter().map(|file| file.text.clone()).collect()
 }
 
-/// Opens the record of a run that is about to begin, where there is room for all of it.
+/// Opens the record of a run before it begins; the disk must have space for all of it.
 pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     let path = journal_of(folder);
-    // Nothing is left of a run that did not begin, not even its folder if it is empty.
+    // A run that did not begin leaves no file, and its empty folder is removed.
     let storage = FileStorage::create(&path).inspect_err(|_| drop(std::fs::remove_dir(folder)))?;
-    // What a client will ask for nobody knows.
+    // The number of requests of a client is not known.
     if header.served.is_none()
         && let Err(failure) = disk_space::enough(folder, &storage, plan, 0)
     {
@@ -104,7 +104,7 @@ pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Fai
     begin_in(Box::new(storage), plan, header)
 }
 
-/// A record that nobody keeps: the run is the same as one on record, to the last bit of every time.
+/// A record that is not kept. The run is bit-identical with a recorded one.
 pub fn begin_nowhere(plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     begin_in(Box::new(Nowhere), plan, header)
 }
@@ -120,7 +120,7 @@ fn begin_in(storage: Box<dyn Storage>, plan: &Plan, header: &Header) -> Result<J
     Ok(journal)
 }
 
-/// Takes every byte and keeps none.
+/// Accepts every byte and keeps none.
 struct Nowhere;
 
 impl Storage for Nowhere {
@@ -223,7 +223,7 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
     }
 }
 
-/// What the header says of the equipment is what plan and rig say of it: nobody wrote another calibration into it.
+/// Whether the equipment of the header is that of plan and rig: a changed calibration is found.
 fn fits(played: &Played, plan: &Plan) -> Result<(), String> {
     let (Some(told), Some(rig)) = (&played.header.equipment, &played.rig) else {
         return Ok(());
@@ -237,7 +237,7 @@ fn fits(played: &Played, plan: &Plan) -> Result<(), String> {
     )
 }
 
-/// The provenance that the record gives; the plan's own date counts where none was given on the command line.
+/// The provenance of the record; the date of the plan where the command line gave none.
 fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provenance {
     let number = super::provenance::report_number(
         &header.run_id,
@@ -271,7 +271,7 @@ fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provena
     }
 }
 
-/// What a real run's record says of people and place, and of itself.
+/// Operator, machine, times and chain of the record of a real run.
 fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
     let wall = |line: &Line| {
         line.body()
@@ -289,7 +289,7 @@ fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
     }
 }
 
-/// Gives the recorded files by the names they were used under.
+/// Loads the recorded files by the names under which they were used.
 struct Files<'a> {
     header: &'a Header,
     texts: &'a [String],

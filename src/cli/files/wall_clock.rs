@@ -1,15 +1,15 @@
-//! Jumps of the wall clock under a run. In: the records, with both clocks. Out: where the two parted, and by how much. Durations are
-//! never of the wall clock; this only tells a reader of the record why its dates do not fit.
+//! Jumps of the wall clock during a run. In: records with both clocks. Out: time and size of each jump. Durations never use the wall
+//! clock; a jump explains to a reader why the dates of a record are inconsistent.
 
 use jiff::Timestamp;
 
 use crate::record::journal::{EntryKind, Line};
 use crate::report::ClockJump;
 
-/// Less than this is the slow correction of a clock, or the time between the two stamps of a record, s.
+/// A smaller difference is the slow correction of a clock, or the time between the two stamps of a record \[s\].
 const SMALL: f64 = 10.0;
 
-/// Every jump between two readings of one part of the run; what passed before a resumption is nobody's jump.
+/// Every jump between two readings of one part of the run. The time before a resumption is not a jump.
 pub fn jumps(lines: &[Line]) -> Vec<ClockJump> {
     let mut before: Option<(f64, Timestamp)> = None;
     let mut found = Vec::new();
@@ -35,7 +35,7 @@ pub fn jumps(lines: &[Line]) -> Vec<ClockJump> {
     found
 }
 
-/// Rig time (s) and wall clock of a reading.
+/// Rig time \[s\] and wall clock of a reading.
 fn stamps(line: &Line) -> Option<(f64, Timestamp)> {
     Some((
         line.time()?,
@@ -66,7 +66,7 @@ mod tests {
             sample(1.0, "2026-03-01T10:00:00.000Z"),
             sample(2.0, "2027-03-01T10:00:01.000Z"),
             sample(3.0, "2026-03-01T10:00:02.000Z"),
-            // Gone on with next day.
+            // Resumed on the next day.
             line(EntryKind::Resume, 3.0, "2026-03-02T10:00:00.000Z"),
             sample(4.0, "2026-03-02T10:00:01.000Z"),
         ];

@@ -5,7 +5,7 @@ use crate::record::{Floors, Modes, ShakeHistory, ShakeStep, StruckFrame};
 use crate::units::Dimension;
 use crate::units::display::{digits, join, readable, significant, unit};
 
-/// One row a mode: period, damping, the part of the mass that goes with it, and its shape from the lowest floor up.
+/// One row per mode: period, damping, effective modal mass, and its shape from the lowest floor up.
 pub fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {
     let Some(modes) = modes else {
         return Vec::new();
@@ -144,7 +144,7 @@ pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
     ]
 }
 
-/// Of an impact on a storey: the predicted peaks of all floors and storeys.
+/// The predicted peaks of all floors and storeys in an impact on a storey.
 pub fn floors(history: &StruckFrame) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     vec![
@@ -167,7 +167,7 @@ pub fn floors(history: &StruckFrame) -> Vec<Vec<String>> {
     ]
 }
 
-/// Largest sizes, all in one unit.
+/// Peak absolute values, all in one unit.
 fn peaks<S>(steps: &[S], read: fn(&S) -> Vec<f64>, dimension: Dimension) -> String {
     let mut largest: Vec<f64> = Vec::new();
     for step in steps {

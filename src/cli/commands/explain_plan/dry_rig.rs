@@ -1,5 +1,5 @@
-//! A virtual rig that notes how far, how fast and how hard it was driven, procedure by procedure. In: a plan.
-//! Out: the record of a run on it, and what was noted.
+//! A virtual rig that records the range of displacement, force and speed, procedure by procedure. In: a plan. Out: the record of
+//! a run on it, and the ranges.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use crate::rig::{
 };
 use crate::run::{self, Inspection, Observer, StepReport};
 
-/// What one procedure asked of the rig, SI.
+/// The demand of one procedure on the rig, SI.
 #[derive(Clone, Debug)]
 pub struct Reach {
     pub name: String,
@@ -33,10 +33,10 @@ pub struct Reach {
 /// The rig. It shares what it notes with the observer that hears which procedure runs.
 pub struct Watched {
     inner: Box<dyn Rig>,
-    /// Of the rig that it stands for, m/s.
+    /// Speed of the rig that it represents \[m/s\].
     own_speed: Option<f64>,
     reaches: Rc<RefCell<Vec<Reach>>>,
-    /// The last targets, m; before the first every axis is at 0.
+    /// The last targets \[m\]; before the first every axis is at 0.
     target: Vec<f64>,
 }
 
@@ -106,7 +106,7 @@ impl Watched {
     }
 }
 
-/// Before anything is noted an interval is empty: its low end is above its high end.
+/// An empty interval: its low end is above its high end.
 const EMPTY: Interval = Interval {
     low: f64::INFINITY,
     high: f64::NEG_INFINITY,

@@ -1,5 +1,5 @@
-//! `psd rig simulate`: stands in for the rig of a plan, at the plan's own port, until it is stopped. In: a plan, a script
-//! of faults. Out: a line that answers, a log, and whether every target lay within the limits.
+//! `psd rig simulate`: an emulator of the rig of a plan, at the port of the plan, until it is stopped. In: a plan, a script
+//! of faults. Out: a serial line that answers, a log, and whether every target was within the limits.
 
 use std::fs::{self, OpenOptions};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::emulator::{Log, PseudoTerminal, Script, Stand, TcpLine, of_plan};
 use crate::plan::{DeviceLink, Plan, PortPlan, RealLink};
 use crate::text::diagnostic::excerpt::escape;
 
-/// Stands in for a rig.
+/// Emulates the rig of a plan.
 pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exit, Failure> {
     let checked = plan_file::open(&arguments.plan, &arguments.plan_settings)?;
     plan_file::show(&checked, &arguments.plan, settings);
@@ -30,7 +30,7 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
     let stopped = stopped_by_signals().map_err(Failure::Signals)?;
     let unfit =
         |reason: String| Failure::command_line(format!("{}: {reason}", arguments.plan.display()));
-    // Nothing is made where there is nothing to stand in for.
+    // No file is made where there is no rig to emulate.
     of_plan(plan, &script, Log::none(), arguments.seed, None).map_err(|error| {
         unfit(error.to_string())
             .help("name the real rig with --rig NAME, and give its specimen a behaviour")
@@ -59,7 +59,7 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
         stopped: &|| stopped.load(Ordering::Relaxed),
     };
     let served = serve(&mut stand, &mut carriers, until);
-    // The links go before anything else can fail.
+    // The links are removed before anything else can fail.
     drop(carriers);
     end(&mut stand, arguments.log.as_deref(), served)
 }
@@ -94,7 +94,7 @@ fn script(path: &Path) -> Result<Script, Failure> {
         .map_err(|error| Failure::command_line(format!("{}: {error}", path.display())))
 }
 
-/// A new file: a log is evidence, and is never written over.
+/// A new file: a log is never overwritten.
 fn log(path: &Path) -> Result<Log, Failure> {
     let file = OpenOptions::new().write(true).create_new(true).open(path);
     file.map(|file| Log::to(Box::new(file)))
@@ -113,8 +113,8 @@ fn stopped_by_signals() -> std::io::Result<Arc<AtomicBool>> {
     Ok(stopped)
 }
 
-/// A word that is another at every start: a simulator that was started anew has lost its position, and must not seem to
-/// be the one before.
+/// A boot identifier that differs at every start: a restarted emulator has lost its position, and must not appear to be the
+/// one before.
 fn power_up() -> u16 {
     let now = std::time::SystemTime::now()
         .duration_since(std::time::UNIX_EPOCH)
@@ -124,7 +124,7 @@ fn power_up() -> u16 {
     u16::from_be_bytes([bytes[0], bytes[1]])
 }
 
-/// Says how it went.
+/// Prints the result.
 fn end(
     stand: &mut Stand,
     log: Option<&Path>,

@@ -1,5 +1,5 @@
-//! Which plans are tested. In: paths as they were typed. Out: a case for each plan, in order of name, and the folders of
-//! blessed results that none of them uses.
+//! The plans that are tested. In: paths as typed. Out: a case for each plan, in order of name, and the folders of accepted
+//! results that none of them uses.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::cli::files::accepted::BlessedFolder;
 use crate::cli::files::loader::plain;
 use crate::golden::{DIAGNOSTICS, SUMMARY};
 
-/// Where plans lie if nobody says.
+/// The default folder of plans.
 const DEFAULT: &str = "plans";
 
 /// One plan to test.
@@ -25,7 +25,7 @@ pub struct Case {
     pub folder: String,
 }
 
-/// What was found.
+/// The cases and unused folders.
 #[derive(Debug)]
 pub struct Cases {
     pub cases: Vec<Case>,
@@ -138,7 +138,7 @@ fn told_apart(cases: &mut [Case]) {
     }
 }
 
-/// Folders of blessed results beside a whole folder of plans that belong to none of them.
+/// Folders of accepted results that belong to no plan of a folder.
 fn unused(
     folders: &[&PathBuf],
     cases: &[Case],
@@ -150,7 +150,7 @@ fn unused(
             .canonicalize()
             .ok()
             .and_then(|folder| Some(folder.parent()?.join("reports")));
-        // As the person would write it, where the folder of plans has a name.
+        // As the operator would write it, where the folder of plans has a name.
         let typed = folder.parent().map(|above| shown(above).join("reports"));
         let typed = typed.filter(|typed| {
             typed.canonicalize().ok() == beside.as_ref().and_then(|path| path.canonicalize().ok())

@@ -1,4 +1,4 @@
-//! What a failed case leaves to look at: `NAME/new/`, the results of this run; `NAME/*.png`, old and new on one sheet;
+//! The files of a failed case: `NAME/new/`, the results of this run; `NAME/*.png`, old and new on one sheet;
 //! `NAME/difference.txt`, all that differs. In: both results. Out: the folder, which no other program writes into: what an
 //! earlier test left there goes when its plan is tested again.
 
@@ -14,7 +14,7 @@ use crate::cli::files::run_folder::write_new;
 use crate::golden::{Finding, Truth, Words};
 use crate::report::OutputFile;
 
-/// By this file a folder is known as one of a failed case.
+/// The file that marks the folder of a failed case.
 const DIFFERENCE: &str = "difference.txt";
 
 /// The folder of a case.
@@ -22,7 +22,7 @@ pub fn folder(out: &Path, case: &Case) -> PathBuf {
     out.join(&case.folder)
 }
 
-/// Removes what an earlier test left; a folder of anything else stays.
+/// Removes the files of an earlier test; any other folder is kept.
 pub fn clear(out: &Path, case: &Case) -> Result<(), Failure> {
     let path = folder(out, case);
     if path.join(DIFFERENCE).is_file() {
@@ -31,7 +31,7 @@ pub fn clear(out: &Path, case: &Case) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes it all.
+/// Writes all files of the case.
 pub fn write(
     out: &Path,
     case: &Case,
@@ -68,7 +68,7 @@ pub fn write(
     .try_for_each(|file| write_new(&folder, file))
 }
 
-/// Every difference, a line each.
+/// Every difference, one per line.
 fn told(case: &Case, found: &[Finding]) -> String {
     let mut text = format!(
         "{}: {} from {}\n",

@@ -18,7 +18,7 @@ use crate::golden::{self, Report, console};
 use cases::Case;
 use trials::Trials;
 
-/// Tests plans, or blesses what they give.
+/// Tests plans, or accepts their results.
 pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failure> {
     let found = cases::find(arguments)?;
     if arguments.list {
@@ -58,7 +58,7 @@ pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failu
     })
 }
 
-/// The names, and which have no blessed results.
+/// The names of the plans, with a note for those without accepted results.
 fn list(cases: &[Case]) -> Result<Exit, Failure> {
     for case in cases {
         let note = if case.golden.truth()?.is_empty() {
@@ -71,7 +71,7 @@ fn list(cases: &[Case]) -> Result<Exit, Failure> {
     Ok(Exit::Met)
 }
 
-/// A folder as a person typed it, or the one they stand in.
+/// A folder as typed, or the working folder.
 fn shown(path: &Path) -> &Path {
     if path.as_os_str().is_empty() {
         Path::new(".")

@@ -1,5 +1,5 @@
-//! Old and new on one sheet: the curves of figures that moved, and columns of tables that no such figure shows. In: both
-//! results and what differs. Out: pictures. A column that moved less than an eye sees has its difference drawn besides.
+//! Accepted and new results on one chart: the curves of figures that differ, and columns of tables that no such figure shows.
+//! In: both results and the differences. Out: images. A column with an invisible difference has it drawn as a separate curve.
 
 use std::collections::BTreeSet;
 
@@ -8,12 +8,12 @@ use crate::golden::{Change, Finding, Part, Table, Truth, column_dimension};
 use crate::report::{Curve, Curves, FigureCurve, OutputError, OutputFile, PlainAxis};
 use crate::units::{Dimension, unit};
 
-/// Columns drawn, at most: those that moved most for what was allowed.
+/// Largest number of columns drawn: those with the largest difference over their tolerance.
 const COLUMNS: usize = 6;
-/// Curves of one figure drawn, at most.
+/// Largest number of curves drawn of one figure.
 const CURVES: usize = 3;
 
-/// Every picture.
+/// All images.
 pub fn all(was: &Truth, is: &Truth, found: &[Finding]) -> Result<Vec<OutputFile>, Failure> {
     let mut files = Vec::new();
     for (name, curves) in figures(was, is).into_iter().chain(columns(was, is, found)) {
@@ -30,7 +30,7 @@ pub fn all(was: &Truth, is: &Truth, found: &[Finding]) -> Result<Vec<OutputFile>
     Ok(files)
 }
 
-/// The curves of each figure that are not what they were.
+/// The curves of each figure that differ.
 fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
     let (Some(was), Some(is)) = (was.figures(), is.figures()) else {
         return Vec::new();
@@ -90,7 +90,7 @@ fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
     sheets
 }
 
-/// The columns that moved most, over time where there is one.
+/// The columns with the largest differences, over time where there is one.
 fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> {
     let mut moved: Vec<(&str, f64)> = found
         .iter()
@@ -173,7 +173,7 @@ fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> 
     sheets
 }
 
-/// A share of the column's largest that is hardly seen: two pixels or so.
+/// The fraction of the largest value of a column that is hardly visible, about two pixels.
 const SEEN: f64 = 0.01;
 
 /// A column over the time of the test, of the rig, or over its rows.

@@ -1,5 +1,5 @@
-//! Runs the cases, several at a time, and tells each as soon as all before it are told. In: cases. Out: what became of
-//! each, in their order.
+//! Runs the cases, several at a time, and prints each outcome as soon as all earlier ones are printed. In: cases. Out: their
+//! outcomes, in order.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -18,19 +18,19 @@ use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::golden::{Outcome, Tested, compare, console};
 
-/// How the cases are run.
+/// The settings of the test run.
 pub struct Trials<'a> {
     pub arguments: &'a TestArguments,
     pub settings: Settings,
-    /// Whether each is told to a person as it ends.
+    /// Whether each outcome is printed for the operator as it ends.
     pub human: bool,
 }
 
-/// Room for the deepest plan and for the certificate's typesetting, also in a build without optimisation.
+/// Stack size for the deepest plan and for the typesetting of the report, also in a build without optimisation.
 const STACK: usize = 32 << 20;
 
 impl Trials<'_> {
-    /// All of them. With `--fail-fast` none after the first that fails counts, whichever of them ran.
+    /// Runs all cases. With `--fail-fast` no case after the first failure counts, even where it ran.
     pub fn run(&self, cases: &[Case]) -> Result<Vec<Tested>, Failure> {
         let mut builder = rayon::ThreadPoolBuilder::new().stack_size(STACK);
         if let Some(jobs) = self.arguments.jobs {
@@ -69,14 +69,14 @@ impl Trials<'_> {
             let last = first_bad.load(Ordering::SeqCst);
             for (tested, case) in tested.iter_mut().zip(cases).skip(last.saturating_add(1)) {
                 tested.outcome = Outcome::NotRun;
-                // It may have run all the same, beside the one that failed.
+                // It may have run in parallel with the failed one.
                 failures::clear(&self.arguments.out, case)?;
             }
         }
         Ok(tested)
     }
 
-    /// One plan; whatever goes wrong is its own outcome.
+    /// One plan; an error is its outcome.
     fn one(&self, case: &Case) -> Outcome {
         self.outcome(case)
             .unwrap_or_else(|failure| Outcome::Failed(failure.to_string()))
@@ -106,7 +106,7 @@ impl Trials<'_> {
                 verdict: trial.verdict,
             });
         }
-        // Only what a person is to look at is drawn and set.
+        // Images and report are made only for a case with differences.
         let files = golden_run::of(&case.plan, Extent::All)?.files;
         failures::write(&self.arguments.out, case, &blessed, &files, &found)?;
         Ok(Outcome::Differs(found))
