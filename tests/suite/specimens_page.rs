@@ -1,5 +1,5 @@
-//! The page of specimens is true: every plan on it runs and passes, its loop is the figure beside it, drawn by the program, and
-//! every behaviour of the schema has one. `PSD_BLESS=1 cargo test --test suite specimens_page` draws the figures anew.
+//! The page of specimen models: every plan on it runs and passes, its loop is the figure beside it, drawn by the program, and
+//! every behaviour of the schema has one. `PSD_BLESS=1 cargo test --test suite specimens_page` draws the figures again.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,11 @@ impl Loader for Docs {
 /// Name and text of each plan of the page.
 fn plans() -> Vec<(String, String)> {
     let page = fs::read_to_string(docs().join("specimens.md")).expect("the page is there");
-    let fences = page.split("```psd ").skip(1).map(|after| {
+    let plans = page
+        .split("```psd ")
+        .skip(1)
+        .filter(|after| !after.starts_with("fragment"));
+    let fences = plans.map(|after| {
         let (name, rest) = after.split_once('\n').expect("a fence is a line");
         (
             name.to_owned(),

@@ -3,6 +3,7 @@
 //! the machine forbids what the program does.
 
 mod amended;
+mod book;
 mod build;
 mod certificate;
 mod clock;

@@ -4,6 +4,7 @@
 mod console;
 mod figures;
 mod generated;
+mod messages;
 mod plans;
 
 use std::fs;
