@@ -8,8 +8,9 @@ use serde_json::{Value, json};
 use super::rebuilt::PlayedBack;
 use super::standing;
 use super::tests::run;
+use crate::cli::commands::prediction::prediction;
 use crate::cli::files::record_file;
-use crate::cli::files::record_file::JOURNAL;
+use crate::files::recorded_run::JOURNAL;
 use crate::record::journal::EntryKind;
 use crate::record::journal::testing::{Vandal, records, written};
 use crate::report;
@@ -46,7 +47,7 @@ fn played(journal: &[u8]) -> Result<(), String> {
         let bands = Bands::of(&read.plan.rig, link);
         let _ = replay::decide(&read.played, rig, &stands, &bands, true);
     }
-    let played = PlayedBack::of(read, None)?;
+    let played = PlayedBack::of(read, None, &prediction)?;
     let PlayedBack {
         plan,
         provenance,

@@ -1,8 +1,8 @@
 //! Whether a record stands by itself: what it says twice agrees, its id is the one of its plan and its circumstances, and it
 //! says all that the program which it names writes. In: a record as it was read. Out: the first fault. It plays nothing back.
 
-use crate::cli::files::provenance::{BUILD, recorded_id};
-use crate::cli::files::record_file::{ReadRecord, plan_of};
+use crate::files::provenance::{BUILD, recorded_id};
+use crate::files::recorded_run::{ReadRecord, plan_of};
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, OLDEST_FORMAT, Recovered};
 use crate::rig::real::ReadBack;
@@ -76,7 +76,7 @@ pub fn remarks(recovered: &Recovered, header: &Header) -> String {
     } else {
         ""
     };
-    let jumps = crate::cli::files::wall_clock::jumps(&recovered.lines).len();
+    let jumps = crate::files::wall_clock::jumps(&recovered.lines).len();
     let jumped = match jumps {
         0 => String::new(),
         1 => ", its wall clock jumped once".to_owned(),

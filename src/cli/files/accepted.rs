@@ -3,9 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::loader::plain;
 use super::run_folder::write_new;
-use crate::cli::exit::Failure;
+use crate::files::failure::Failure;
+use crate::files::failure::plain;
 use crate::golden::{Blessed, SUMMARY, Tolerances, Truth, compare};
 use crate::report::OutputFile;
 

@@ -5,6 +5,7 @@
 mod console;
 mod facts;
 mod figures;
+pub mod page;
 mod statistics;
 mod table;
 

@@ -8,7 +8,7 @@ use super::shown;
 use crate::cli::args::TestArguments;
 use crate::cli::exit::Failure;
 use crate::cli::files::accepted::BlessedFolder;
-use crate::cli::files::loader::plain;
+use crate::files::failure::plain;
 use crate::golden::{DIAGNOSTICS, SUMMARY};
 
 /// Where plans lie if nobody says.
