@@ -5,6 +5,7 @@
 mod build_tests;
 mod check;
 #[cfg(test)]
+mod consistency;
 mod damaged_tests;
 mod finding;
 mod folder;
@@ -18,15 +19,14 @@ mod sidecar;
 #[cfg(test)]
 mod sidecar_tests;
 mod signature;
-mod standing;
 #[cfg(test)]
 mod tests;
 
 pub use check::examine;
+pub use consistency::check_consistency;
 pub use finding::Finding;
 pub use folder::Folder;
 pub use issues::{IssueFile, One, OneKind, held as held_issue, may_be_stated};
 pub use names::{ISSUE, MANIFEST};
 pub use rebuilt::{PlayedBack, Rebuilt};
 pub use signature::{Statement, file_name, sign as sign_manifest};
-pub use standing::stands;

@@ -3,10 +3,10 @@
 
 use std::borrow::Cow;
 
+use super::consistency;
 use super::finding::Finding;
 use super::folder::Folder;
 use super::issues::{IssueFile, apply};
-use super::standing;
 use crate::files::provenance::BUILD;
 use crate::files::recorded_run;
 use crate::files::recorded_run::{JOURNAL, ReadRecord};
@@ -160,8 +160,8 @@ impl Rebuilt {
             format!(", {} bytes torn at its end", torn.end - torn.start)
         });
         let (records, head) = (read.recovered.lines.len(), read.recovered.head());
-        let remarks = standing::remarks(&read.recovered, &read.played.header);
-        let mut findings = vec![match standing::stands(&read) {
+        let remarks = consistency::remarks(&read.recovered, &read.played.header);
+        let mut findings = vec![match consistency::check_consistency(&read) {
             Ok(()) => Finding::sound(
                 "record",
                 format!(

@@ -15,7 +15,7 @@ use crate::cli::files::record_file::journal_of;
 use crate::cli::files::run_folder::RunFolder;
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
-use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, held_issue, stands};
+use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, check_consistency, held_issue};
 use crate::files::failure::plain;
 use crate::record::journal::FileStorage;
 
@@ -33,7 +33,7 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     let kept = Folder::read(run)?;
     let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
     let read = record_file::read(run)?;
-    stands(&read).map_err(|fault| {
+    check_consistency(&read).map_err(|fault| {
         Failure::file(journal, fault).help("no report is made of a record that does not verify")
     })?;
     let played = PlayedBack::of(read, issues.as_ref(), &prediction)

@@ -5,7 +5,7 @@ use super::on_rig::{Ran, on_its_rig};
 use super::rehearse::rehearse;
 use crate::cli::args::{Format, RunArguments};
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::accepted::BlessedFolder;
+use crate::cli::files::accepted::AcceptedFolder;
 use crate::cli::files::finish_run::{finish_run, summary};
 use crate::cli::files::golden_run;
 use crate::cli::files::golden_run::Extent;
@@ -50,7 +50,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     }
     let blessed = arguments
         .bless
-        .then(|| BlessedFolder::of(&arguments.plan))
+        .then(|| AcceptedFolder::of(&arguments.plan))
         .transpose()?;
     if blessed.is_some() && !golden_run::is_as_written(plan, &arguments.plan_settings) {
         return Err(Failure::command_line(
@@ -73,7 +73,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         let trial = golden_run::of(&arguments.plan, Extent::All)?;
         if trial.ended.as_ref() == Some(&recorded.record.outcome) {
             let outcome =
-                Outcome::Blessed(blessed.bless(&trial.files, &trial.tolerances, false, false)?);
+                Outcome::Accepted(blessed.accept(&trial.files, &trial.tolerances, false, false)?);
             print_message(&console::told(
                 &Tested {
                     name: blessed.path().display().to_string(),

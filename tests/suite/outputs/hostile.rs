@@ -336,7 +336,7 @@ fn tested_with(label: &str) -> Report {
             verdict: Some("pass"),
         },
         TestOutcome::Differs(found),
-        TestOutcome::NotBlessed { folder: own() },
+        TestOutcome::NotAccepted { folder: own() },
         TestOutcome::Failed(own()),
         TestOutcome::NotRun,
     ];
