@@ -33,6 +33,7 @@ pub mod emulator;
 pub mod remote;
 
 pub(crate) mod evidence;
+pub(crate) mod files;
 pub mod golden;
 
 pub mod cli;

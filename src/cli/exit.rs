@@ -1,14 +1,13 @@
 //! The end of the program: the exit codes of the language reference, and failures that are not errors of the plan.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use super::files::disk_space::NoRoom;
 use super::settings::Settings;
+pub use crate::files::failure::Failure;
+use crate::files::failure::NoRoom;
 use crate::rig::RigFault;
 use crate::text::diagnostic::excerpt::escape;
-use crate::text::source::Position;
 use crate::verdict::Verdict;
 
 /// An exit code, worst last.
@@ -60,53 +59,6 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// The reason why a command failed. Errors of a plan are diagnostics instead.
-#[derive(Debug, thiserror::Error)]
-pub enum Failure {
-    #[error("{message}")]
-    CommandLine {
-        message: String,
-        help: Option<String>,
-    },
-    #[error("{}: {reason}", path.display())]
-    File {
-        path: PathBuf,
-        reason: String,
-        help: Option<String>,
-    },
-    #[error("{}: not a plan: {reason}", path.display())]
-    NotAPlan {
-        path: PathBuf,
-        reason: String,
-        at: Option<Position>,
-    },
-    #[error("the results could not be made: {0}")]
-    Output(#[from] crate::report::OutputError),
-    #[error("standard output: {0}")]
-    Stdout(std::io::Error),
-    #[error(transparent)]
-    Record(#[from] crate::record::journal::FileFault),
-    #[error(transparent)]
-    Journal(#[from] crate::record::journal::JournalFault),
-    #[error("{0}")]
-    Rig(#[from] crate::rig::RigFault),
-    #[error(transparent)]
-    NoRoom(#[from] super::files::disk_space::NoRoom),
-    #[error("{fault}")]
-    NotOpened {
-        fault: crate::rig::RigFault,
-        place: String,
-    },
-    #[error("no rehearsal: {0}")]
-    Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
-    #[error("the run cannot go on: {0}")]
-    Refused(#[from] crate::run::replay::Refusal),
-    #[error("not resumed, and nothing moved: {reason}")]
-    NotReleased { reason: String },
-    #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
-    Signals(std::io::Error),
-}
-
 /// Part of the message of a device that does not answer.
 const SILENT: &str = "no usable answer";
 /// Possible causes of a silent device.
@@ -114,50 +66,6 @@ const LOOK_FOR: &str = "the baud rate, the dialect, crossed wires, or a device t
     whether the plan is right";
 
 impl Failure {
-    pub fn command_line(message: impl Into<String>) -> Self {
-        Self::CommandLine {
-            message: message.into(),
-            help: None,
-        }
-    }
-
-    pub fn file(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
-        Self::File {
-            path: path.into(),
-            reason: reason.into(),
-            help: None,
-        }
-    }
-
-    /// The position in a file at which its text could not be read.
-    pub const fn place(&self) -> Option<Position> {
-        match self {
-            Self::NotAPlan { at, .. } => *at,
-            _ => None,
-        }
-    }
-
-    /// The same failure with advice.
-    #[must_use]
-    pub fn help(mut self, text: impl Into<String>) -> Self {
-        if let Self::CommandLine { help, .. } | Self::File { help, .. } = &mut self {
-            *help = Some(text.into());
-        }
-        self
-    }
-
-    /// A rig that cannot be opened, with the position in the plan that specifies it.
-    #[must_use]
-    pub fn in_the_plan(self, place: impl FnOnce(&str) -> Option<String>) -> Self {
-        match self {
-            Self::Rig(fault) => match place(&fault.to_string()) {
-                Some(place) => Self::NotOpened { fault, place },
-                None => Self::Rig(fault),
-            },
-            other => other,
-        }
-    }
-
     pub const fn exit(&self) -> Exit {
         match self {
             Self::CommandLine { .. } | Self::NotAPlan { .. } | Self::Unrehearsed(_) => Exit::Wrong,

@@ -3,9 +3,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::folder::{Folder, MANIFEST};
+use super::finding::Finding;
+use super::folder::Folder;
 use super::issues;
 use super::keys::KnownKey;
+use super::names::MANIFEST;
 use super::rebuilt::{Rebuilt, Report};
 use super::sidecar;
 use super::signature;
@@ -13,32 +15,6 @@ use crate::report::manifest_with;
 
 /// Most names told of one fault.
 const NAMED: usize = 6;
-
-/// What one part of the proof says.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Finding {
-    pub part: &'static str,
-    pub sound: bool,
-    pub told: String,
-}
-
-impl Finding {
-    pub fn sound(part: &'static str, told: impl Into<String>) -> Self {
-        Self {
-            part,
-            sound: true,
-            told: told.into(),
-        }
-    }
-
-    pub fn wrong(part: &'static str, fault: impl Into<String>) -> Self {
-        Self {
-            part,
-            sound: false,
-            told: fault.into(),
-        }
-    }
-}
 
 /// Everything that can be said of a run folder. With keys, each of them must have signed, and nobody else.
 pub fn examine(folder: &Folder, rebuilt: &Rebuilt, keys: &[KnownKey]) -> Vec<Finding> {

@@ -5,11 +5,12 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::consistency;
 use super::rebuilt::PlayedBack;
-use super::standing;
 use super::tests::run;
+use crate::cli::commands::prediction::prediction;
 use crate::cli::files::record_file;
-use crate::cli::files::record_file::JOURNAL;
+use crate::files::recorded_run::JOURNAL;
 use crate::record::journal::EntryKind;
 use crate::record::journal::testing::{Vandal, records, written};
 use crate::report;
@@ -25,7 +26,7 @@ type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
 fn played(journal: &[u8]) -> Result<(), String> {
     let read = record_file::from_bytes(Path::new(JOURNAL), journal)
         .map_err(|failure| failure.to_string())?;
-    let stands = standing::stands(&read);
+    let consistent = consistency::check_consistency(&read);
     // A refusal is as good as none.
     let no_rig = || Err(replay::Refusal::NothingRecorded);
     let _ = replay::resume(
@@ -46,7 +47,7 @@ fn played(journal: &[u8]) -> Result<(), String> {
         let bands = Bands::of(&read.plan.rig, link);
         let _ = replay::decide(&read.played, rig, &stands, &bands, true);
     }
-    let played = PlayedBack::of(read, None)?;
+    let played = PlayedBack::of(read, None, &prediction)?;
     let PlayedBack {
         plan,
         provenance,
@@ -63,7 +64,7 @@ fn played(journal: &[u8]) -> Result<(), String> {
     };
     report::numbers(&run).map_err(|error| error.to_string())?;
     let _ = report::figure_data(&run);
-    stands?;
+    consistent?;
     mismatch
         .as_ref()
         .map_or(Ok(()), |mismatch| Err(mismatch.to_string()))

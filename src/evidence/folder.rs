@@ -10,17 +10,13 @@ use std::path::{Path, PathBuf};
 use rustix::fs::OFlags;
 use sha2::{Digest as _, Sha256};
 
-use crate::cli::exit::Failure;
-use crate::cli::files::loader::plain;
-use crate::cli::files::record_file::JOURNAL;
+use crate::files::failure::Failure;
+use crate::files::failure::plain;
+use crate::files::recorded_run::JOURNAL;
 use crate::record::journal::{MOST_BYTES, is_part_of_a_reserve};
 use crate::text::digest::{hex, sha256};
 
-use super::issues::{ISSUE, OLDER_ISSUE};
-use super::{sidecar, signature};
-
-/// Name of the manifest; it does not list itself.
-pub const MANIFEST: &str = "manifest.sha256";
+use super::names::{ISSUE, MANIFEST, OLDER_ISSUE, PAPER, is_sidecar, is_signature};
 
 /// The largest file of a run folder that is read, bytes: the record is the longest.
 const LISTED_BYTES: u64 = MOST_BYTES;
@@ -94,7 +90,7 @@ impl Folder {
     pub fn listed(&self) -> impl Iterator<Item = (&String, &Held)> {
         self.files
             .iter()
-            .filter(|(name, _)| *name != MANIFEST && !signature::is_name(name) && !is_reserve(name))
+            .filter(|(name, _)| *name != MANIFEST && !is_signature(name) && !is_reserve(name))
     }
 
     /// The reserve of a run that was killed holds what psd lays there and nothing else; None where there is none.
@@ -105,10 +101,7 @@ impl Folder {
 
     /// The signatures, by name.
     pub fn signatures(&self) -> impl Iterator<Item = (&str, &[u8])> {
-        let named = self
-            .files
-            .iter()
-            .filter(|(name, _)| signature::is_name(name));
+        let named = self.files.iter().filter(|(name, _)| is_signature(name));
         named.map(|(name, held)| (name.as_str(), held.bytes.as_deref().unwrap_or_default()))
     }
 
@@ -169,7 +162,7 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
         .open(path)
         .map_err(said)?;
     let mut file = file.take(LISTED_BYTES);
-    if is_read && (metadata.len() <= SIDECAR_BYTES || !sidecar::is_name(name)) {
+    if is_read && (metadata.len() <= SIDECAR_BYTES || !is_sidecar(name)) {
         // As long as it is: a record of a gigabyte is not to grow by doubling.
         let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
         file.read_to_end(&mut bytes).map_err(said)?;
@@ -192,9 +185,9 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
 
 fn is_read(name: &str) -> bool {
     let own = matches!(name, JOURNAL | MANIFEST | ISSUE | OLDER_ISSUE)
-        || signature::is_name(name)
+        || is_signature(name)
         || is_reserve(name);
-    own || name == sidecar::PAPER || sidecar::is_name(name)
+    own || name == PAPER || is_sidecar(name)
 }
 
 fn is_kept(name: &str) -> bool {

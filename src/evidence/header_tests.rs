@@ -4,11 +4,13 @@
 use serde_json::{Value, json};
 
 use super::check::examine;
-use super::folder::{Folder, Held, MANIFEST};
+use super::folder::{Folder, Held};
+use super::names::MANIFEST;
 use super::rebuilt::{PlayedBack, Rebuilt};
 use super::tests::{faults, folder, run, with};
+use crate::cli::commands::prediction::prediction;
 use crate::cli::files::record_file;
-use crate::cli::files::record_file::JOURNAL;
+use crate::files::recorded_run::JOURNAL;
 use crate::plan::formula::ResultValue;
 use crate::record::journal::testing::forged;
 use crate::record::journal::{EntryKind, OLDEST_FORMAT, recover};
@@ -32,7 +34,7 @@ fn retold(mut alter: impl FnMut(&mut Value)) -> Folder {
 }
 
 fn found(folder: &Folder) -> Vec<&'static str> {
-    faults(&examine(folder, &Rebuilt::of(folder), &[]))
+    faults(&examine(folder, &Rebuilt::of(folder, &prediction), &[]))
 }
 
 #[test]
@@ -95,7 +97,7 @@ fn a_record_of_version_1_gives_the_same_results() {
         aged(header);
         header["build"] = json!("0".repeat(64));
     });
-    let told = examine(&old, &Rebuilt::of(&old), &[]);
+    let told = examine(&old, &Rebuilt::of(&old, &prediction), &[]);
     assert!(
         told[0].sound
             && told[0].told.contains("version 1")
@@ -136,7 +138,7 @@ fn a_record_of_a_plan_with_an_older_name_is_read() {
         _ => {}
     });
     let read = record_file::from_bytes(JOURNAL.as_ref(), &older).unwrap();
-    let played = PlayedBack::of(read, None).unwrap();
+    let played = PlayedBack::of(read, None, &prediction).unwrap();
     assert!(played.mismatch.is_none(), "{:?}", played.mismatch);
     let stays = &played.assessment.requirements[0];
     let ResultValue::Number { value: last, .. } = played.record.procedures[0]

@@ -10,10 +10,9 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use minisign::{KeyPair, PublicKey, SecretKey, SecretKeyBox};
 
-use crate::cli::exit::Failure;
-use crate::cli::files::loader::plain;
-use crate::cli::files::record_file::JOURNAL;
-use crate::cli::settings::Settings;
+use crate::files::failure::Failure;
+use crate::files::failure::plain;
+use crate::files::recorded_run::JOURNAL;
 
 /// The largest key file that is read, bytes.
 const KEY_BYTES: u64 = 4096;
@@ -59,7 +58,7 @@ pub fn public(path: &Path) -> Result<KnownKey, Failure> {
 pub fn secret(
     path: &Path,
     password_file: Option<&Path>,
-    settings: Settings,
+    can_ask: bool,
 ) -> Result<(SecretKey, Protection), Failure> {
     let failed = |error: minisign::PError| {
         Failure::file(path, format!("is no secret key that can be used: {error}"))
@@ -72,7 +71,7 @@ pub fn secret(
     if let Some(key) = open {
         return Ok((key, Protection::None));
     }
-    let password = password(password_file, "password of the key: ", settings)?;
+    let password = password(password_file, "password of the key: ", can_ask)?;
     SecretKey::from_box(kept, Some(password))
         .map(|key| (key, Protection::Password))
         .map_err(failed)
@@ -147,10 +146,10 @@ pub fn refuse_inside(key: &Path, run: &Path) -> Result<(), Failure> {
 }
 
 /// The password in a file, or asked for at the terminal without being shown.
-pub fn password(file: Option<&Path>, prompt: &str, settings: Settings) -> Result<String, Failure> {
+pub fn password(file: Option<&Path>, prompt: &str, can_ask: bool) -> Result<String, Failure> {
     let password = match file {
         Some(path) => text_of(path)?.lines().next().unwrap_or_default().to_owned(),
-        None if settings.can_ask => rpassword::prompt_password(prompt)
+        None if can_ask => rpassword::prompt_password(prompt)
             .map_err(|error| Failure::file("/dev/tty", plain(&error)))?,
         None => {
             return Err(Failure::command_line(

@@ -3,22 +3,27 @@
 
 use std::borrow::Cow;
 
-use super::check::Finding;
+use super::consistency;
+use super::finding::Finding;
 use super::folder::Folder;
 use super::issues::{IssueFile, apply};
-use super::standing;
-use crate::cli::files::finish_run::put_results;
-use crate::cli::files::provenance::BUILD;
-use crate::cli::files::record_file;
-use crate::cli::files::record_file::{JOURNAL, ReadRecord};
+use crate::files::provenance::BUILD;
+use crate::files::recorded_run;
+use crate::files::recorded_run::{JOURNAL, ReadRecord};
+use crate::files::results::put_results;
 use crate::plan::Plan;
 use crate::record::journal::EntryKind;
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
-use crate::report::{FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Provenance};
+use crate::report::{
+    FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance,
+};
 use crate::run::replay;
 use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
 use crate::verdict::{self, Assessment};
+
+/// Predicts a whole run from the record of its rehearsal; None of a run that is not a rehearsal.
+pub type Predict<'a> = &'a dyn Fn(&Plan, &Record) -> Option<Prediction>;
 
 /// A run, done again from its record alone.
 pub struct PlayedBack {
@@ -33,7 +38,11 @@ pub struct PlayedBack {
 
 impl PlayedBack {
     /// Plays a record back, with what was stated of its report after the test.
-    pub fn of(read: ReadRecord, issues: Option<&IssueFile>) -> Result<Self, String> {
+    pub fn of(
+        read: ReadRecord,
+        issues: Option<&IssueFile>,
+        predict: Predict<'_>,
+    ) -> Result<Self, String> {
         let ReadRecord {
             mut plan,
             mut provenance,
@@ -58,6 +67,7 @@ impl PlayedBack {
         if let Some(file) = issues {
             apply(&mut plan, &mut provenance, file)?;
         }
+        provenance.prediction = predict(&plan, &record);
         Ok(Self {
             plan,
             provenance,
@@ -107,17 +117,17 @@ pub struct Report {
 
 impl Rebuilt {
     /// Plays the record of a folder back.
-    pub fn of(folder: &Folder) -> Self {
-        Self::read(folder.bytes(JOURNAL).map(Cow::Borrowed), folder)
+    pub fn of(folder: &Folder, predict: Predict<'_>) -> Self {
+        Self::read(folder.bytes(JOURNAL).map(Cow::Borrowed), folder, predict)
     }
 
     /// The same, and the folder lets go of the bytes of its record: nobody holds them beside what they say.
-    pub fn taking(folder: &mut Folder) -> Self {
+    pub fn taking(folder: &mut Folder, predict: Predict<'_>) -> Self {
         let bytes = folder.take(JOURNAL);
-        Self::read(bytes.map(Cow::Owned), folder)
+        Self::read(bytes.map(Cow::Owned), folder, predict)
     }
 
-    fn read(journal: Option<Cow<'_, [u8]>>, folder: &Folder) -> Self {
+    fn read(journal: Option<Cow<'_, [u8]>>, folder: &Folder, predict: Predict<'_>) -> Self {
         let nothing = |part, fault: String| Self {
             findings: vec![Finding::wrong(part, fault)],
             report: None,
@@ -125,18 +135,18 @@ impl Rebuilt {
         let Some(bytes) = journal else {
             return nothing("record", format!("`{JOURNAL}` is missing"));
         };
-        let read = match record_file::from_bytes(JOURNAL.as_ref(), &bytes) {
+        let read = match recorded_run::from_bytes(JOURNAL.as_ref(), &bytes) {
             Ok(read) => read,
             Err(failure) => return nothing("record", failure.to_string()),
         };
         drop(bytes);
         match IssueFile::of(folder) {
-            Ok(issues) => Self::played(read, issues.as_ref()),
+            Ok(issues) => Self::played(read, issues.as_ref(), predict),
             Err(fault) => nothing("issue", fault),
         }
     }
 
-    fn played(read: ReadRecord, issues: Option<&IssueFile>) -> Self {
+    fn played(read: ReadRecord, issues: Option<&IssueFile>, predict: Predict<'_>) -> Self {
         let count = |kind| {
             read.recovered
                 .lines
@@ -150,8 +160,8 @@ impl Rebuilt {
             format!(", {} bytes torn at its end", torn.end - torn.start)
         });
         let (records, head) = (read.recovered.lines.len(), read.recovered.head());
-        let remarks = standing::remarks(&read.recovered, &read.played.header);
-        let mut findings = vec![match standing::stands(&read) {
+        let remarks = consistency::remarks(&read.recovered, &read.played.header);
+        let mut findings = vec![match consistency::check_consistency(&read) {
             Ok(()) => Finding::sound(
                 "record",
                 format!(
@@ -165,7 +175,7 @@ impl Rebuilt {
         let header = &read.played.header;
         let other_build =
             (header.build != BUILD).then(|| format!("psd {} build {}", header.psd, header.build));
-        let played = match PlayedBack::of(read, issues) {
+        let played = match PlayedBack::of(read, issues, predict) {
             Ok(played) => played,
             Err(fault) => {
                 return Self {

@@ -4,75 +4,39 @@
 
 use sha2::{Digest as _, Sha384, Sha512};
 
-use super::check::Finding;
+use super::finding::Finding;
 use super::folder::Folder;
+use super::names::{SidecarKind, sidecar};
 use crate::text::digest::unhex;
 
-/// The report on paper, which may lie here a second time with a seal at its end.
-pub const PAPER: &str = "certificate.pdf";
 /// How the file of a proof of OpenTimestamps begins.
 const OPEN_TIMESTAMPS: &[u8] =
     b"\x00OpenTimestamps\x00\x00Proof\x00\xbf\x89\xe2\xe8\x84\xe8\x92\x94";
 
-/// What a sidecar is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    /// `FILE.tsr`, `FILE.tst`
-    Token,
-    /// `FILE.ots`
-    Proof,
-    /// `certificate….pdf`
-    SealedPaper,
-}
-
-/// Whether a file may be a sidecar by its name: its bytes are then read.
-pub fn is_name(name: &str) -> bool {
-    kind(name).is_some()
-}
-
 /// Whether a file is a sidecar of another one that lies here.
 pub fn is_one(folder: &Folder, name: &str) -> bool {
-    kind(name).is_some_and(|(_, of)| folder.files.contains_key(of))
-}
-
-/// What a sidecar of this name is, and of which file.
-fn kind(name: &str) -> Option<(Kind, &str)> {
-    let kinds = [
-        (".tsr", Kind::Token),
-        (".tst", Kind::Token),
-        (".ots", Kind::Proof),
-    ];
-    let of = kinds
-        .into_iter()
-        .find_map(|(ending, kind)| Some((kind, name.strip_suffix(ending)?)));
-    let sealed = || {
-        let own = name
-            .strip_prefix("certificate")
-            .and_then(|rest| rest.strip_suffix(".pdf"));
-        own.is_some_and(|own| !own.is_empty() && !own.contains('/'))
-    };
-    of.or_else(|| sealed().then_some((Kind::SealedPaper, PAPER)))
+    sidecar(name).is_some_and(|(_, of)| folder.files.contains_key(of))
 }
 
 /// What one sidecar says of its file.
 pub fn examine(folder: &Folder, name: &str) -> Option<Finding> {
-    let (kind, of) = kind(name)?;
+    let (kind, of) = sidecar(name)?;
     let bytes = folder.bytes(name).unwrap_or_default();
     let told = match kind {
-        Kind::Token if !is_der(bytes) => Err("is no time-stamp token".to_owned()),
-        Kind::Proof if !bytes.starts_with(OPEN_TIMESTAMPS) => {
+        SidecarKind::Token if !is_der(bytes) => Err("is no time-stamp token".to_owned()),
+        SidecarKind::Proof if !bytes.starts_with(OPEN_TIMESTAMPS) => {
             Err("is no proof of OpenTimestamps".to_owned())
         }
-        Kind::Token | Kind::Proof if !names(folder, bytes, of) => {
+        SidecarKind::Token | SidecarKind::Proof if !names(folder, bytes, of) => {
             Err(format!("does not name `{of}` as it is here"))
         }
-        Kind::Token => Ok(format!(
+        SidecarKind::Token => Ok(format!(
             "is a time-stamp token that names `{of}`; by whom and when, `openssl ts -verify` proves"
         )),
-        Kind::Proof => Ok(format!(
+        SidecarKind::Proof => Ok(format!(
             "is a proof that names `{of}`; since when, `ots verify` proves"
         )),
-        Kind::SealedPaper => {
+        SidecarKind::SealedPaper => {
             let own = folder
                 .bytes(of)
                 .filter(|own| bytes.len() > own.len() && bytes.starts_with(own));

@@ -5,10 +5,12 @@ use std::collections::BTreeMap;
 use sha2::{Digest as _, Sha256, Sha512};
 
 use super::check::examine;
-use super::folder::{Folder, MANIFEST};
+use super::folder::Folder;
+use super::names::MANIFEST;
 use super::rebuilt::Rebuilt;
 use super::tests::{faults, folder, run, with};
-use crate::cli::files::record_file::JOURNAL;
+use crate::cli::commands::prediction::prediction;
+use crate::files::recorded_run::JOURNAL;
 
 /// A DER sequence that holds a digest, as a time-stamp token does.
 fn token(digest: &[u8]) -> Vec<u8> {
@@ -49,7 +51,7 @@ fn beside(name: &str, bytes: Vec<u8>) -> (Vec<String>, Vec<&'static str>) {
 
 fn rebuilt() -> &'static Rebuilt {
     static REBUILT: std::sync::OnceLock<Rebuilt> = std::sync::OnceLock::new();
-    REBUILT.get_or_init(|| Rebuilt::of(&folder(run())))
+    REBUILT.get_or_init(|| Rebuilt::of(&folder(run()), &prediction))
 }
 
 #[test]

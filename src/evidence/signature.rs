@@ -9,13 +9,12 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use minisign::{PublicKey, SecretKey, SignatureBox};
 
-use super::check::Finding;
-use super::folder::{Folder, MANIFEST};
+use super::finding::Finding;
+use super::folder::Folder;
 use super::keys::{self, KnownKey};
+use super::names::{MANIFEST, SUFFIX};
 use super::rebuilt::Report;
 use crate::text::diagnostic::excerpt::one_line;
-
-const SUFFIX: &str = ".minisig";
 
 /// The line that no signature covers is one of these: so a changed one is seen too.
 const UNTRUSTED: &[&str] = &[
@@ -75,21 +74,6 @@ impl Statement {
         };
         (read.comment() == comment).then_some(read)
     }
-}
-
-/// Whether a file of this name is a signature over the manifest.
-pub fn is_name(name: &str) -> bool {
-    let Some(role) = name
-        .strip_prefix(MANIFEST)
-        .and_then(|rest| rest.strip_suffix(SUFFIX))
-    else {
-        return false;
-    };
-    let is_plain = |byte: u8| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-';
-    role.is_empty()
-        || role
-            .strip_prefix('.')
-            .is_some_and(|role| !role.is_empty() && role.bytes().all(is_plain))
 }
 
 /// The name of a signature's file: of no role `manifest.sha256.minisig`, else with the role's letters and digits in it.
@@ -326,14 +310,16 @@ mod tests {
             names,
             middles.map(|middle| format!("manifest.sha256.{middle}.minisig"))
         );
-        assert!(names.iter().all(|name| is_name(name)) && is_name(&file_name(None, &roles)));
+        assert!(
+            names.iter().all(|name| is_signature(name)) && is_signature(&file_name(None, &roles))
+        );
         for other in [
             "manifest.sha256",
             "manifest.sha256.A.minisig",
             "manifest.sha256..minisig",
             "x/manifest.sha256.minisig",
         ] {
-            assert!(!is_name(other), "{other}");
+            assert!(!is_signature(other), "{other}");
         }
     }
 

@@ -8,17 +8,17 @@ use std::sync::OnceLock;
 use minisign::{KeyPair, SecretKey};
 use rayon::prelude::*;
 
-use super::check::{Finding, examine};
-use super::folder::{Folder, Held, MANIFEST};
+use super::check::examine;
+use super::finding::Finding;
+use super::folder::{Folder, Held};
 use super::keys::KnownKey;
-use super::rebuilt::{PlayedBack, Rebuilt};
+use super::names::MANIFEST;
+use super::rebuilt::Rebuilt;
 use super::signature::{self, Statement};
 use crate::cli::Exit;
-use crate::cli::files::provenance::{BUILD, TOOLCHAIN};
-use crate::cli::files::record_file;
-use crate::cli::files::record_file::JOURNAL;
-use crate::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
-use crate::report::{OutputFile, manifest_with};
+use crate::cli::commands::prediction::prediction;
+use crate::files::recorded_run::JOURNAL;
+use crate::report::manifest_with;
 
 /// A few steps, and every kind of file.
 const PLAN: &str = r#"plan "A few steps" {
@@ -133,7 +133,7 @@ fn signed_as(folder: &mut Folder, rebuilt: &Rebuilt, role: &str, key: &SecretKey
 
 fn signed() -> Signed {
     let mut folder = folder(run());
-    let rebuilt = Rebuilt::of(&folder);
+    let rebuilt = Rebuilt::of(&folder, &prediction);
     let keys = ["Test engineer", "Quality"].map(|role| {
         let KeyPair { pk, sk } = KeyPair::generate_unencrypted_keypair().unwrap();
         signed_as(&mut folder, &rebuilt, role, &sk);
@@ -168,7 +168,7 @@ fn judged(folder: &Folder, signed: &Signed) -> Vec<&'static str> {
             .map(|found| found.head().to_owned())
     };
     let same = bytes == own || head(bytes).is_some_and(|now| Some(now) == head(own));
-    let anew = (!same).then(|| Rebuilt::of(folder));
+    let anew = (!same).then(|| Rebuilt::of(folder, &prediction));
     faults(&examine(
         folder,
         anew.as_ref().unwrap_or(&signed.rebuilt),
@@ -206,7 +206,7 @@ fn a_sound_folder_is_sound_and_names_its_parts() {
         ]
     );
     let mut lets_go = signed.folder.clone();
-    let rebuilt = Rebuilt::taking(&mut lets_go);
+    let rebuilt = Rebuilt::taking(&mut lets_go, &prediction);
     assert_eq!(
         lets_go.bytes(JOURNAL),
         None,
@@ -260,7 +260,7 @@ fn what_has_no_place_is_found_also_where_no_manifest_lists_it() {
         run()[JOURNAL].clone(),
     )]));
     assert_eq!(
-        faults(&examine(&only, &Rebuilt::of(&only), &[])),
+        faults(&examine(&only, &Rebuilt::of(&only, &prediction), &[])),
         ["results"]
     );
 }
@@ -391,77 +391,11 @@ fn a_manifest_written_anew_hides_nothing() {
     }
 }
 
-/// The record as another program would have begun it.
-fn of_another_build(journal: &[u8]) -> Vec<u8> {
-    let place = tempfile::tempdir().unwrap();
-    let path = place.path().join(JOURNAL);
-    let mut anew = Journal::create(
-        Box::new(FileStorage::create(&path).unwrap()),
-        Durability::Buffered,
-    );
-    for line in recover(journal).unwrap().lines {
-        let mut body = line.body();
-        // These the journal writes itself.
-        for own in ["format", "count", "head"] {
-            body.as_object_mut().unwrap().shift_remove(own);
-        }
-        if line.kind == EntryKind::Header {
-            (body["build"], body["toolchain"]) =
-                ("0".repeat(64).into(), "riscv64, another compiler".into());
-        }
-        match line.kind {
-            EntryKind::End => anew.end(&body).unwrap(),
-            kind => anew.append(kind, &body).unwrap(),
-        }
-    }
-    drop(anew);
-    std::fs::read(path).unwrap()
-}
-
-#[test]
-fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_report() {
-    let own = folder(run());
-    let journal = of_another_build(&run()[JOURNAL]);
-    let read = record_file::from_bytes(JOURNAL.as_ref(), &journal).unwrap();
-    let mut files: Vec<OutputFile> = Vec::new();
-    PlayedBack::of(read, None)
-        .unwrap()
-        .results(&mut files)
-        .unwrap();
-    let page = files
-        .iter()
-        .find(|file| file.path == "certificate.html")
-        .unwrap();
-    let page = String::from_utf8(page.bytes.clone()).unwrap();
-    assert!(page.contains(&"0".repeat(64)) && page.contains("riscv64, another compiler"));
-    assert!(!page.contains(BUILD) && !page.contains(TOOLCHAIN));
-    // And nothing else of the results knows of it.
-    let others = files
-        .iter()
-        .filter(|file| !file.path.starts_with("certificate."));
-    let moved: Vec<&str> = others
-        .filter(|file| run()[&file.path] != file.bytes)
-        .map(|file| file.path.as_str())
-        .collect();
-    assert_eq!(moved, [""; 0]);
-    let told = Rebuilt::of(&with(&own, JOURNAL, Some(journal)))
-        .report
-        .unwrap()
-        .other_build
-        .unwrap();
-    assert!(told.contains("build 0000"), "{told}");
-    let page = String::from_utf8(run()["certificate.html"].clone()).unwrap();
-    assert!(
-        page.contains(BUILD) && page.contains(TOOLCHAIN),
-        "a run names the program that makes it"
-    );
-}
-
 fn rebuilt_of(folder: &Folder, signed: &Signed) -> Rebuilt {
     if folder.bytes(JOURNAL) == signed.folder.bytes(JOURNAL) {
         signed.rebuilt.clone()
     } else {
-        Rebuilt::of(folder)
+        Rebuilt::of(folder, &prediction)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::finding::Finding;
-use super::tested::{Blessed, Outcome, Report, Tested};
+use super::tested::{Accepted, Outcome, Report, Tested};
 use super::words::Words;
 
 /// Differences shown of one part of a plan's results; the JSON report has all.
@@ -21,16 +21,16 @@ pub fn told(tested: &Tested, coloured: bool) -> String {
             verdict: Some(verdict),
         } => ("ok", GREEN, (*verdict).to_owned()),
         Outcome::Same { verdict: None } => ("ok", GREEN, "fails to check, as blessed".to_owned()),
-        Outcome::Blessed(Blessed::New) => ("blessed", YELLOW, "new".to_owned()),
-        Outcome::Blessed(Blessed::Changed(found)) if found.is_empty() => (
+        Outcome::Accepted(Accepted::New) => ("blessed", YELLOW, "new".to_owned()),
+        Outcome::Accepted(Accepted::Changed(found)) if found.is_empty() => (
             "blessed",
             YELLOW,
             "written anew, no result moved".to_owned(),
         ),
-        Outcome::Blessed(Blessed::Changed(found)) => {
+        Outcome::Accepted(Accepted::Changed(found)) => {
             ("blessed", YELLOW, format!("{} changed", found.len()))
         }
-        Outcome::Blessed(Blessed::Unchanged) => (
+        Outcome::Accepted(Accepted::Unchanged) => (
             "same",
             GREEN,
             "within tolerance: nothing written".to_owned(),
@@ -116,7 +116,7 @@ pub fn closing(report: &Report) -> String {
         .filter(|tested| {
             matches!(
                 tested.outcome,
-                Outcome::Blessed(Blessed::New | Blessed::Changed(_))
+                Outcome::Accepted(Accepted::New | Accepted::Changed(_))
             )
         })
         .count();

@@ -1,4 +1,4 @@
-//! What differs between a run and its blessed results, as data. Whoever tells it chooses the words.
+//! What differs between a run and its accepted results, as data. Whoever tells it chooses the words.
 
 use super::tolerance::Rule;
 use crate::units::Dimension;
@@ -50,11 +50,11 @@ pub enum Change {
         /// The first of several, in a table.
         first: Option<(Place, Count)>,
     },
-    /// Blessed, and not there any more.
+    /// Accepted, and not there any more.
     Gone,
-    /// There, and not blessed.
+    /// There, and not accepted.
     New,
-    /// So many of them were blessed, so many are there.
+    /// So many of them were accepted, so many are there.
     Length {
         of: &'static str,
         was: usize,
@@ -102,7 +102,7 @@ impl Moved {
         Some(self.is? - self.was?)
     }
 
-    /// How far, of the blessed value; None of a value that was 0.
+    /// How far, of the accepted value; None of a value that was 0.
     #[must_use]
     pub fn by_fraction(&self) -> Option<f64> {
         let was = self.was.filter(|was| *was != 0.0)?;

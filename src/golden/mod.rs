@@ -23,7 +23,7 @@ pub use finding::{Change, Count, Finding, Moved, Part, Place};
 pub use junit::junit;
 pub use table::{Cells, Table, dimension as column_dimension};
 pub use tap::tap;
-pub use tested::{Blessed, Outcome, Report, Tested};
+pub use tested::{Accepted, Outcome, Report, Tested};
 pub use thinning::thinned;
 pub use tolerance::{FLOOR, Rule, Tolerances};
 pub use words::Words;

@@ -12,25 +12,25 @@ pub struct Tested {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// As blessed. The verdict; None of a plan that fails to check, as it should.
+    /// As accepted. The verdict; None of a plan that fails to check, as it should.
     Same {
         verdict: Option<&'static str>,
     },
     Differs(Vec<Finding>),
     /// There is nothing to hold it against.
-    NotBlessed {
+    NotAccepted {
         folder: String,
     },
     /// It could not be run or compared.
     Failed(String),
     /// Another failed before it, and the first failure ends the test.
     NotRun,
-    Blessed(Blessed),
+    Accepted(Accepted),
 }
 
 /// What blessing did.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Blessed {
+pub enum Accepted {
     New,
     /// What is different from before; nothing where all was only written anew.
     Changed(Vec<Finding>),
@@ -42,7 +42,7 @@ pub enum Blessed {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     pub tested: Vec<Tested>,
-    /// Folders of blessed results that belong to no plan.
+    /// Folders of accepted results that belong to no plan.
     pub unused: Vec<String>,
 }
 
@@ -52,7 +52,7 @@ impl Outcome {
         matches!(
             self,
             Self::Same { .. }
-                | Self::Blessed(Blessed::New | Blessed::Changed(_) | Blessed::Unchanged)
+                | Self::Accepted(Accepted::New | Accepted::Changed(_) | Accepted::Unchanged)
         )
     }
 
@@ -62,21 +62,21 @@ impl Outcome {
         match self {
             Self::Same { .. } => "same",
             Self::Differs(_) => "differs",
-            Self::NotBlessed { .. } => "not blessed",
+            Self::NotAccepted { .. } => "not blessed",
             Self::Failed(_) => "failed",
             Self::NotRun => "not run",
-            Self::Blessed(Blessed::New) => "blessed new",
-            Self::Blessed(Blessed::Changed(_)) => "blessed changed",
-            Self::Blessed(Blessed::Unchanged) => "unchanged",
-            Self::Blessed(Blessed::Refused(_)) => "refused",
+            Self::Accepted(Accepted::New) => "blessed new",
+            Self::Accepted(Accepted::Changed(_)) => "blessed changed",
+            Self::Accepted(Accepted::Unchanged) => "unchanged",
+            Self::Accepted(Accepted::Refused(_)) => "refused",
         }
     }
 
-    /// What differs from the blessed results, or differed before it was blessed.
+    /// What differs from the accepted results, or differed before it was accepted.
     #[must_use]
     pub fn findings(&self) -> &[Finding] {
         match self {
-            Self::Differs(found) | Self::Blessed(Blessed::Changed(found)) => found,
+            Self::Differs(found) | Self::Accepted(Accepted::Changed(found)) => found,
             _ => &[],
         }
     }
@@ -92,13 +92,13 @@ impl Outcome {
                 "{} differences from the blessed results",
                 found.len()
             )),
-            Self::NotBlessed { folder } => Some(format!(
+            Self::NotAccepted { folder } => Some(format!(
                 "no blessed results in {folder}; look at a run, then `--bless`"
             )),
             Self::Failed(reason) => Some(reason.clone()),
             Self::NotRun => Some("not run: the test ended at the first failure".to_owned()),
-            Self::Blessed(Blessed::Refused(reason)) => Some(format!("not blessed: {reason}")),
-            Self::Same { .. } | Self::Blessed(_) => None,
+            Self::Accepted(Accepted::Refused(reason)) => Some(format!("not blessed: {reason}")),
+            Self::Same { .. } | Self::Accepted(_) => None,
         }
     }
 }

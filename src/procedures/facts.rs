@@ -81,3 +81,26 @@ pub(crate) struct Motion<'a> {
     /// Whether its own end is at rest.
     pub rests: bool,
 }
+
+/// Delay of the actuators of a procedure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Delay {
+    /// D, simulated time \[s\].
+    pub late: f64,
+    /// Δt \[s\]
+    pub time_step: f64,
+    /// Natural circular frequency of the specimen, or of the first mode of a frame \[rad/s\].
+    pub omega: f64,
+}
+
+impl Delay {
+    /// Apparent damping ratio of a motion at ω with a delay D: a force K·d(t − D) is K·d − KD·v, so that C = −KD and ζ = −ωD/2.
+    pub(crate) fn damping_ratio(self) -> f64 {
+        -0.5 * self.omega * self.late
+    }
+
+    /// Energy that it adds to a vibration in one cycle, over that of the vibration: −4πζ.
+    pub(crate) fn energy(self) -> f64 {
+        -4.0 * std::f64::consts::PI * self.damping_ratio()
+    }
+}

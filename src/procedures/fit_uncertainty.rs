@@ -1,16 +1,14 @@
-//! What the uncertainty of an identified result is made of: the scatter of its own fit, and the calibration of the rig. In:
-//! the results of a ramp or a sweep with the standard errors of their fits. Out: the same with their contributions, so that
-//! what follows from them knows what they share.
+//! The contributions to the uncertainty of fitted results: the scatter of the fit, the calibration of the rig, the resolution of the
+//! readings. In: results with the standard errors of their fits. Out: the same with contributions, so that later results know the
+//! sources that they share.
 
 use crate::physics::identification::bilinear_fit::SHARED;
 use crate::physics::identification::multilinear_fit::{CurveShares, MultilinearFit};
 use crate::physics::perturbation::ReadingErrors;
-use crate::plan::formula::{Formula, ProcedureId, ResultValue};
-use crate::plan::{Calibration, Plan, ProcedureKind};
-use crate::record::{BilinearFit, BroughtTogether, History, NamedResult};
-use crate::rig::DeclaredNoise;
-use crate::run::inputs::Inputs;
-use crate::uncertainty::{Contribution, InstrumentUncertainty, Source, combined, share};
+use crate::plan::formula::{ProcedureId, ResultValue};
+use crate::plan::{Calibration, DeclaredNoise, Plan};
+use crate::record::{BilinearFit, LineFit, NamedResult};
+use crate::uncertainty::{Contribution, InstrumentUncertainty, Source, combined};
 use crate::units::Dimension;
 
 /// Results of a fit that lie on one line, slope first.
@@ -22,40 +20,26 @@ const LINES: [(&str, &str); 2] = [
 /// Forces that a false zero of the load cell shifts; slopes and differences do not show it.
 const SHIFTED: [&str; 3] = ["intercept_force", "yield_force", "break_forces"];
 
-/// Results of a ramp that are fitted to its holds.
-const OF_HOLDS: [&str; 8] = [
-    "time_constant",
-    "relaxed_stiffness",
-    "branch_stiffness",
-    "remaining_relaxation",
-    "needed_pause",
-    "relaxation_share",
-    "reference_time",
-    "relaxation_rate",
-];
+/// The fits of a procedure, and how far their scatter shows their standard errors.
+pub(crate) struct Fits<'a> {
+    pub line: Option<LineFit>,
+    pub bilinear: Option<&'a BilinearFit>,
+    pub curve: Option<&'a MultilinearFit>,
+    /// Fraction of the standard errors of a result, by its name, that its scatter shows.
+    pub shown: &'a dyn Fn(&str) -> f64,
+    /// Whether the readings of the fit have a resolution error in common.
+    pub common_resolution: bool,
+}
 
-/// Says of every identified result what its uncertainty is made of.
+/// Gives every fitted result its contributions: the scatter of its fit, the calibration of the rig, the resolution of the readings.
 pub(crate) fn attribute(
-    kind: &ProcedureKind,
-    history: &History,
+    fits: &Fits<'_>,
     plan: &Plan,
-    (inputs, declared): (&Inputs<'_>, DeclaredNoise),
+    procedure: ProcedureId,
+    declared: DeclaredNoise,
     results: &mut [NamedResult],
 ) {
     let calibration = &plan.rig.calibration_of(0);
-    let instruments = InstrumentUncertainty::of(plan, declared, 1);
-    let (line, bilinear, curve) = match history {
-        History::Ramp(ramp) => (
-            ramp.fit,
-            ramp.bilinear.as_ref(),
-            ramp.multilinear.as_deref(),
-        ),
-        History::Sweep(sweep) => (sweep.fit, None, None),
-        // What is fitted to the backbone; its loops know already.
-        History::Cycle(cycle) => (None, None, cycle.backbone.as_ref()),
-        _ => return,
-    };
-    let procedure = inputs.procedure();
     for result in results
         .iter_mut()
         .filter(|result| result.contributions.is_empty())
@@ -65,14 +49,14 @@ pub(crate) fn attribute(
             uncertainty: Some(own),
         } = result.value
         {
-            result.contributions = match (bilinear, curve) {
+            result.contributions = match (fits.bilinear, fits.curve) {
                 (Some(fit), _) => shares_of(procedure, result.name, own, fit),
                 (None, Some(fit)) => shares_of_curve(procedure, result.name, own, fit),
                 (None, None) => own_parts(
                     procedure,
                     result.name,
                     own,
-                    line.map(|line| line.correlation),
+                    fits.line.map(|line| line.correlation),
                 ),
             };
             result
@@ -80,31 +64,22 @@ pub(crate) fn attribute(
                 .extend(of_calibration(result, value, calibration));
         }
     }
-    if let Some(fit) = curve {
+    if let Some(fit) = fits.curve {
         of_lists(procedure, fit, calibration, results);
     }
     for result in results.iter_mut() {
-        split(
-            &mut result.contributions,
-            procedure,
-            shown(history, result.name),
-        );
+        let shown = (fits.shown)(result.name);
+        split(&mut result.contributions, procedure, shown);
     }
-    if let History::Ramp(_) | History::Cycle(_) = history {
-        in_common(instruments.errors(0), procedure, results);
+    if fits.common_resolution {
+        let errors = InstrumentUncertainty::of(plan, declared, 1).errors(0);
+        in_common(errors, procedure, results);
     }
-    if let (ProcedureKind::DampingSweep(sweep), History::Sweep(found)) = (kind, history) {
-        of_stroke_stiffness(&found.together, &sweep.stiffness, inputs, results);
-        let specimen = plan.specimens.get(sweep.specimen);
-        let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);
-        damping_ratio(
-            results,
-            (&sweep.stiffness, found.own_stiffness),
-            (Source::SpecimenMass(sweep.specimen), uncertain),
-            inputs,
-        );
-    }
-    for result in results.iter_mut() {
+}
+
+/// Combines the contributions of every result into its standard uncertainty.
+pub(crate) fn combine(results: &mut [NamedResult]) {
+    for result in results {
         // A fit alone keeps its standard error as it is, to the bit.
         let calibrated = |part: &Contribution| {
             !matches!(part.source, Source::Fit { .. } | Source::FitEntry { .. })
@@ -114,33 +89,6 @@ pub(crate) fn attribute(
         {
             *uncertainty = combined(&result.contributions);
         }
-    }
-}
-
-/// Fraction of the standard errors of a fitted result that its scatter shows.
-fn shown(history: &History, name: &str) -> f64 {
-    match history {
-        History::Ramp(ramp) => {
-            let of_holds = ramp
-                .relaxation
-                .as_ref()
-                .map(|fit| fit.shown)
-                .or(ramp.reached.as_ref().map(|fit| fit.best().shown));
-            let of_steps = ramp
-                .fit
-                .map(|fit| fit.shown)
-                .or(ramp.bilinear.as_ref().map(|fit| fit.shown));
-            let of_steps = of_steps.or(ramp.multilinear.as_ref().map(|fit| fit.shown));
-            if OF_HOLDS.contains(&name) {
-                of_holds
-            } else {
-                of_steps
-            }
-            .unwrap_or(1.0)
-        }
-        History::Sweep(sweep) => sweep.fit.map_or(1.0, |fit| fit.shown),
-        History::Cycle(cycle) => cycle.backbone.as_ref().map_or(1.0, |fit| fit.shown),
-        _ => 1.0,
     }
 }
 
@@ -386,104 +334,4 @@ fn of_calibration(
         .filter(|(_, amount)| *amount != 0.0)
         .map(|(source, amount)| Contribution::new(source, amount))
         .collect()
-}
-
-/// What the stiffness that brought the pairs of a sweep to one place makes of its line: that of the strokes, else that of the plan.
-fn of_stroke_stiffness(
-    together: &BroughtTogether,
-    planned: &Formula,
-    inputs: &Inputs<'_>,
-    results: &mut [NamedResult],
-) {
-    let of_strokes = |error| {
-        vec![Contribution::new(
-            Source::StrokeStiffness {
-                procedure: inputs.procedure(),
-            },
-            error,
-        )]
-    };
-    let of_plan = || {
-        planned
-            .contributions(inputs.results(), None)
-            .unwrap_or_default()
-    };
-    let in_stiffness = together.error.map_or_else(of_plan, of_strokes);
-    for (name, effect) in ["damping", "coulomb_force"]
-        .into_iter()
-        .zip(together.effects)
-    {
-        let Some(result) = results.iter_mut().find(|result| result.name == name) else {
-            continue;
-        };
-        if matches!(result.value, ResultValue::Number { value: Some(_), .. }) {
-            let parts = in_stiffness
-                .iter()
-                .map(|part| Contribution::new(part.source, effect * part.amount));
-            parts
-                .filter(|part| part.amount != 0.0)
-                .for_each(|part| share(&mut result.contributions, part));
-        }
-    }
-}
-
-/// ζ = c/(2√(KM)): by first order, ζ/c of what is in c, −ζ/(2K) of what is in K and −ζ/(2M) of what is in M; `mass` is what
-/// the mass hangs on and its relative uncertainty.
-fn damping_ratio(
-    results: &mut [NamedResult],
-    (stiffness, own): (&Formula, Option<(f64, f64)>),
-    mass: (Source, f64),
-    inputs: &Inputs<'_>,
-) {
-    let number = |name: &str| match results.iter().find(|result| result.name == name)?.value {
-        ResultValue::Number { value, .. } => value,
-        ResultValue::List(_) => None,
-    };
-    let (Some(ratio), Some(damping)) = (number("damping_ratio"), number("damping")) else {
-        return;
-    };
-    let (known, in_stiffness) = if let Some((stiffness, error)) = own {
-        (
-            stiffness,
-            vec![Contribution::new(
-                Source::StrokeStiffness {
-                    procedure: inputs.procedure(),
-                },
-                error,
-            )],
-        )
-    } else {
-        let found = (
-            stiffness.evaluate(inputs.results(), None),
-            stiffness.contributions(inputs.results(), None),
-        );
-        let (Ok(known), Ok(in_stiffness)) = found else {
-            return;
-        };
-        (known.value, in_stiffness)
-    };
-    let of_damping = results
-        .iter()
-        .find(|result| result.name == "damping")
-        .map(|found| found.contributions.clone());
-    let mut parts: Vec<Contribution> = of_damping.unwrap_or_default();
-    for part in &mut parts {
-        part.amount *= ratio / damping;
-    }
-    for part in in_stiffness {
-        share(
-            &mut parts,
-            Contribution::new(part.source, -0.5 * ratio / known * part.amount),
-        );
-    }
-    if mass.1 > 0.0 {
-        share(&mut parts, Contribution::new(mass.0, -0.5 * ratio * mass.1));
-    }
-    if let Some(result) = results
-        .iter_mut()
-        .find(|result| result.name == "damping_ratio")
-        && parts.iter().all(|part| part.amount.is_finite())
-    {
-        result.contributions = parts;
-    }
 }

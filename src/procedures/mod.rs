@@ -1,6 +1,5 @@
-//! The procedures, one folder each: check, run, tables, figures and report of one procedure together. In: a block of the plan, then a
-//! rig behind the guard. Out: histories and results. This file alone lists the procedures: one function for each stage, each with one
-//! exhaustive match. A new procedure is a folder, a variant, and the match arms that the compiler then asks for here.
+//! The procedures, one folder each: check, run, tables, figures and report. In: a block of the plan, then a rig behind the guard. Out:
+//! histories and results. Only this file lists the procedures: one function per stage, each with one exhaustive match.
 
 pub mod base_excitation;
 pub mod cycle;
@@ -19,14 +18,19 @@ pub(crate) mod read_field;
 pub(crate) mod results;
 pub mod stepping;
 pub mod stiffness_ramp;
+pub mod storage_bound;
 pub mod unload;
 
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::limits::CheckedLimits;
 use crate::language::check::declared::Declared;
 use crate::physics::self_test::Part;
-use crate::plan::{Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureKind, RampFit};
-use crate::record::{BroughtTogether, History, ProcedureRecord, RampHistory};
+use crate::plan::{
+    DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureKind,
+};
+use crate::record::{
+    BroughtTogether, CycleStep, History, NamedResult, ProcedureRecord, RampHistory, SweepStep,
+};
 use crate::report::Run;
 use crate::report::document::Block;
 use crate::report::figures::chart::{Chart, SharedCurve};
@@ -36,7 +40,7 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::schema::{Column, Kind};
 use crate::uncertainty::Source;
-use facts::{Facts, Leaves, Recorded, Tests};
+use facts::{Delay, Facts, Leaves, Recorded, Tests};
 use impact::check::judge::Strikers;
 
 /// Check: the procedure that a block specifies; None after an error, and for a block that is no procedure.
@@ -214,6 +218,40 @@ pub(crate) fn run(
     }
 }
 
+/// Run: gives the fitted results of a procedure their contributions, those of its own uncertainty apart.
+pub(crate) fn attribute(
+    kind: &ProcedureKind,
+    history: &History,
+    plan: &Plan,
+    inputs: &Inputs<'_>,
+    declared: DeclaredNoise,
+    results: &mut [NamedResult],
+) {
+    let procedure = inputs.procedure();
+    match history {
+        History::Ramp(ramp) => stiffness_ramp::fits::with_fits(ramp, &mut |fits| {
+            fit_uncertainty::attribute(fits, plan, procedure, declared, results);
+        }),
+        History::Sweep(found) => {
+            if let ProcedureKind::DampingSweep(sweep) = kind {
+                damping_sweep::uncertainty::propagate(
+                    sweep, found, plan, inputs, declared, results,
+                );
+            }
+        }
+        History::Cycle(cycle) => cycle::uncertainty::with_fits(cycle, &mut |fits| {
+            fit_uncertainty::attribute(fits, plan, procedure, declared, results);
+        }),
+        History::Impact(_)
+        | History::Shake(_)
+        | History::Escalate(_)
+        | History::Move(_)
+        | History::FrameUnload(_)
+        | History::Inspect => return,
+    }
+    fit_uncertainty::combine(results);
+}
+
 /// Run: an upper bound of a procedure's steps, where the plan alone gives one.
 pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     match kind {
@@ -221,10 +259,7 @@ pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
             let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
             Some(once * u64::from(ramp.repeats))
         }
-        ProcedureKind::Impact(impact) => {
-            impact.known_steps(plan, plan.strikers.get(impact.striker)?)
-        }
-        ProcedureKind::Shake(shake) => shake.known_steps(plan),
+        ProcedureKind::Impact(_) | ProcedureKind::Shake(_) => known_steps(kind, plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
         ProcedureKind::Escalate(series) => {
             let steps = series.known_steps_of_an_impact(plan)?;
@@ -260,14 +295,29 @@ pub(crate) fn known_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     }
 }
 
+/// Check: how late the actuators of a virtual rig are; None where not enough is known before the run, or nothing is integrated.
+pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
+    match kind {
+        ProcedureKind::Impact(impact) => impact::delay::of_impact(plan, impact),
+        ProcedureKind::Escalate(series) => impact::delay::of_series(plan, series),
+        ProcedureKind::Shake(shake) => base_excitation::facts::delay(plan, shake),
+        ProcedureKind::StiffnessRamp(_)
+        | ProcedureKind::DampingSweep(_)
+        | ProcedureKind::Cycle(_)
+        | ProcedureKind::Unload(_)
+        | ProcedureKind::FrameUnload(_)
+        | ProcedureKind::Move(_)
+        | ProcedureKind::Inspect { .. } => None,
+    }
+}
+
 /// Report: a figure and its caption; None where the record has nothing for it.
 pub(crate) fn chart(
     run: &Run<'_>,
     procedure: &ProcedureRecord,
     figure: &Figure,
 ) -> Option<(Chart, String)> {
-    let name = &procedure.name;
-    let kind = figure.kind;
+    let (name, kind) = (&procedure.name, figure.kind);
     match &procedure.history {
         History::Ramp(history) => stiffness_ramp::chart::chart(name, history, kind),
         History::Sweep(history) => damping_sweep::chart::chart(name, history, kind),
@@ -301,11 +351,8 @@ pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     match &procedure.history {
         History::Ramp(history) => stiffness_ramp::tables::tables(name, history),
         History::Sweep(history) => {
-            vec![Table::of(
-                name,
-                &history.steps,
-                damping_sweep::tables::steps,
-            )]
+            let steps = &history.steps;
+            vec![Table::of(name, steps, damping_sweep::tables::steps)]
         }
         History::Impact(history) => vec![impact::tables::table(name, history)],
         History::Shake(history) => vec![base_excitation::tables::table(name, history)],
@@ -384,10 +431,7 @@ pub(crate) fn report(
 /// Report: the parts of the self-test that a procedure uses, each with those it is combined with.
 pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
     match kind {
-        ProcedureKind::StiffnessRamp(ramp) => match ramp.fit {
-            RampFit::Linear => vec![vec![Part::LineFit]],
-            RampFit::Bilinear | RampFit::Multilinear(_) => vec![vec![Part::CurveFit]],
-        },
+        ProcedureKind::StiffnessRamp(ramp) => vec![vec![stiffness_ramp::facts::self_tested(ramp)]],
         ProcedureKind::DampingSweep(_) => vec![vec![Part::DampingFit]],
         ProcedureKind::Impact(impact) => impact::facts::self_tested(impact),
         ProcedureKind::Escalate(series) => impact::facts::self_tested(&series.impact),
@@ -400,31 +444,36 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
 
 /// Report: gives displacement (m) and force (N) of every axis, row by row of a procedure's table.
 pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
-    let mut one = |displacement: f64, force: f64| give(&[displacement], &[force]);
     match history {
-        History::Ramp(RampHistory { steps, .. }) | History::Move(steps) => steps
-            .iter()
-            .for_each(|step| one(step.displacement, step.restoring_force)),
-        History::Sweep(sweep) => sweep
-            .steps
-            .iter()
-            .for_each(|step| one(step.displacement, step.restoring_force)),
-        History::Cycle(cycle) => cycle
-            .steps
-            .iter()
-            .for_each(|step| one(step.displacement, step.restoring_force)),
+        History::Ramp(RampHistory { steps, .. }) | History::Move(steps) => {
+            reached::of_axis(
+                steps,
+                |step| (step.displacement, step.restoring_force),
+                give,
+            );
+        }
+        History::Sweep(sweep) => {
+            let read = |step: &SweepStep| (step.displacement, step.restoring_force);
+            reached::of_axis(&sweep.steps, read, give);
+        }
+        History::Cycle(cycle) => {
+            let read = |step: &CycleStep| (step.displacement, step.restoring_force);
+            reached::of_axis(&cycle.steps, read, give);
+        }
         History::Impact(history) => reached::of_impact(history, give),
-        History::Escalate(series) => series
-            .blows
-            .iter()
-            .for_each(|blow| reached::of_impact(&blow.history, give)),
-        History::Shake(shake) => shake
-            .steps
-            .iter()
-            .for_each(|step| give(&step.displacement, &step.restoring_force)),
-        History::FrameUnload(steps) => steps
-            .iter()
-            .for_each(|step| give(&step.displacement, &step.restoring_force)),
+        History::Escalate(series) => {
+            for impact in &series.blows {
+                reached::of_impact(&impact.history, give);
+            }
+        }
+        History::Shake(shake) => {
+            let steps = shake.steps.iter();
+            steps.for_each(|step| give(&step.displacement, &step.restoring_force));
+        }
+        History::FrameUnload(steps) => {
+            let steps = steps.iter();
+            steps.for_each(|step| give(&step.displacement, &step.restoring_force));
+        }
         History::Inspect => {}
     }
 }

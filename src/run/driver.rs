@@ -87,11 +87,12 @@ pub fn run_with(
             .take_observations()
             .into_iter()
             .for_each(|text| session.event(EventKind::Remark, text));
-        procedures::fit_uncertainty::attribute(
+        procedures::attribute(
             &procedure.kind,
             &history,
             plan,
-            (&inputs, session.guard.declared_noise()),
+            &inputs,
+            session.guard.declared_noise(),
             &mut results,
         );
         let inputs = inputs.into_recorded();

@@ -5,6 +5,7 @@
 use super::motion::Motion;
 use super::session::Session;
 use super::start;
+use super::start::{remedy, within};
 use super::stop::Stop;
 use crate::plan::{Gate, Plan, RealLink};
 use crate::record::EventKind;
@@ -98,21 +99,6 @@ pub(crate) fn pass(
     Ok(())
 }
 
-/// What to do about a force at rest: a rig that stands where its specimen would carry about as much was left there by a run.
-pub(super) fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
-    let carried = force / displacement;
-    let bent = within(carried, 0.5 * gate.stiffness.low, 2.0 * gate.stiffness.high)
-        && displacement.abs() > gate.probe;
-    if bent {
-        let place = readable(displacement, Dimension::LENGTH);
-        format!(
-            "it stands at {place}, as a run without `unload` at its end leaves it: go back with `psd rig jog`, or start a stand-in anew"
-        )
-    } else {
-        "zero the cell, or take the load off".to_owned()
-    }
-}
-
 /// A tiny move of one axis alone, and back. Gives its column of the stiffness matrix, N/m: the forces that it raised in
 /// every axis, over its way; and the reading where it came back to.
 fn probe(
@@ -173,11 +159,6 @@ fn others(column: &[f64], axis: usize) -> String {
         })
         .collect();
     format!("with {}", told.join(", "))
-}
-
-/// NaN is within nothing.
-pub(super) fn within(value: f64, low: f64, high: f64) -> bool {
-    low <= value && value <= high
 }
 
 fn refuse<T>(reason: String) -> Result<T, Stop> {

@@ -1,11 +1,10 @@
 //! Where a real rig must stand when a run begins: at the plan's zero. The plan's targets count from there, so that a rig that stands
 //! elsewhere would be sent all the way there by its first one. In: readings at rest. Out: why the run does not begin.
 
-use super::pretest_check::{remedy, within};
 use super::replay::Bands;
 use super::session::Session;
 use super::stop::Stop;
-use crate::plan::{Datum, Plan, RealLink};
+use crate::plan::{Datum, Gate, Plan, RealLink};
 use crate::record::EventKind;
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
@@ -104,4 +103,24 @@ pub(super) fn tell(link: &RealLink, session: &mut Session<'_>) {
             places.join(", ")
         ),
     );
+}
+
+/// What to do about a force at rest: a rig that stands where its specimen would carry about as much was left there by a run.
+pub(super) fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
+    let carried = force / displacement;
+    let bent = within(carried, 0.5 * gate.stiffness.low, 2.0 * gate.stiffness.high)
+        && displacement.abs() > gate.probe;
+    if bent {
+        let place = readable(displacement, Dimension::LENGTH);
+        format!(
+            "it stands at {place}, as a run without `unload` at its end leaves it: go back with `psd rig jog`, or start a stand-in anew"
+        )
+    } else {
+        "zero the cell, or take the load off".to_owned()
+    }
+}
+
+/// NaN is within nothing.
+pub(super) fn within(value: f64, low: f64, high: f64) -> bool {
+    low <= value && value <= high
 }

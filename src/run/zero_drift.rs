@@ -12,7 +12,7 @@ use crate::units::Dimension;
 use crate::units::display::readable;
 
 /// Readings that make a zero.
-pub(super) const READINGS: u32 = 10;
+pub(crate) const READINGS: u32 = 10;
 
 /// What a person does before the zero of a free cell is read.
 const TAKE_OFF: &str = "take the specimen off the load cell: its zero is read, and nothing moves";

@@ -1,28 +1,28 @@
-//! What a standard uncertainty is worth. In: contributions, and how many degrees of freedom each of their sources has. Out: effective
-//! degrees of freedom, the factor k and the expanded uncertainty U = k·u: the one place that computes them, for verdicts and for
-//! everything that is printed.
+//! Effective degrees of freedom and coverage factors. In: contributions, with the degrees of freedom of their sources. Out: effective
+//! degrees of freedom, the coverage factor k and the expanded uncertainty U = k·u, for verdicts and for everything that is printed.
 
 use super::{Contribution, Source, combined};
 use crate::physics::statistics::student_t;
 use crate::plan::formula::{ProcedureId, Results};
 
-/// Draws of the readings' errors of one blow, at most: the standard uncertainty they give is known to 1/√(2·64), 9 %.
+/// Monte Carlo trials of the reading errors of one impact, at most: their standard uncertainty has a relative standard uncertainty of
+/// 1/√(2·64), 9 %.
 pub const MOST_DRAWS: u16 = 64;
 
-/// Fewer effective degrees of freedom than this are worth a word: U is then more than 3.3 times u.
+/// Fewer effective degrees of freedom than this are remarked on: U is then more than 3.3 times u.
 pub const FEW: u8 = 3;
 
-/// How well a number is known.
+/// The uncertainty of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
     /// u, in the number's own unit.
     pub standard: f64,
-    /// Effective degrees of freedom of u; infinite where no scatter of few readings is in it.
+    /// Effective degrees of freedom of u; infinite where no part of u was estimated from readings.
     pub degrees: f64,
 }
 
 impl Known {
-    /// By nothing that was estimated from few readings.
+    /// A standard uncertainty that was not estimated from readings.
     #[must_use]
     pub const fn surely(standard: f64) -> Self {
         Self {
@@ -31,7 +31,7 @@ impl Known {
         }
     }
 
-    /// k, so that ±k·u hold 95.45 % of the cases.
+    /// k, so that ±k·u has a coverage probability of 95.45 %.
     #[must_use]
     pub fn coverage(self) -> f64 {
         student_t::coverage(self.degrees)
@@ -44,19 +44,19 @@ impl Known {
     }
 }
 
-/// Contributions of which the sizes were estimated together, from the same scatter or the same draws.
+/// Contributions whose sizes were estimated together, from the same scatter or the same trials.
 #[derive(Clone, Copy, PartialEq)]
 enum Estimate {
-    /// Of readings about a fit: fits of one procedure with as many degrees of freedom count as one.
+    /// Readings about a fit: fits of one procedure with equal degrees of freedom count as one.
     Scatter(ProcedureId, f64),
-    /// Of one blow of a procedure.
+    /// Trials of one impact of a procedure.
     Draws(ProcedureId, u16),
 }
 
 /// u of one number and its effective degrees of freedom by Welch and Satterthwaite, ν = u⁴/Σ uᵢ⁴/νᵢ (JCGM 100:2008, G.4.1, eq. G.2b).
-/// The formula wants estimates that are independent: slope and intercept of one line have independent errors, but one scatter tells
-/// how large both are, so that their squares are added first. n drawn errors have n degrees of freedom. What plan, rig and program
-/// state is taken as known (G.4.3: infinitely many). None of nothing.
+/// The formula requires independent estimates: slope and intercept of one line have independent errors, but one scatter gives the
+/// size of both, so that their squares are added first. n trials have n degrees of freedom. Uncertainties that plan, rig and program
+/// state have infinitely many (G.4.3). None without contributions.
 #[must_use]
 pub fn known(parts: &[Contribution], results: &dyn Results) -> Option<Known> {
     let standard = combined(parts)?;

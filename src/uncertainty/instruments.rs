@@ -2,11 +2,13 @@
 //! declares. Out: sources, and readings with some of them perturbed. It knows no procedure.
 
 use super::Source;
-use super::engine::Shifts;
 use crate::physics::identification::StatedVariance;
 use crate::physics::perturbation::{Instruments, Perturbation, ReadingErrors};
 use crate::plan::DeclaredNoise;
 use crate::plan::{Calibration, Link, Plan, ReadingRules, VirtualLink};
+
+/// Sources, each with the number of standard uncertainties by which it is perturbed.
+pub type Shifts<'a> = &'a [(Source, f64)];
 
 /// The instruments of every axis.
 #[derive(Clone, Debug)]

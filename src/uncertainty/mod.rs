@@ -1,7 +1,6 @@
-//! Measurement uncertainty. An uncertain number is a sum of contributions, one per source, and
-//! sources are independent: numbers that share a source are correlated accordingly (JCGM 100:2008,
-//! 5.2 and F.1.2.3). In: contributions. Out: standard uncertainties, and results with one source
-//! perturbed.
+//! Measurement uncertainty. In: a procedure as a pure function of its readings and inputs, and the
+//! sources of their uncertainty. Out: contributions, standard uncertainties, coverage factors. It
+//! knows no procedure, no rig and no run.
 
 mod cost;
 mod degrees;

@@ -1,5 +1,5 @@
-//! Independent jobs shared out among threads. In: jobs. Out: their results, each in its place, so that the same bytes come out whatever the
-//! number of threads.
+//! Independent jobs in threads. In: jobs. Out: their results in the order of the jobs, so that the output does not depend on the number
+//! of threads.
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -9,7 +9,7 @@ use std::time::Duration;
 /// How long to wait for the next result before `tick` is called again.
 const MOMENT: Duration = Duration::from_millis(20);
 
-/// The result of each job, in the order of the jobs, by as many threads as the machine has cores. `tick` hears how many of how many
+/// The result of each job, in the order of the jobs, by as many threads as the machine has cores. `tick` receives how many of how many
 /// are done.
 pub(super) fn in_threads<J: Sync, T: Send, E>(
     jobs: &[J],
@@ -37,7 +37,7 @@ pub(super) fn in_threads<J: Sync, T: Send, E>(
         }
         drop(send);
         let mut done = 0;
-        // The rig has moved and the record is open: a machine that starts no thread costs time, and not the run.
+        // The rig has moved and the run log is open: a machine that starts no thread costs time, not the run.
         if threads == 0 {
             for (job, found) in jobs.iter().zip(&mut found) {
                 *found = Some(work(job));
@@ -52,7 +52,7 @@ pub(super) fn in_threads<J: Sync, T: Send, E>(
                     done += 1;
                 }
                 Err(RecvTimeoutError::Timeout) => {}
-                // A thread that panicked: the scope says so.
+                // A thread panicked: the scope reports it.
                 Err(RecvTimeoutError::Disconnected) => break,
             }
             if let Err(stop) = tick(done, jobs.len()) {
@@ -69,7 +69,7 @@ pub(super) fn in_threads<J: Sync, T: Send, E>(
 mod tests {
     use super::*;
 
-    /// Every job is done once, in whatever order, and stands in its place; whoever watches is told of all, and may stop it.
+    /// Every job is done once, in any order, and its result has the index of the job; the observer sees all of them, and may stop.
     #[test]
     fn jobs_keep_their_places_in_threads() {
         let jobs: Vec<u64> = (0..500).collect();

@@ -2,7 +2,8 @@
 //! condition that reads what they came to. Out: why the condition is not decided by them, where it would come out otherwise had
 //! they grown on. It judges no condition by itself, and knows no plan.
 
-use super::{ConditionOutcome, assess_condition};
+use super::ConditionOutcome;
+use super::condition::assess_condition;
 use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Condition, DecisionRule};
 use crate::record::{Blow, EscalateHistory, FloorStep, Floors, History, ImpactHistory};

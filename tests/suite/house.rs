@@ -180,19 +180,15 @@ fn what_is_named_a_test_is_built_for_tests_alone() {
 const LONG: &[&str] = &[
     "physics/integrator/solver.rs",
     "run/replay/resume_tests.rs",
-    "uncertainty/engine.rs",
     "emulator/firmware/grbl.rs",
     "emulator/firmware/native/mod.rs",
     "emulator/firmware/native/tests.rs",
     "emulator/script.rs",
-    "evidence/issues.rs",
-    "evidence/tests.rs",
     "physics/identification/multilinear_fit.rs",
     "physics/relaxation/fit.rs",
     "physics/relaxation/reached_fit.rs",
     "physics/self_test.rs",
     "record/mod.rs",
-    "remote/control.rs",
     "rig/controllers/native/codec.rs",
     "rig/guard/mod.rs",
     "rig/real/tests.rs",
@@ -203,9 +199,6 @@ const LONG: &[&str] = &[
     "tests/uncertainty/frame.rs",
     "tests/uncertainty/impact.rs",
     "tests/whole_runs.rs",
-    "uncertainty/cycle.rs",
-    "verdict/mod.rs",
-    "verdict/tests.rs",
 ];
 
 #[test]

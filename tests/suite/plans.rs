@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use std::sync::{LazyLock, OnceLock};
 
 use psd::language::check::{LoadError, Loader, Options, check};
-use psd::run::storage_bound;
+use psd::procedures::storage_bound;
 use serde_json::Value;
 
 fn root() -> &'static Path {

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use super::prediction::prediction;
 use crate::cli::args::CompareArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::accepted::truth_in;
@@ -12,9 +13,9 @@ use crate::cli::files::run_folder::{RunFolder, write_new};
 use crate::cli::output::print_result;
 use crate::evidence::{Folder, IssueFile, PlayedBack};
 use crate::golden::comparison;
+use crate::golden::comparison::page::page;
 use crate::golden::comparison::{Comparison, Side};
 use crate::golden::{FIGURES, SUMMARY, older};
-use crate::report::comparison::page;
 use crate::report::summary::Summary;
 use crate::report::{Figures, OutputError, OutputFile, Run, figure_data};
 
@@ -81,7 +82,7 @@ fn side(run: &Path) -> Result<Side, Failure> {
 fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
     let kept = Folder::read(run)?;
     let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
-    let played = PlayedBack::of(record_file::read(run)?, issues.as_ref())
+    let played = PlayedBack::of(record_file::read(run)?, issues.as_ref(), &prediction)
         .map_err(|fault| Failure::file(run, fault))?;
     if played.steps.is_some() {
         return Err(Failure::file(

@@ -8,10 +8,11 @@ use similar::TextDiff;
 
 use crate::cli::args::FmtArguments;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::loader::{plain, read_plan};
+use crate::cli::files::loader::read_plan;
 use crate::cli::files::plan_file::name_of;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
+use crate::files::failure::plain;
 use crate::language::syntax;
 use crate::text::diagnostic::excerpt::one_line;
 use crate::text::diagnostic::render::render_all;

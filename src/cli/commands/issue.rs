@@ -4,19 +4,20 @@
 
 use std::path::{Path, PathBuf};
 
-use super::report::finish_replayed;
+use super::prediction::prediction;
+use super::replayed::finish_replayed;
 use super::verify::refuse_unproven;
 use crate::cli::args::{IssueArguments, ReportArguments};
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::loader::plain;
 use crate::cli::files::record_file;
-use crate::cli::files::record_file::JOURNAL;
 use crate::cli::files::run_folder::{RunFolder, write_new};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::{
     Folder, ISSUE, IssueFile, MANIFEST, One, OneKind, PlayedBack, Rebuilt, examine, may_be_stated,
 };
+use crate::files::failure::plain;
+use crate::files::recorded_run::JOURNAL;
 use crate::report::OutputFile;
 use crate::text::diagnostic::excerpt::one_line;
 
@@ -94,7 +95,7 @@ pub fn amend(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Fa
 fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     let run = wanted.run;
     let folder = Folder::read(run)?;
-    let rebuilt = Rebuilt::of(&folder);
+    let rebuilt = Rebuilt::of(&folder, &prediction);
     refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
     let (Some(report), Some(manifest), Some(journal)) = (
         &rebuilt.report,
@@ -122,7 +123,7 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     };
     let file = IssueFile::after(before.as_ref(), one);
     let read = record_file::from_bytes(&run.join(JOURNAL), journal)?;
-    let played = PlayedBack::of(read, Some(&file)).map_err(Failure::command_line)?;
+    let played = PlayedBack::of(read, Some(&file), &prediction).map_err(Failure::command_line)?;
 
     let beside = beside(run, wanted.kind);
     let place = RunFolder::create(Some(wanted.out.unwrap_or(&beside)), run)?;

@@ -6,20 +6,18 @@
 use std::path::{Path, PathBuf};
 
 use super::issue::amend;
+use super::prediction::prediction;
+use super::replayed::finish_replayed;
 use crate::cli::args::ReportArguments;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::{folder_message, write_made};
-use crate::cli::files::loader::plain;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::journal_of;
-use crate::cli::files::run_folder::{FolderSink, RunFolder};
-use crate::cli::files::writing::ProgressSink;
-use crate::cli::output::{print_message, print_result, print_wrapped};
+use crate::cli::files::run_folder::RunFolder;
+use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
-use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, held_issue, stands};
+use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, check_consistency, held_issue};
+use crate::files::failure::plain;
 use crate::record::journal::FileStorage;
-use crate::report;
-use crate::report::Run;
 
 /// Makes the results of one run.
 pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -35,11 +33,11 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     let kept = Folder::read(run)?;
     let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
     let read = record_file::read(run)?;
-    stands(&read).map_err(|fault| {
+    check_consistency(&read).map_err(|fault| {
         Failure::file(journal, fault).help("no report is made of a record that does not verify")
     })?;
-    let played =
-        PlayedBack::of(read, issues.as_ref()).map_err(|fault| Failure::file(run, fault))?;
+    let played = PlayedBack::of(read, issues.as_ref(), &prediction)
+        .map_err(|fault| Failure::file(run, fault))?;
     let folder = match &arguments.out {
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
         None => without_results(run)?,
@@ -67,48 +65,7 @@ fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
     std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
 }
 
-/// Prints the verdict of a replayed record, and writes its results.
-pub fn finish_replayed(
-    folder: &Path,
-    played: &PlayedBack,
-    beside: &[(String, String)],
-    settings: Settings,
-) -> Result<Exit, Failure> {
-    let PlayedBack {
-        plan,
-        provenance,
-        record,
-        assessment,
-        mismatch,
-        steps,
-    } = played;
-    if steps.is_none() {
-        print_wrapped(
-            &report::console::verdict_text(
-                &Run {
-                    plan,
-                    record,
-                    assessment,
-                    provenance,
-                },
-                settings.color,
-            ),
-            settings,
-        );
-    }
-    print_message(&folder_message(folder));
-    write_made(FolderSink::replacing(folder), beside, |sink| {
-        played.results(&mut ProgressSink::new(sink, settings))
-    })?;
-    let exit = Exit::from(assessment.verdict);
-    let Some(mismatch) = mismatch else {
-        return Ok(exit);
-    };
-    print_message(&format!("  the record does not fit the plan: {mismatch}\n"));
-    Ok(exit.max(Exit::Fault))
-}
-
-/// The run folder, where its results are incomplete: the manifest is written last.
+/// The run folder itself, if its results did not come to their end: the manifest is written last.
 fn without_results(run: &Path) -> Result<PathBuf, Failure> {
     if run.join(MANIFEST).exists() {
         return Err(

@@ -8,8 +8,6 @@ use std::path::{Path, PathBuf};
 use crate::cli::args::ResumeArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::finish_run;
-use crate::cli::files::loader::plain;
-use crate::cli::files::provenance::{BUILD, TOOLCHAIN};
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::{ReadRecord, journal_of};
 use crate::cli::files::{disk_space, plan_file, provenance};
@@ -18,6 +16,8 @@ use crate::cli::operator::{confirm_release, expected, held, real_rig};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::MANIFEST;
+use crate::files::failure::plain;
+use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::plan::{Plan, RealLink};
 use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
@@ -26,7 +26,7 @@ use crate::rig::real::RealRig;
 use crate::rig::{Rig as _, Wish, connect};
 use crate::run::replay;
 use crate::run::replay::{
-    AmendBody, Assurance, Bands, GoesOn, Header, Played, RecoverBody, ResumeBody, RigBody,
+    AmendBody, Assurance, Bands, GoesOn, Header, Played, Recorded, RecoverBody, ResumeBody, RigBody,
 };
 
 /// Goes on with one run.
@@ -200,7 +200,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         ));
     }
     if let Some(reason) = wanted
-        && let Some(exit) = held::go_on(
+        && let Some(exit) = go_on(
             &arguments.run,
             &arguments.operator,
             reason,
@@ -431,4 +431,42 @@ fn put_results_aside(run: &Path) -> Result<(), Failure> {
     names.into_iter().try_for_each(|name| {
         std::fs::rename(run.join(&name), aside.join(&name)).map_err(failed(run.join(name)))
     })
+}
+
+/// Goes on with the run, as `psd resume` does, for the person who has looked at the rig all the time. None: it was refused, and the
+/// record is what it was.
+pub fn go_on(
+    folder: &Path,
+    operator: &str,
+    reason: String,
+    recorded: &Recorded,
+    settings: Settings,
+) -> Result<Option<Exit>, Failure> {
+    let arguments = ResumeArguments {
+        run: folder.to_owned(),
+        operator: operator.to_owned(),
+        reason,
+        plan: None,
+        amend: false,
+        re_referenced: false,
+        same_power_up: true,
+        let_go: true,
+        accept_relaxation: false,
+        yes: false,
+    };
+    match resume(&arguments, settings) {
+        Ok(exit) => Ok(Some(exit)),
+        Err(failure) => {
+            let head = record_file::read(folder).map(|read| read.recovered.head().to_owned());
+            let unchanged = recorded
+                .sealed
+                .as_ref()
+                .is_some_and(|(_, sealed)| head.is_ok_and(|head| head == *sealed));
+            if !unchanged {
+                return Err(failure);
+            }
+            print_message(&failure.report(settings));
+            Ok(None)
+        }
+    }
 }

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use super::prediction::prediction;
 use super::verify::refuse_unproven;
 use crate::cli::args::{KeygenArguments, SignArguments};
 use crate::cli::exit::{Exit, Failure};
@@ -20,7 +21,7 @@ pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failu
     let run = &arguments.run;
     keys::refuse_inside(&arguments.key, run)?;
     let mut folder = Folder::read(run)?;
-    let rebuilt = Rebuilt::taking(&mut folder);
+    let rebuilt = Rebuilt::taking(&mut folder, &prediction);
     refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
     let (Some(report), Some(manifest)) = (&rebuilt.report, folder.bytes(MANIFEST)) else {
         return Err(Failure::file(run, "has no results yet").help("make them with `psd report`"));
@@ -33,8 +34,11 @@ pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failu
             "is there already: a signature is never overwritten",
         ));
     }
-    let (key, protection) =
-        keys::secret(&arguments.key, arguments.password_file.as_deref(), settings)?;
+    let (key, protection) = keys::secret(
+        &arguments.key,
+        arguments.password_file.as_deref(),
+        settings.can_ask,
+    )?;
     warn(&arguments.key, protection);
     let statement = Statement {
         run: report.run_id.clone(),
@@ -86,10 +90,10 @@ fn role<'a>(given: Option<&'a str>, roles: &'a [String]) -> Result<Option<&'a st
 pub fn keygen(arguments: &KeygenArguments, settings: Settings) -> Result<Exit, Failure> {
     let password = match (&arguments.password_file, arguments.no_password) {
         (_, true) => None,
-        (Some(file), false) => Some(keys::password(Some(file), "", settings)?),
+        (Some(file), false) => Some(keys::password(Some(file), "", settings.can_ask)?),
         (None, false) => {
-            let first = keys::password(None, "password of the new key: ", settings)?;
-            if keys::password(None, "once more: ", settings)? != first {
+            let first = keys::password(None, "password of the new key: ", settings.can_ask)?;
+            if keys::password(None, "once more: ", settings.can_ask)? != first {
                 return Err(Failure::command_line("the two passwords are not the same"));
             }
             Some(first)

@@ -5,6 +5,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::prediction::prediction;
 use crate::cli::args::VerifyArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file::{JOURNAL, journal_of};
@@ -31,7 +32,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
         .iter()
         .map(|path| keys::public(path))
         .collect::<Result<Vec<_>, _>>()?;
-    let rebuilt = Rebuilt::taking(&mut folder);
+    let rebuilt = Rebuilt::taking(&mut folder, &prediction);
     let findings = examine(&folder, &rebuilt, &keys);
     let mut text = String::new();
     for finding in &findings {

@@ -3,20 +3,20 @@
 
 use std::path::{Path, PathBuf};
 
-use super::loader::plain;
 use super::run_folder::write_new;
-use crate::cli::exit::Failure;
-use crate::golden::{Blessed, SUMMARY, Tolerances, Truth, compare};
+use crate::files::failure::Failure;
+use crate::files::failure::plain;
+use crate::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
 use crate::report::OutputFile;
 
 /// Where a plan's blessed results are kept.
 #[derive(Clone, Debug)]
-pub struct BlessedFolder {
+pub struct AcceptedFolder {
     reports: PathBuf,
     name: String,
 }
 
-impl BlessedFolder {
+impl AcceptedFolder {
     /// The folder for `plan`, which exists.
     pub fn of(plan: &Path) -> Result<Self, Failure> {
         let place = plan
@@ -78,16 +78,16 @@ impl BlessedFolder {
 
     /// Accepts the files of a run. If every number is within tolerance and no file came or went, nothing is written, unless
     /// `anew` asks for it. Rendered pages are written with `pages`, or where the folder already has some.
-    pub fn bless(
+    pub fn accept(
         &self,
         files: &[OutputFile],
         tolerances: &Tolerances,
         anew: bool,
         pages: bool,
-    ) -> Result<Blessed, Failure> {
+    ) -> Result<Accepted, Failure> {
         let (old, new) = (self.truth()?, truth_of(files));
         if old.text(SUMMARY).is_some() && new.is_of_faults() {
-            return Ok(Blessed::Refused(
+            return Ok(Accepted::Refused(
                 "the plan had results and now fails to check; remove the folder to bless that",
             ));
         }
@@ -105,14 +105,14 @@ impl BlessedFolder {
         kept.sort_by(|one, other| one.path.cmp(&other.path));
         if old.is_empty() {
             self.replace(&kept)?;
-            return Ok(Blessed::New);
+            return Ok(Accepted::New);
         }
         let found = compare(&old, &new, tolerances);
         if found.is_empty() && !anew && kept.iter().map(|file| &file.path).eq(&before) {
-            return Ok(Blessed::Unchanged);
+            return Ok(Accepted::Unchanged);
         }
         self.replace(&kept)?;
-        Ok(Blessed::Changed(found))
+        Ok(Accepted::Changed(found))
     }
 
     /// Replaces the files of the folder. The old ones go only when the new ones are written.
@@ -238,7 +238,7 @@ mod tests {
         ] {
             std::fs::write(root.path().join(path), "old").unwrap();
         }
-        let blessed = BlessedFolder::of(&root.path().join("plans/beam.psd")).unwrap();
+        let blessed = AcceptedFolder::of(&root.path().join("plans/beam.psd")).unwrap();
         let files = [
             file("summary.json"),
             file("tables/hit.csv"),
@@ -248,11 +248,11 @@ mod tests {
         ];
         let bless_with = |anew, pages| {
             blessed
-                .bless(&files, &Tolerances::default(), anew, pages)
+                .accept(&files, &Tolerances::default(), anew, pages)
                 .unwrap()
         };
         let bless = |anew| bless_with(anew, false);
-        assert!(matches!(bless(false), Blessed::Changed(found) if !found.is_empty()));
+        assert!(matches!(bless(false), Accepted::Changed(found) if !found.is_empty()));
         let read =
             |path: &str| std::fs::read_to_string(root.path().join("reports").join(path)).ok();
         assert_eq!(read("beam/summary.json").as_deref(), Some("{}"));
@@ -274,27 +274,27 @@ mod tests {
         );
         assert_eq!(
             (bless(false), bless(true)),
-            (Blessed::Unchanged, Blessed::Changed(Vec::new()))
+            (Accepted::Unchanged, Accepted::Changed(Vec::new()))
         );
         let page = "beam/certificate.html";
         assert_eq!(read(page), None, "data alone");
-        assert!(matches!(bless_with(false, true), Blessed::Changed(found) if found.is_empty()));
+        assert!(matches!(bless_with(false, true), Accepted::Changed(found) if found.is_empty()));
         assert_eq!(read(page).as_deref(), Some("{}"));
-        assert!(matches!(bless(true), Blessed::Changed(_)));
+        assert!(matches!(bless(true), Accepted::Changed(_)));
         assert_eq!(read(page).as_deref(), Some("{}"), "a page stays");
         let faults = [file(DIAGNOSTICS)];
         assert!(matches!(
             blessed
-                .bless(&faults, &Tolerances::default(), true, false)
+                .accept(&faults, &Tolerances::default(), true, false)
                 .unwrap(),
-            Blessed::Refused(_)
+            Accepted::Refused(_)
         ));
         std::fs::remove_dir_all(blessed.path()).unwrap();
         assert_eq!(
             blessed
-                .bless(&faults, &Tolerances::default(), false, false)
+                .accept(&faults, &Tolerances::default(), false, false)
                 .unwrap(),
-            Blessed::New
+            Accepted::New
         );
     }
 }

@@ -1,41 +1,17 @@
 //! Disk space for a run, checked before anything moves. In: a plan, and the free space of the file system. Out: nothing, or
 //! [`NoRoom`] with both numbers. It deletes nothing.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::cli::exit::Failure;
 use crate::cli::output::print_message;
+use crate::files::failure::{Failure, NoRoom, amount};
 use crate::plan::Plan;
+use crate::procedures::storage_bound;
 use crate::record::journal::{FileStorage, MOST_BYTES};
 use crate::rig::safety::failpoint::{Guarding, on};
-use crate::run::storage_bound;
-use crate::text::diagnostic::Code;
 use crate::text::diagnostic::excerpt::escape;
 
-/// The disk has too little space for the run.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: the run may write {}, and its disk has {} left; nothing has moved", folder.display(), amount(*need), amount(*room))]
-pub struct NoRoom {
-    pub folder: PathBuf,
-    /// Bytes.
-    pub need: u64,
-    pub room: u64,
-}
-
-impl NoRoom {
-    pub const CODE: Code = Code::NoRoom;
-
-    /// Advice.
-    pub fn help(&self) -> String {
-        let lacking = amount(self.need - self.room);
-        format!(
-            "free {lacking}, or name a folder on another disk with `--out`; `psd explain {}` says what is reckoned",
-            Self::CODE
-        )
-    }
-}
-
-/// Checks the disk space for a record, of which `written` bytes exist already.
+/// Asks the disk of a record that is about to be written, of which `written` bytes are there already.
 ///
 /// # Errors
 /// Too little space, or the file system does not report it.
@@ -80,23 +56,6 @@ fn fits(folder: &Path, need: u64, room: u64) -> Result<(), NoRoom> {
             need,
             room,
         })
-    }
-}
-
-/// A number of bytes with a readable unit: `12.4 MB`.
-fn amount(bytes: u64) -> String {
-    const UNITS: [&str; 4] = ["kB", "MB", "GB", "TB"];
-    #[expect(clippy::cast_precision_loss, reason = "three digits are shown")]
-    let (mut size, mut unit) = (bytes as f64 / 1e3, UNITS[0]);
-    for larger in &UNITS[1..] {
-        if size >= 999.5 {
-            (size, unit) = (size / 1e3, larger);
-        }
-    }
-    if size < 9.95 {
-        format!("{size:.1} {unit}")
-    } else {
-        format!("{size:.0} {unit}")
     }
 }
 

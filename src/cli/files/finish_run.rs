@@ -4,25 +4,25 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::loader::plain;
-use super::provenance;
 use super::record_file::{self, journal_of};
 use super::run_folder::{FolderSink, write_new};
 use super::writing::ProgressSink;
-use crate::cli::commands::rehearse;
+use crate::cli::commands::prediction::prediction;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::operator::held;
+use crate::cli::operator::hold_status;
 use crate::cli::output::{print_message, print_wrapped};
 use crate::cli::settings::Settings;
 use crate::evidence::Folder;
+use crate::files::failure::plain;
+use crate::files::provenance;
+use crate::files::results::put_results;
 use crate::plan::Plan;
-use crate::record::remote::DrivenStep;
 use crate::record::{EventKind, Outcome, Record};
 use crate::report;
 use crate::report::{FileDigest, OutputError, OutputSink, Provenance, Run};
 use crate::run::replay::Recorded;
 use crate::text::diagnostic::excerpt::escape;
-use crate::verdict::{self, Assessment};
+use crate::verdict;
 
 /// Prints the verdict and writes every result into the run folder.
 pub fn finish_run(
@@ -32,10 +32,14 @@ pub fn finish_run(
     recorded: &Recorded,
     settings: Settings,
 ) -> Result<Exit, Failure> {
-    let provenance = &as_recorded(folder, plan, provenance, recorded).inspect_err(|_| {
+    let provenance = as_recorded(folder, plan, provenance, recorded).inspect_err(|_| {
         // No report is made, but the state of the rig is printed.
         print_message(&rig_state(folder, plan, &recorded.record, settings));
     })?;
+    let provenance = &Provenance {
+        prediction: prediction(plan, &recorded.record),
+        ..provenance
+    };
     let assessment = verdict::assess(plan, &recorded.record);
     let run = Run {
         plan,
@@ -43,7 +47,7 @@ pub fn finish_run(
         assessment: &assessment,
         provenance,
     };
-    if !held::is_held(&recorded.record) {
+    if !hold_status::is_held(&recorded.record) {
         // The state of the rig is printed first.
         print_message(&rig_state(folder, plan, &recorded.record, settings));
     }
@@ -51,7 +55,7 @@ pub fn finish_run(
         &report::console::verdict_text(&run, settings.color),
         settings,
     );
-    if held::is_held(&recorded.record) {
+    if hold_status::is_held(&recorded.record) {
         print_message(&rig_state(folder, plan, &recorded.record, settings));
     }
     print_message(&folder_message(folder));
@@ -84,7 +88,8 @@ pub fn folder_message(folder: &Path) -> String {
 /// State of the rig after a run that ended early, and the command to resume; the operator needs it first.
 fn rig_state(folder: &Path, plan: &Plan, record: &Record, settings: Settings) -> String {
     // A rig that was not released has not moved.
-    let unmoved = matches!(record.outcome, Outcome::NotReleased { .. }) && held::is_held(record);
+    let unmoved =
+        matches!(record.outcome, Outcome::NotReleased { .. }) && hold_status::is_held(record);
     if plan.rig.link.as_real().is_none() || record.outcome == Outcome::Completed || unmoved {
         return String::new();
     }
@@ -97,7 +102,7 @@ fn rig_state(folder: &Path, plan: &Plan, record: &Record, settings: Settings) ->
         EventKind::NotHeld => format!("  {}\n", settings.paint_error(&escape(&event.text))),
         _ => format!("  the rig: {}\n", escape(&event.text)),
     });
-    if held::is_held(record) && held::can_go_on(record) {
+    if hold_status::is_held(record) && hold_status::can_go_on(record) {
         let folder = folder.display();
         let _ = writeln!(
             text,
@@ -107,41 +112,8 @@ fn rig_state(folder: &Path, plan: &Plan, record: &Record, settings: Settings) ->
     text
 }
 
-/// Puts every result of a run into a sink, without the manifest, which also lists the other files. A run that a client
-/// controlled has only the table of its steps.
-pub fn put_results(
-    plan: &Plan,
-    record: &Record,
-    assessment: &Assessment,
-    provenance: &Provenance,
-    driven: Option<&[DrivenStep]>,
-    sink: &mut dyn OutputSink,
-) -> Result<Vec<FileDigest>, OutputError> {
-    if matches!(record.outcome, Outcome::NotReleased { .. }) {
-        // Nothing moved: there is a record and no result.
-        return Ok(Vec::new());
-    }
-    if let Some(steps) = driven {
-        return report::put_driven(steps, record.drift.as_ref(), sink);
-    }
-    let prediction = rehearse::prediction(plan, record);
-    let provenance = &Provenance {
-        prediction,
-        ..provenance.clone()
-    };
-    report::put_everything(
-        &Run {
-            plan,
-            record,
-            assessment,
-            provenance,
-        },
-        sink,
-    )
-}
-
-/// Writes the results that `make` makes, then a manifest of them and of the files beside them (path and digest). Results without a
-/// manifest are incomplete.
+/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest. The manifest is the
+/// last: results without one are none that came to their end.
 pub fn write_made(
     mut sink: FolderSink<'_>,
     beside: &[FileDigest],

@@ -4,11 +4,12 @@
 
 use std::path::Path;
 
-use super::finish_run::{numbered, put_results};
+use super::finish_run::numbered;
 use super::record_file::{self, Circumstances};
 use super::{plan_file, provenance};
 use crate::cli::args::PlanSettings;
-use crate::cli::exit::Failure;
+use crate::files::failure::Failure;
+use crate::files::results::put_results;
 use crate::golden::{DIAGNOSTICS, Tolerances};
 use crate::plan::Plan;
 use crate::record::Outcome;

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 
-use crate::cli::exit::Failure;
+use crate::files::failure::{Failure, plain};
 use crate::language::check::{LoadError, Loader};
 use crate::language::syntax::limits::FILE_BYTES;
 use crate::text::source::Position;
@@ -120,18 +120,6 @@ fn place(before: &[u8]) -> (usize, usize) {
         before.split(|byte| *byte == b'\n').count(),
         String::from_utf8_lossy(line).chars().count() + 1,
     )
-}
-
-/// The message of an I/O error without its number.
-pub fn plain(error: &std::io::Error) -> String {
-    match error.kind() {
-        std::io::ErrorKind::NotFound => "no such file".to_owned(),
-        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        _ => {
-            let text = error.to_string();
-            text.split(" (os error").next().unwrap_or(&text).to_owned()
-        }
-    }
 }
 
 #[cfg(test)]

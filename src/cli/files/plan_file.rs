@@ -6,9 +6,9 @@ use serde_json::Value;
 
 use super::loader::{FolderLoader, read_plan};
 use crate::cli::args::PlanSettings;
-use crate::cli::exit::Failure;
 use crate::cli::output::print_message;
 use crate::cli::settings::{Settings, folder_of};
+use crate::files::failure::Failure;
 use crate::language::check::{Checked, Options, check};
 use crate::text::diagnostic::{json, render};
 use crate::text::source::{Position, Span};

@@ -6,8 +6,8 @@ use std::io::{BufWriter, ErrorKind, IntoInnerError, Write};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Component, Path, PathBuf};
 
-use super::loader::plain;
-use crate::cli::exit::Failure;
+use crate::files::failure::Failure;
+use crate::files::failure::plain;
 use crate::report::{OutputError, OutputFile, OutputSink};
 use crate::text::sanitize;
 

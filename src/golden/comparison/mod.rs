@@ -5,6 +5,7 @@
 mod console;
 mod facts;
 mod figures;
+pub mod page;
 mod statistics;
 mod table;
 
@@ -26,7 +27,7 @@ pub struct Side {
     /// `psd.summary/1`
     pub summary: Value,
     pub figures: Figures,
-    /// The plan as it was run; None of blessed results, which do not hold it.
+    /// The plan as it was run; None of accepted results, which do not hold it.
     pub plan: Option<String>,
 }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use super::Loader;
-use super::expressions::data::DataFile;
+use super::expressions::data_file::DataFile;
 use super::messages::{names as message, values};
 use super::scope::Scope;
 use crate::language::syntax::ast::Expr;

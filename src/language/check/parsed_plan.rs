@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::checker::Checker;
 use super::driver::{self, Findings, PlanText};
-use super::expressions::data::DataFile;
+use super::expressions::data_file::DataFile;
 use super::expressions::parameters::{names_of_parameters, read_settings};
 use super::messages::{self, names};
 use super::scope::{Scope, Setting};

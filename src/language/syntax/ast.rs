@@ -3,6 +3,9 @@
 
 use crate::text::source::{FileId, Span, Spanned};
 
+/// Words a top-level item starts with, other than a block.
+pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
+
 /// One file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ast {

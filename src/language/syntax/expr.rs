@@ -10,10 +10,10 @@ use pest::{
 
 use super::{
     ast::{Argument, BinaryOperator, Expr, ExprKind, UnitToken},
+    grammar::Rule,
     limits,
     lower::{Lowering, unescape},
     messages,
-    parse::Rule,
 };
 use crate::text::source::{Span, Spanned};
 

@@ -2,6 +2,7 @@
 //! none includes the next. In: tokens. Out: [`Piece`]s and the errors of brackets. Knows lines, not grammar.
 
 use super::{
+    ast::ITEM_WORDS,
     control,
     lexical::tokens::{JOINING_WORDS, Kind, Tokens},
     messages,
@@ -62,9 +63,6 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
     }
     (pieces, cutter.errors)
 }
-
-/// Words a top-level item starts with, other than a block.
-pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
 
 /// Most words and signs of the fields of a block that lacks its `{`.
 const FIELDS_WITHOUT_BRACE: usize = 500;

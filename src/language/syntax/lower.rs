@@ -6,7 +6,7 @@ use pest::iterators::Pair;
 
 use super::{
     ast::{Block, Entry, Expr, ExprKind, Ident, Item, ItemKind},
-    parse::Rule,
+    grammar::Rule,
 };
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{FileId, Span, Spanned};

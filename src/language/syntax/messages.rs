@@ -2,7 +2,7 @@
 //! them.
 
 use super::{
-    lexical::{confusables::Confusable, letters, numbers},
+    lexical::{confusable::Confusable, letters, numbers},
     limits,
 };
 use crate::text::diagnostic::{Code, Diagnostic};

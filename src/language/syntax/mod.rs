@@ -9,6 +9,7 @@ pub mod limits;
 pub mod parse;
 
 mod expr;
+mod grammar;
 mod layout;
 mod lexical;
 mod lower;

@@ -8,10 +8,10 @@ use pest::{
     error::{ErrorVariant, InputLocation},
     iterators::Pair,
 };
-use pest_derive::Parser;
 
 use super::{
     ast::{Ast, Block, Entry, Ident, Item, ItemKind},
+    grammar::{Grammar, Rule},
     layout::{self, Piece, Statement},
     lexical::confusables,
     lexical::tokens::{Kind, Tokens},
@@ -21,10 +21,6 @@ use super::{
 };
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::{FileId, Sources, Span, Spanned};
-
-#[derive(Parser)]
-#[grammar = "../grammar/psd.pest"]
-pub struct Grammar;
 
 /// Parses one file. Never panics; the valid parts of a file with errors are in the tree, with
 /// [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) in place of an invalid value.
@@ -260,7 +256,7 @@ impl Pieces<'_> {
 
     /// An item other than a block; with an error, its name and a faulty value.
     fn item(&mut self, statement: Statement) -> Option<Item> {
-        if !layout::ITEM_WORDS
+        if !super::ast::ITEM_WORDS
             .iter()
             .any(|word| self.tokens.is(statement.start, word))
         {

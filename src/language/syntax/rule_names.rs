@@ -1,6 +1,6 @@
 //! The name of each rule of the grammar in a message. The match is exhaustive, so that a new rule needs a name.
 
-use super::parse::Rule;
+use super::grammar::Rule;
 
 /// The name of `rule` in a message, or `None` where it carries no information (helpers of other rules).
 #[must_use]

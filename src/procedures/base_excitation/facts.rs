@@ -1,9 +1,10 @@
 //! The facts about a shake that the drivers of check and report need without carrying it out. In: a shake, or its history. Out: facts.
 
 use super::chart;
-use crate::plan::{Dependence, Shake};
-use crate::procedures::facts::{Facts, Recorded, Tests};
+use crate::plan::{Dependence, Plan, Shake};
+use crate::procedures::facts::{Delay, Facts, Recorded, Tests};
 use crate::procedures::stepping;
+use crate::procedures::stepping::delay::of_frame;
 use crate::record::ShakeHistory;
 
 pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
@@ -31,4 +32,17 @@ pub(crate) fn recorded(history: &ShakeHistory) -> Recorded {
         entries: "floor",
         uncertainty: stepping::report::UNCERTAINTY,
     }
+}
+
+/// The delay of the actuators under the frame.
+pub(crate) fn delay(plan: &Plan, shake: &Shake) -> Option<Delay> {
+    let Shake {
+        specimen,
+        damping,
+        stepping,
+        ..
+    } = shake;
+    of_frame(plan, *specimen, damping, stepping, |properties| {
+        Some(properties.critical_time_step())
+    })
 }

@@ -7,6 +7,7 @@ pub(crate) mod declared_cycles;
 pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod report;
+pub(crate) mod results;
 pub(crate) mod run;
 pub(crate) mod tables;
 pub(crate) mod uncertainty;

@@ -2,21 +2,18 @@
 //! every reading, and energy, stiffness and damping of each whole cycle. Step and pause by default; with a rate the
 //! actuator goes from end to end without stopping.
 
+use super::results::results;
 use super::uncertainty::RecordedLoops;
 use crate::physics::identification::cyclic::{LoopPoint, loop_of, work};
 use crate::physics::identification::loop_sampling::spaced;
-use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::physics::statistics::samples::{mean, scatter};
-use crate::plan::formula::ResultValue;
 use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
 use crate::procedures::stiffness_ramp::curve;
-use crate::record::{CycleHistory, CycleStep, EventKind, History, NamedResult, WholeCycle};
+use crate::record::{CycleHistory, CycleStep, EventKind, History, WholeCycle};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
-use crate::schema::ResultKind;
-use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::InstrumentUncertainty;
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -433,46 +430,4 @@ impl Looks {
         }
         reason
     }
-}
-
-/// In the order of the reference; `noise` is the standard deviation of a force at its place, N.
-pub(crate) fn results(history: &CycleHistory, noise: f64) -> Vec<NamedResult> {
-    let cycles = &history.cycles;
-    let largest = |sign: f64| {
-        NoisyLargest::of(
-            noise,
-            history.steps.iter().map(|step| sign * step.restoring_force),
-        )
-        .value()
-    };
-    let list = |kind: ResultKind, read: fn(&WholeCycle) -> f64| NamedResult {
-        name: kind.name,
-        value: ResultValue::List(cycles.iter().map(read).collect()),
-        dimension: kind.dimension,
-        contributions: Vec::new(),
-    };
-    #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
-    let count = cycles.len() as f64;
-    let total = (!cycles.is_empty()).then(|| cycles.iter().map(|cycle| cycle.found.energy).sum());
-    let mut results = vec![
-        schema::DISSIPATED_ENERGY.found(total),
-        schema::MAX_FORCE.found(largest(1.0)),
-        schema::MIN_FORCE.found(largest(-1.0).map(|pull| -pull)),
-        schema::EQUIVALENT_DAMPING_RATIO
-            .found(cycles.last().and_then(|cycle| cycle.found.damping_ratio)),
-        schema::STIFFNESS.found(cycles.first().and_then(|cycle| cycle.found.stiffness)),
-        schema::LAST_STIFFNESS.found(cycles.last().and_then(|cycle| cycle.found.stiffness)),
-        schema::CYCLES.found(Some(count)),
-        list(schema::AMPLITUDES, |cycle| cycle.found.amplitude),
-        list(schema::ENERGIES, |cycle| cycle.found.energy),
-        list(schema::DAMPING_RATIOS, |cycle| {
-            cycle.found.damping_ratio.unwrap_or(f64::NAN)
-        }),
-        list(schema::STIFFNESSES, |cycle| {
-            cycle.found.stiffness.unwrap_or(f64::NAN)
-        }),
-    ];
-    results.extend(curve::yielding(history.backbone.as_ref()));
-    results.extend(curve::lists(history.backbone.as_ref()));
-    results
 }

@@ -10,5 +10,6 @@ pub(crate) mod rate_separated_stiffness;
 pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod tables;
+pub(crate) mod uncertainty;
 
 pub use run::MOST_SAMPLES;

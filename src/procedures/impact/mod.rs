@@ -3,6 +3,7 @@
 //! report text.
 
 pub(crate) mod check;
+pub(crate) mod delay;
 pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod report;

@@ -1,7 +1,7 @@
 //! `move`: to an absolute displacement. A limited increment makes it several equal ones, each a step of the record.
 
 use crate::plan::Move;
-use crate::procedures::stiffness_ramp::run::secant;
+use crate::procedures::stiffness_ramp::points::secant;
 use crate::record::{History, RampStep};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;

@@ -5,6 +5,7 @@
 pub(crate) mod axes;
 pub(crate) mod check;
 pub(crate) mod continuous_motion;
+pub(crate) mod delay;
 pub(crate) mod energy;
 pub(crate) mod frame_uncertainty;
 pub(crate) mod integrator_check;

@@ -1,6 +1,8 @@
 //! What the drivers of check and report must know of a stiffness ramp without carrying it out. In: it. Out: facts.
 
 use super::{chart, report};
+use crate::physics::self_test::Part;
+use crate::plan::{RampFit, StiffnessRamp};
 use crate::procedures::facts::{Facts, Recorded};
 use crate::record::RampHistory;
 
@@ -16,5 +18,13 @@ pub(crate) fn recorded(history: &RampHistory) -> Recorded {
         lists_are_tabled: history.multilinear.is_some(),
         uncertainty: report::UNCERTAINTY,
         ..Recorded::default()
+    }
+}
+
+/// The fit that a ramp goes through.
+pub(crate) const fn self_tested(ramp: &StiffnessRamp) -> Part {
+    match ramp.fit {
+        RampFit::Linear => Part::LineFit,
+        RampFit::Bilinear | RampFit::Multilinear(_) => Part::CurveFit,
     }
 }

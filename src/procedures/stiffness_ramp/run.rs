@@ -2,6 +2,7 @@
 //! the mean of some readings. In: the displacements. Out: K by least squares over the outward steps, the secant of the
 //! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
 
+use super::points::{Point, point, secant};
 use super::uncertainty::{DIRECT, Readings};
 use super::{curve, hold};
 use crate::physics::identification::bilinear_fit::fit_bilinear_stated;
@@ -109,9 +110,6 @@ struct Fits {
     multilinear: Option<MultilinearFit>,
     remarks: Vec<String>,
 }
-
-/// A displacement (m) and the force there (N).
-pub(crate) type Point = (f64, f64);
 
 struct Ramp {
     steps: Vec<RampStep>,
@@ -392,14 +390,4 @@ fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult>
     }
     results.extend(curve::lists(multilinear));
     results
-}
-
-pub(crate) const fn point(step: &RampStep) -> Point {
-    (step.displacement, step.restoring_force)
-}
-
-/// Stiffness from one point to the next, N/m; None without motion.
-pub(crate) fn secant(from: Point, to: Point) -> Option<f64> {
-    let motion = to.0 - from.0;
-    (motion != 0.0).then(|| (to.1 - from.1) / motion)
 }

@@ -3,7 +3,7 @@
 
 use std::convert::Infallible;
 
-use super::run::{Point, point, secant};
+use super::points::{Point, point, secant};
 use crate::physics::identification::loop_energy;
 use crate::physics::perturbation::{Perturbation, ReadingErrors};
 use crate::physics::statistics::noisy_largest::NoisyLargest;

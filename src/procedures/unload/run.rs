@@ -2,7 +2,7 @@
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
 //! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
-use super::uncertainty::RestUncertainty;
+use super::uncertainty::{NOISE, RestUncertainty};
 use crate::physics::frame::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::formula::{Formula, ResultValue};
@@ -23,8 +23,6 @@ use crate::units::display::readable;
 pub(crate) const MOST_TARGETS: u64 = 50;
 /// Fraction of the force at the start that counts as zero where nothing else bounds it.
 const SMALL: f64 = 1e-3;
-/// Noise of the load cell that is not mistaken for load, standard deviations.
-pub(crate) const NOISE: f64 = 3.0;
 /// Rounding of a position from adding up storey drifts, in units of its last digit.
 const ROUNDING: f64 = 8.0;
 

@@ -6,7 +6,6 @@
 //! f are off by −K⁻¹f in that place. With whatever stiffness it was sent there, it rests at the same place: to first order
 //! that is no source. What left the specimen where it is, a blow say, is not measured by where it rests, and no source of it.
 
-use super::run::NOISE;
 use crate::physics::frame::{Loaded, Unloading};
 use crate::physics::integrator::tangent::NOISE_MULTIPLE;
 use crate::plan::Plan;
@@ -17,6 +16,8 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
+/// Noise of the cell in a reading that is not to be mistaken for load, standard deviations.
+pub(crate) const NOISE: f64 = 3.0;
 /// A storey shows a stiffness where its drift changes by more than this share of the largest change on the way: less is rounding.
 const TOLD: f64 = 1e-6;
 

@@ -9,9 +9,6 @@ use serde_json::ser::{Formatter, Serializer};
 
 use super::{Refusal, finite};
 
-/// Objects and lists inside one another, the outermost counted: `serde_json` reads 127.
-pub const DEEPEST: usize = 64;
-
 /// Appends the body as JSON.
 ///
 /// # Errors

@@ -4,6 +4,9 @@ use std::io;
 
 use super::EntryKind;
 
+/// Objects and lists inside one another, the outermost counted: `serde_json` reads 127.
+pub const DEEPEST: usize = 64;
+
 /// A record was not written, or not made safe.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JournalFault {
@@ -57,7 +60,7 @@ pub enum Refusal {
     NotAnObject,
     #[error("a number in it has more than 64 bits")]
     TooWide,
-    #[error("it has more than {} brackets inside brackets", super::body::DEEPEST)]
+    #[error("it has more than {} brackets inside brackets", DEEPEST)]
     TooDeep,
     #[error("its line would have {bytes} bytes, the most is {}", super::LINE_BYTES)]
     TooLong { bytes: usize },

@@ -4,7 +4,7 @@
 use serde::ser::{self, Serialize, Serializer};
 
 use super::Refusal;
-use super::body::DEEPEST;
+use super::fault::DEEPEST;
 
 /// Says why a body must not be written.
 ///
@@ -251,7 +251,7 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::super::Refusal;
-    use super::super::body::DEEPEST;
+    use super::super::fault::DEEPEST;
     use super::check;
 
     #[derive(Serialize)]

@@ -5,7 +5,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::golden::comparison::{Comparison, Row, TITLES, cells, heads};
+use super::document::POLICY;
 use crate::text::sanitize;
 
 const STYLE: &str = "body{font:15px/1.45 'DejaVu Sans',Verdana,sans-serif;color:#222;max-width:1100px;margin:2em auto;padding:0 1em}\
@@ -15,9 +15,30 @@ th.n{text-align:right}.pass{color:#046b3a}.fail,.error,.aborted{color:#a11}.inco
 figure{margin:1.5em 0}img{max-width:100%;height:auto}figcaption{color:#555}pre{background:#f5f5f5;padding:.8em;overflow-x:auto}\
 .wide{overflow-x:auto}@media print{body{margin:0;max-width:none}}";
 
+/// A comparison as its page shows it: an entry of each inner list is of one run.
+pub struct ComparisonPage<'a> {
+    pub names: &'a [String],
+    pub verdicts: &'a [String],
+    pub results: Vec<ResultTable>,
+    /// By requirement.
+    pub requirements: &'a [(String, Vec<Option<String>>)],
+    pub facts: &'a [(String, Vec<String>)],
+    /// By run: the lines of its plan that differ from the first one.
+    pub plans: &'a [(String, Vec<String>)],
+}
+
+/// Results side by side.
+pub struct ResultTable {
+    pub title: &'static str,
+    /// Heads of the columns after the runs.
+    pub heads: &'static [&'static str],
+    /// Name and cells of each row.
+    pub rows: Vec<(String, Vec<String>)>,
+}
+
 /// The page; `figures` are captions with PNG bytes.
 #[must_use]
-pub fn page(comparison: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
+pub fn page(comparison: &ComparisonPage<'_>, figures: &[(String, Vec<u8>)]) -> String {
     let runs = comparison.names.len();
     let page = html! {
         (DOCTYPE)
@@ -27,16 +48,16 @@ pub fn page(comparison: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
                 h1 { "Comparison of " (runs) " runs" }
                 table {
                     tr { th { "" } th { "run" } th { "verdict" } }
-                    @for (index, (name, verdict)) in comparison.names.iter().zip(&comparison.verdicts).enumerate() {
+                    @for (index, (name, verdict)) in comparison.names.iter().zip(comparison.verdicts).enumerate() {
                         tr { td { (index + 1) } td { (name) } td class=(verdict) { (verdict) } }
                     }
                 }
-                @for (title, rows) in TITLES.into_iter().zip([&comparison.shared, &comparison.partial]) { (results(title, rows, runs)) }
+                @for table in &comparison.results { (results(table, runs)) }
                 @if !comparison.requirements.is_empty() {
                     h2 { "Requirements" }
                     div class="wide" { table {
                         (head(runs, &[]))
-                        @for (name, verdicts) in &comparison.requirements {
+                        @for (name, verdicts) in comparison.requirements {
                             tr { td { (name) } @for verdict in verdicts { @let word = verdict.as_deref().unwrap_or("—"); td class={ "n " (word) } { (word) } } }
                         }
                     } }
@@ -45,10 +66,10 @@ pub fn page(comparison: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
                     h2 { "What differs in plan, settings and rig" }
                     div class="wide" { table {
                         (head(runs, &[]))
-                        @for (what, texts) in &comparison.facts { tr { td { (what) } @for text in texts { td class="n" { (short(text)) } } } }
+                        @for (what, texts) in comparison.facts { tr { td { (what) } @for text in texts { td class="n" { (short(text)) } } } }
                     } }
                 }
-                @for (name, lines) in &comparison.plans { h2 { "Plan of " (name) " against that of " (comparison.names[0]) } pre { (lines.join("\n")) } }
+                @for (name, lines) in comparison.plans { h2 { "Plan of " (name) " against that of " (comparison.names[0]) } pre { (lines.join("\n")) } }
                 @if !figures.is_empty() {
                     h2 { "Figures" }
                     @for (caption, png) in figures {
@@ -65,13 +86,13 @@ fn head(runs: usize, more: &[&str]) -> Markup {
     html! { tr { th { "" } @for run in 1..=runs { th class="n" { (run) } } @for head in more { th class="n" { (head) } } } }
 }
 
-fn results(title: &str, rows: &[Row], runs: usize) -> Markup {
+fn results(table: &ResultTable, runs: usize) -> Markup {
     html! {
-        @if !rows.is_empty() {
-            h2 { (title) }
+        @if !table.rows.is_empty() {
+            h2 { (table.title) }
             div class="wide" { table {
-                (head(runs, heads(runs)))
-                @for row in rows { tr { td { (row.name) } @for cell in cells(row) { td class="n" { (cell) } } } }
+                (head(runs, table.heads))
+                @for (name, cells) in &table.rows { tr { td { (name) } @for cell in cells { td class="n" { (cell) } } } }
             } }
         }
     }

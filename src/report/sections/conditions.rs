@@ -1,9 +1,10 @@
 //! Conditions of the test: environment, time scale, specimens, ground motions, strikers, limits, parameters. In: a run. Out:
 //! blocks. A condition that was not given is marked, and so is a value that the plan states and nobody measured.
 
+use super::frame;
 use super::{Source, described, pairs, with_spaces};
 use crate::plan::{Interval, Parameter, Settle, Specimen, Striker};
-use crate::procedures::{self, base_excitation};
+use crate::procedures;
 use crate::record::equipment::HeldLimit;
 use crate::report::document::{Block, Text};
 use crate::report::number;
@@ -50,7 +51,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     for specimen in &run.plan.specimens {
         body.push(Block::part(as_stated(wording::specimen(&specimen.name))));
         match &specimen.frame {
-            Some(frame) => base_excitation::report::structure(frame, body),
+            Some(frame) => frame::structure(frame, body),
             None => body.push(specimen_table(
                 specimen,
                 run.plan.rig.link.as_real().is_none(),
@@ -61,7 +62,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         body.push(Block::part(
             Text::from(wording::ground(&ground.name)).soft(wording::FROM_A_FILE),
         ));
-        body.push(base_excitation::report::ground(ground));
+        body.push(frame::ground(ground));
     }
     for striker in &run.plan.strikers {
         body.push(Block::part(as_stated(wording::striker(&striker.name))));

@@ -6,6 +6,7 @@ mod conditions;
 mod deviations;
 mod equipment;
 mod figures;
+mod frame;
 mod opinions;
 mod plan;
 mod prediction;

@@ -1,9 +1,9 @@
 //! Deviations from the plan as written, found in the record: a reader must know them before the numbers. In: a run. Out: one
 //! sentence each, in the order in which they happened.
 
-use crate::procedures::reached::reached;
-use crate::record::equipment::Channel;
-use crate::record::{Drift, EventKind, Outcome};
+use crate::procedures;
+use crate::record::equipment::{Channel, Measures};
+use crate::record::{Drift, EventKind, Outcome, Record};
 use crate::report::number;
 use crate::report::run::{ClockJump, Run};
 use crate::report::wording::deviations as wording;
@@ -154,4 +154,23 @@ pub(in crate::report) fn position(procedure: Option<&str>, step: Option<u64>) ->
         (Some(name), None) => wording::in_procedure(name),
         (None, _) => String::new(),
     }
+}
+
+/// The largest reading of a channel of an axis, from 0, by size: m or N. None where nothing was recorded.
+fn reached(record: &Record, measures: Measures, axis: usize) -> Option<f64> {
+    let mut largest: Option<f64> = None;
+    let mut give = |displacement: &[f64], force: &[f64]| {
+        let read = match measures {
+            Measures::Displacement => displacement.get(axis),
+            Measures::Force => force.get(axis),
+        };
+        if let Some(read) = read.filter(|read| read.is_finite()) {
+            largest = Some(largest.map_or(read.abs(), |largest| largest.max(read.abs())));
+        }
+    };
+    record
+        .procedures
+        .iter()
+        .for_each(|procedure| procedures::readings(&procedure.history, &mut give));
+    largest
 }

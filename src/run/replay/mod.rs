@@ -8,11 +8,10 @@
 
 mod compatibility;
 mod consistency;
+mod continuous_move;
 mod entry;
 #[cfg(test)]
 mod held_tests;
-#[cfg(test)]
-mod measured;
 mod observer;
 mod path;
 mod raw_bytes;
@@ -23,6 +22,8 @@ mod resume_tests;
 mod rig;
 mod shape;
 mod state;
+#[cfg(test)]
+mod testing;
 #[cfg(test)]
 pub(crate) mod tests;
 

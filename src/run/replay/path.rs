@@ -3,6 +3,7 @@
 
 use std::rc::Rc;
 
+use super::continuous_move::ContinuousMove;
 use super::entry::{Call, Doubt, IntentBody, StrokeBody};
 use super::rig::{TapedRig, append_sample, bits, finite, intent};
 use super::state::ended;
@@ -10,14 +11,7 @@ use crate::physics::tracking::trajectory::Path;
 use crate::record::journal::EntryKind;
 use crate::rig::{CutOff, EachReading, Offer, Reading, Rig, RigFault};
 
-/// A way as it is asked for.
-pub(super) enum Way<'a> {
-    /// m, m/s
-    Stroke(&'a [f64], f64),
-    Paths(&'a [Path]),
-}
-
-impl Way<'_> {
+impl ContinuousMove<'_> {
     fn intent(&self, samples: usize) -> IntentBody {
         let (targets, speed) = match self {
             Self::Stroke(targets, velocity) => (targets.to_vec(), *velocity),
@@ -111,7 +105,7 @@ fn same(one: &IntentBody, other: &IntentBody) -> bool {
 impl TapedRig<'_> {
     pub(super) fn take_way(
         &mut self,
-        way: &Way<'_>,
+        way: &ContinuousMove<'_>,
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {

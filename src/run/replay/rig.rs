@@ -4,10 +4,10 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use super::continuous_move::ContinuousMove;
 use super::entry::{
     Call, Doubt, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody, escaped,
 };
-use super::path::Way;
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
 use crate::record::journal::EntryKind;
@@ -371,7 +371,7 @@ impl Rig for TapedRig<'_> {
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.take_way(&Way::Stroke(targets, velocity), samples, each)
+        self.take_way(&ContinuousMove::Stroke(targets, velocity), samples, each)
     }
 
     fn glide(
@@ -380,7 +380,7 @@ impl Rig for TapedRig<'_> {
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.take_way(&Way::Paths(paths), samples, each)
+        self.take_way(&ContinuousMove::Paths(paths), samples, each)
     }
 
     fn hold(&mut self) {

@@ -5,7 +5,7 @@ use super::unnumbered::{as_homed, grbl, modbus};
 use crate::plan::formula::Formula::Constant;
 use crate::plan::{Dialect, Impact, Interval, Plan, ProcedureKind, StiffnessRamp, Until};
 use crate::plan::{FRAME, WALL};
-use crate::run::storage_bound;
+use crate::procedures::storage_bound;
 use crate::tests::testing::{every, impact, ramp, result_of};
 
 fn procedures() -> Vec<ProcedureKind> {

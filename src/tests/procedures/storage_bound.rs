@@ -5,13 +5,13 @@ use crate::plan::{
     Between, Cycle, DampingSweep, FRAME, Interval, Level, Mode, Move, Plan, ProcedureKind, Sides,
     Stepping, StiffnessRamp, Unload, Until,
 };
+use crate::procedures::storage_bound;
 use crate::record::Outcome;
 use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, Journal};
 use crate::rig::virtual_rig;
 use crate::run::Unwatched;
 use crate::run::replay;
-use crate::run::storage_bound;
 use crate::tests::testing;
 use crate::tests::testing::{elastic_plan, every, header, impact, ramp, result_of};
 

@@ -1,6 +1,7 @@
 //! Labels that want to be something else, in every sink: page, terminal, tables, JSON, file names, manifest, record. Each
 //! must come out as a text that stands there.
 
+use psd::golden::comparison::page;
 use psd::golden::comparison::{Comparison, Side, csv};
 use psd::golden::{
     Change, Finding, Outcome as TestOutcome, Part, Report, Tested, json as golden_json, junit, tap,
@@ -9,7 +10,7 @@ use psd::language::check::{Checked, LoadError, Loader, Options, check};
 use psd::plan::Format;
 use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::record::{EventKind, Outcome};
-use psd::report::{Figures, OutputFile, comparison, console, everything};
+use psd::report::{Figures, OutputFile, console, everything};
 use psd::text::diagnostic::{json, render};
 use psd::text::sanitize;
 use rayon::prelude::*;
@@ -335,7 +336,7 @@ fn tested_with(label: &str) -> Report {
             verdict: Some("pass"),
         },
         TestOutcome::Differs(found),
-        TestOutcome::NotBlessed { folder: own() },
+        TestOutcome::NotAccepted { folder: own() },
         TestOutcome::Failed(own()),
         TestOutcome::NotRun,
     ];
@@ -433,7 +434,7 @@ fn no_label_is_markup_or_a_formula_in_a_comparison() {
     let made = |label: &str| {
         let compared = compared_with(label);
         (
-            comparison::page(&compared, &[(label.to_owned(), Vec::new())]),
+            page::page(&compared, &[(label.to_owned(), Vec::new())]),
             csv(&compared),
         )
     };

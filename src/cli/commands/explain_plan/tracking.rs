@@ -5,9 +5,9 @@
 //! the settling band or a quantum may be against the motion at every step: δ in all, and an amplitude A grows by 4δ a cycle, at worst, and
 //! grows on.
 
-use crate::language::check::warnings::tracking::late;
 use crate::plan::formula::ResultValue;
 use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
+use crate::procedures::stepping::delay::late;
 use crate::record::{
     Floors, ImpactHistory, Modes, Outcome, ProcedureRecord, Record, ShakeHistory, StruckFrame,
 };

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::shown;
 use crate::cli::args::TestArguments;
 use crate::cli::exit::Failure;
-use crate::cli::files::accepted::BlessedFolder;
-use crate::cli::files::loader::plain;
+use crate::cli::files::accepted::AcceptedFolder;
+use crate::files::failure::plain;
 use crate::golden::{DIAGNOSTICS, SUMMARY};
 
 /// The default folder of plans.
@@ -20,7 +20,7 @@ pub struct Case {
     /// `plans/beam`
     pub name: String,
     pub plan: PathBuf,
-    pub golden: BlessedFolder,
+    pub golden: AcceptedFolder,
     /// The name of its folder among the failures: `beam`.
     pub folder: String,
 }
@@ -59,8 +59,8 @@ pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
     let mut cases = Vec::new();
     for plan in plans {
         let golden = match &arguments.golden {
-            Some(reports) => BlessedFolder::within(reports, &plan)?,
-            None => BlessedFolder::of(&plan)?,
+            Some(reports) => AcceptedFolder::within(reports, &plan)?,
+            None => AcceptedFolder::of(&plan)?,
         };
         let name = plan.with_extension("").to_string_lossy().into_owned();
         let folder = plan

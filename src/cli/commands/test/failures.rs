@@ -9,8 +9,8 @@ use super::cases::Case;
 use super::overlay;
 use crate::cli::exit::Failure;
 use crate::cli::files::accepted::{is_page, remove};
-use crate::cli::files::loader::plain;
 use crate::cli::files::run_folder::write_new;
+use crate::files::failure::plain;
 use crate::golden::{Finding, Truth, Words};
 use crate::report::OutputFile;
 

@@ -11,9 +11,9 @@ use std::path::Path;
 
 use crate::cli::args::{Format, TestArguments};
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::loader::plain;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
+use crate::files::failure::plain;
 use crate::golden::{self, Report, console};
 use cases::Case;
 use trials::Trials;

@@ -85,7 +85,7 @@ impl Trials<'_> {
     fn outcome(&self, case: &Case) -> Result<Outcome, Failure> {
         if self.arguments.bless {
             let trial = golden_run::of(&case.plan, Extent::All)?;
-            return Ok(Outcome::Blessed(case.golden.bless(
+            return Ok(Outcome::Accepted(case.golden.accept(
                 &trial.files,
                 &trial.tolerances,
                 self.arguments.anew,
@@ -96,7 +96,7 @@ impl Trials<'_> {
         let blessed = case.golden.truth()?;
         failures::clear(&self.arguments.out, case)?;
         if blessed.is_empty() {
-            return Ok(Outcome::NotBlessed {
+            return Ok(Outcome::NotAccepted {
                 folder: case.golden.path().display().to_string(),
             });
         }

@@ -7,6 +7,7 @@ mod plain;
 mod signals;
 mod typed;
 
+pub use super::stay::Stay;
 use std::cell::RefCell;
 
 use super::question::{self, After, Kind, Question};
@@ -73,17 +74,6 @@ enum Asking {
     NobodyNeeded,
     /// No terminal, and a real rig waits for an answer that cannot come.
     Nobody,
-}
-
-/// What a person wants of a run that has ended early.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Stay {
-    /// Nothing yet: the rig is watched on.
-    Wait,
-    /// Nothing more.
-    Leave,
-    /// That it goes on, for this reason.
-    Resume(String),
 }
 
 /// What the command line says of the person.

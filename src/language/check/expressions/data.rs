@@ -3,20 +3,13 @@
 
 use std::sync::Arc;
 
+use super::data_file::DataFile;
 use crate::language::check::checker::Checker;
 use crate::language::check::imports::{MOST_FILES, refused, resolved};
 use crate::language::check::messages::files as message;
 use crate::language::check::{LoadError, imports};
 use crate::plan::PlanFile;
 use crate::text::source::Span;
-
-/// A data file as it was read.
-#[derive(Clone, Debug)]
-pub struct DataFile {
-    /// Relative to the plan's folder, with `/`.
-    pub name: String,
-    pub text: Arc<str>,
-}
 
 impl Checker<'_> {
     /// The text of the data file `written`, whose path is relative to the file that names it. Read once, however often it is

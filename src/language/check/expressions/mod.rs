@@ -5,6 +5,7 @@ pub(crate) mod calendar;
 pub(crate) mod call;
 pub(crate) mod choice;
 pub(crate) mod data;
+pub(crate) mod data_file;
 pub(crate) mod expression;
 pub(crate) mod fields;
 pub(crate) mod literal;

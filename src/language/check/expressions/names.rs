@@ -8,7 +8,6 @@ use crate::language::check::messages::{frames, names as message, types, values};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Expr, ExprKind, Ident};
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
-use crate::procedures::impact::check::target;
 use crate::schema::{self, BlockKind, Kind};
 use crate::text::source::Span;
 use crate::units::Dimension;
@@ -243,7 +242,7 @@ impl<'a> Checker<'a> {
         let known = renamed.or_else(|| declared.kind.result(&name.node));
         if let (Some(result), Some(procedure)) = (known, declared.procedure) {
             let unloads = declared.kind.kind == Kind::Unload;
-            if result.of_storey && !unloads && target::struck_frame(self, block).is_none() {
+            if result.of_storey && !unloads && frame::struck_frame(self, block).is_none() {
                 let diagnostic =
                     frames::result_of_a_storey(result.name, name.span, declared.block.head);
                 return self.fail(diagnostic);
@@ -325,7 +324,7 @@ impl<'a> Checker<'a> {
     /// Whether a procedure strikes one storey of a frame.
     fn strikes_a_storey(&mut self, procedure: ProcedureId) -> bool {
         self.procedure(procedure)
-            .is_some_and(|block| target::struck_frame(self, block).is_some())
+            .is_some_and(|block| frame::struck_frame(self, block).is_some())
     }
 
     /// Whether a block tests a frame.

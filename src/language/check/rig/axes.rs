@@ -2,7 +2,7 @@
 //! an [`AxisPlan`] each. It also compares their number with the storeys of the specimen; `device` reads the devices.
 
 use super::device::{Device, device};
-use super::real;
+use super::probe::probe;
 use super::{CheckedRig, context_of};
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::calendar;
@@ -54,7 +54,7 @@ fn axis<'a>(
     let gate = match chosen.span("gate") {
         Some(_) => checker
             .chosen_argument(chosen, "gate")
-            .and_then(|gate| real::probe(checker, &gate, context))
+            .and_then(|gate| probe(checker, &gate, context))
             .map(Some),
         None => Some(None),
     };

@@ -2,6 +2,7 @@
 //! [`Device`]. It opens nothing: whether the port exists is known when the run opens it.
 
 use super::dialect;
+use super::line_text::line_text;
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
@@ -108,25 +109,6 @@ fn is_host_and_port(address: &str) -> bool {
         None => !host.is_empty() && !host.starts_with('-') && host.chars().all(name),
     };
     host && number
-}
-
-/// A string that is sent on a line of a protocol: `Some(None)` where it is left out.
-#[expect(
-    clippy::option_option,
-    reason = "left out and faulty are different things here"
-)]
-pub fn line_text<'a>(
-    checker: &mut Checker<'a>,
-    chosen: &Chosen<'a>,
-    name: &str,
-) -> Option<Option<String>> {
-    let Some((text, span)) = checker.text_argument(chosen, name)? else {
-        return Some(None);
-    };
-    if text.trim().is_empty() || text.chars().any(|c| c.is_control() || !c.is_ascii()) {
-        return checker.fail(message::bad_line_text(name, span));
-    }
-    Some(Some(text))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The protocol of a device: `native`, `scpi(1 N)`, `modbus(…)`. In: the chosen variant. Out: a [`Dialect`].
 
-use super::device::line_text;
+use super::line_text::line_text;
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{names, rigs, values};

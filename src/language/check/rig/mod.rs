@@ -6,6 +6,8 @@ pub(crate) mod axis_devices;
 pub(crate) mod device;
 pub(crate) mod dialect;
 pub(crate) mod drift;
+pub(crate) mod line_text;
+pub(crate) mod probe;
 pub(crate) mod real;
 pub(crate) mod real_warnings;
 

@@ -4,10 +4,10 @@
 use super::axes::{self, CheckedAxis};
 use super::axis_devices;
 use super::device::{Device, device};
+use super::probe::probe;
 use super::{CheckedRig, context_of, kind};
-use crate::language::check::checker::{Checker, Context};
+use crate::language::check::checker::Checker;
 use crate::language::check::declarations::limits::CheckedLimits;
-use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole as whole_number;
 use crate::language::check::messages::rigs as message;
 use crate::language::check::messages::{values, whole};
@@ -236,18 +236,6 @@ fn gate(checker: &mut Checker, block: usize, axes: &[CheckedAxis]) -> Option<Gat
     let context = context_of(checker, block, "gate")?;
     let chosen = checker.choice(block, "gate")?;
     probe(checker, &chosen, context)
-}
-
-/// `probe(…)`, of a rig or of one of its axes.
-pub fn probe<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, context: Context) -> Option<Gate> {
-    let probe = checker.constant_argument(chosen, "displacement", context);
-    let stiffness = checker.interval_argument(chosen, "stiffness", context);
-    let zero = checker.constant_argument(chosen, "zero", context);
-    Some(Gate {
-        zero: zero?,
-        probe: probe?,
-        stiffness: stiffness?,
-    })
 }
 
 fn readings(checker: &mut Checker, block: usize) -> Option<ReadingRules> {

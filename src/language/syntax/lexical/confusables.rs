@@ -2,6 +2,7 @@
 //! `“x”`, `=<`, a Cyrillic і. In: the text of a file. Out: the normalized text, with the same length in bytes, so that
 //! every span in it stays valid, and one error for each sort of confusable. It knows no grammar.
 
+use super::confusable::Confusable;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -18,27 +19,6 @@ pub struct Normalized<'a> {
     pub errors: Vec<Diagnostic>,
     /// Every span that is read otherwise than it is written, in order.
     pub spans: Vec<Span>,
-}
-
-/// A character or word that was written for another. Each is reported once, however often it appears.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Confusable<'a> {
-    /// A byte order mark at the start.
-    ByteOrderMark,
-    /// A space other than the one of the keyboard.
-    Space(char),
-    /// A sign, and the one it is read as.
-    Sign(&'a str, &'static str),
-    /// `²`
-    Superscript(&'a str),
-    /// `“x”`, by its opening quote.
-    Quotes(char),
-    /// `//` or `/*`
-    Comment(&'static str),
-    /// `;` at the end of a field
-    Semicolon,
-    /// A word with letters of another alphabet.
-    Word(&'a str),
 }
 
 /// Signs that look like one of the language, or have its meaning elsewhere. The longer ones come first.

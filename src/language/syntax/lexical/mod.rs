@@ -1,6 +1,7 @@
 //! Lexical analysis: from characters to tokens. In: the text of a file. Out: [`tokens::Tokens`], and the errors that need no grammar.
 
 pub mod characters;
+pub mod confusable;
 pub mod confusables;
 pub mod letters;
 pub mod numbers;

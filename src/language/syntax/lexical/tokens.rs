@@ -4,7 +4,7 @@
 
 use super::unit_tokens::{unit_extent, unit_in_parentheses};
 use super::{characters, numbers};
-use crate::language::syntax::{layout::ITEM_WORDS, limits, messages};
+use crate::language::syntax::{ast::ITEM_WORDS, limits, messages};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{FileId, Span, Spanned};
 

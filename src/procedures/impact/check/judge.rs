@@ -1,12 +1,13 @@
 //! The check of an impact against striker and specimen: its time step, its end, whether the striker arrives. In: an impact and the
 //! declarations of the plan. Out: errors and warnings.
 
+use super::time_step::predicted_critical;
 use super::{arrival, warnings};
 use crate::language::check::checker::Checker;
 use crate::language::check::declared::Declared;
 use crate::language::check::messages::values;
 use crate::physics::structure::frame_properties::FrameProperties;
-use crate::plan::formula::{Formula, NoResults, Part, ResultReference, ResultValue, Results};
+use crate::plan::formula::{Formula, NoResults};
 use crate::plan::{
     Contact, Frame, Impact, ImpactTarget, MOST_STEPS, PointTarget, Specimen, StoreyTarget, Striker,
     Until, steps_in,
@@ -14,7 +15,6 @@ use crate::plan::{
 use crate::procedures::stepping;
 use crate::procedures::stepping::check::{FrameSteps, beyond_duration};
 use crate::procedures::stepping::{integrator_check, mode_check};
-use crate::schema::procedures::{cycle, stiffness_ramp};
 use crate::text::diagnostic::Code;
 
 /// The slowest striker must arrive, the time step must follow the fastest.
@@ -148,70 +148,4 @@ fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Striker)
             help,
         ));
     }
-}
-
-/// Δtc of an impact of this striker on one degree of freedom, s, where all its quantities are known before the run.
-pub(crate) fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
-    impact.critical_time_step(striker, Formula::constant)
-}
-
-/// Δtc, s, with a predicted stiffness where an earlier procedure is to measure it: the initial one of the specimen of a virtual rig.
-/// The second value is true if Δtc is such a prediction.
-pub(crate) fn predicted_critical(
-    checker: &Checker,
-    impact: &Impact,
-    striker: &Striker,
-    specimen: Option<&Specimen>,
-) -> Option<(f64, bool)> {
-    if let Some(critical) = critical_before_the_run(impact, striker) {
-        return Some((critical, false));
-    }
-    let behaviour = specimen
-        .filter(|_| checker.real_rig.is_none())?
-        .behaviour
-        .as_ref()?;
-    let predicted = Predicted {
-        stiffness: behaviour.initial_stiffness(),
-    };
-    let known = |formula: &Formula| {
-        formula
-            .evaluate(&predicted, None)
-            .ok()
-            .map(|estimate| estimate.value)
-    };
-    Some((impact.critical_time_step(striker, known)?, true))
-}
-
-/// The results that ramps and cycles will find for a declared specimen.
-struct Predicted {
-    /// N/m
-    stiffness: f64,
-}
-
-/// Results that the initial stiffness predicts.
-const PREDICTED: [&str; 3] = [
-    stiffness_ramp::STIFFNESS.name,
-    stiffness_ramp::SECANT_STIFFNESS.name,
-    cycle::STIFFNESS.name,
-];
-
-impl Results for Predicted {
-    fn result(&self, reference: ResultReference) -> Option<ResultValue> {
-        let found = PREDICTED.contains(&reference.name) && reference.part == Part::Value;
-        found.then_some(ResultValue::Number {
-            value: Some(self.stiffness),
-            uncertainty: None,
-        })
-    }
-}
-
-/// Δt, s, where it is known before the run.
-pub(crate) fn time_step_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
-    let critical = critical_before_the_run(impact, striker);
-    impact
-        .stepping
-        .time_step
-        .evaluate(&NoResults, critical)
-        .ok()
-        .map(|estimate| estimate.value)
 }

@@ -3,9 +3,11 @@
 pub(crate) mod arrival;
 pub(crate) mod judge;
 pub(crate) mod target;
+pub(crate) mod time_step;
 pub(crate) mod warnings;
 
 use crate::language::check::checker::Checker;
+use crate::language::check::declarations::specimen::frame;
 use crate::plan::{Contact, Impact, ProcedureKind, Until};
 use crate::procedures::stepping;
 use crate::procedures::stepping::integrator_check;
@@ -20,7 +22,7 @@ pub(crate) fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKin
 
 /// The impact that the fields of a block specify.
 pub(crate) fn fields(checker: &mut Checker, block: usize) -> Option<Impact> {
-    let struck_frame = target::struck_frame(checker, block);
+    let struck_frame = frame::struck_frame(checker, block);
     let striker = checker.reference(block, "striker", Kind::Striker);
     let specimen = checker.specimen_block(block);
     let target = match &struck_frame {

@@ -4,27 +4,12 @@
 use std::rc::Rc;
 
 use crate::language::check::checker::Checker;
-use crate::language::check::declarations::specimen::{self, frame};
+use crate::language::check::declarations::specimen;
 use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::frames as fault;
 use crate::plan::formula::Formula;
 use crate::plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
 use crate::procedures::base_excitation;
-
-/// The block of the frame whose storey is struck, and the frame; None where one degree of freedom is struck, or no known specimen.
-pub(crate) fn struck_frame(
-    checker: &mut Checker,
-    block: usize,
-) -> Option<(usize, Option<Rc<Frame>>)> {
-    let specimen = checker
-        .tested(block)
-        .filter(|specimen| frame::is_frame(checker, *specimen))?;
-    let frame = frame::frame(checker, specimen);
-    let several = frame
-        .as_ref()
-        .is_none_or(|frame| frame.degrees_of_freedom() > 1);
-    (several || checker.field(block, "storey").is_some()).then_some((specimen, frame))
-}
 
 /// One degree of freedom, of the specimen at the block `tested`.
 pub(crate) fn point(

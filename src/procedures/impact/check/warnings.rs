@@ -1,7 +1,7 @@
 //! Warnings on one impact: its time step against eq. 7 and against the one that a limit force needs, its force against the mechanism of
 //! a portal. In: an impact, its striker and specimen. Out: warnings with the numbers.
 
-use super::judge::{predicted_critical, time_step_before_the_run};
+use super::time_step::{predicted_critical, time_step_before_the_run};
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{specimens, whole as fault};
 use crate::physics::structure::portal_limit::mechanism_limit;

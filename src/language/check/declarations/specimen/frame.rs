@@ -278,3 +278,15 @@ fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String
         Err(reason) => checker.fail(message::bad_matrix(&file.name, &reason, span)),
     }
 }
+
+/// The frame of which a block strikes one storey; None where it strikes one degree of freedom, or a specimen that is not known.
+pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Option<Rc<Frame>>)> {
+    let specimen = checker
+        .tested(block)
+        .filter(|specimen| is_frame(checker, *specimen))?;
+    let frame = frame(checker, specimen);
+    let several = frame
+        .as_ref()
+        .is_none_or(|frame| frame.degrees_of_freedom() > 1);
+    (several || checker.field(block, "storey").is_some()).then_some((specimen, frame))
+}

@@ -1,18 +1,18 @@
-//! Whether a record stands by itself: what it says twice agrees, its id is the one of its plan and its circumstances, and it
-//! says all that the program which it names writes. In: a record as it was read. Out: the first fault. It plays nothing back.
+//! Consistency of a run log with itself: repeated entries agree, the run id follows from the plan and its circumstances, and no entry
+//! is missing that this program writes. In: a run log as it was read. Out: the first error. It replays nothing.
 
-use crate::cli::files::provenance::{BUILD, recorded_id};
-use crate::cli::files::record_file::{ReadRecord, plan_of};
+use crate::files::provenance::{BUILD, recorded_id};
+use crate::files::recorded_run::{ReadRecord, plan_of};
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, OLDEST_FORMAT, Recovered};
 use crate::rig::real::ReadBack;
 use crate::run::replay::{Header, Played, agrees};
 
-/// Holds a record against itself.
+/// Compares the entries of a run log with each other.
 ///
 /// # Errors
-/// What is wrong with it.
-pub fn stands(read: &ReadRecord) -> Result<(), String> {
+/// The first contradiction.
+pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
     agrees(&read.recovered, &read.played, &read.plan).map_err(|fault| fault.to_string())?;
     match read
         .recovered
@@ -36,7 +36,7 @@ pub fn stands(read: &ReadRecord) -> Result<(), String> {
     Ok(())
 }
 
-/// Of a record as its run began: its id, and what this program would have written too.
+/// The run log as its run began: its run id, and the entries that this program would have written.
 fn begins(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), String> {
     let header = &played.header;
     let id = recorded_id(header, plan);
@@ -69,14 +69,14 @@ fn lacks_introduction(played: &Played, plan: &Plan) -> bool {
         .is_some_and(|rig| rig.said.len() < replies)
 }
 
-/// What is told of a record that stands, and makes it no worse.
+/// Remarks on a consistent run log.
 pub fn remarks(recovered: &Recovered, header: &Header) -> String {
     let version = if header.equipment.is_none() {
         ", of version 1: it does not say what was measured with"
     } else {
         ""
     };
-    let jumps = crate::cli::files::wall_clock::jumps(&recovered.lines).len();
+    let jumps = crate::files::wall_clock::jumps(&recovered.lines).len();
     let jumped = match jumps {
         0 => String::new(),
         1 => ", its wall clock jumped once".to_owned(),

@@ -3,7 +3,7 @@
 
 use sha2::{Digest as _, Sha256};
 
-use super::record_file::Circumstances;
+use super::circumstances::Circumstances;
 use crate::plan::Plan;
 use crate::report::{Build, Provenance, RealRun};
 use crate::run::rehearsal;

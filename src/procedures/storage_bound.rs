@@ -11,7 +11,7 @@ use crate::plan::{
     StiffnessRamp, Striker, steps_in,
 };
 
-use super::zero_drift;
+use crate::run::zero_drift;
 
 /// What a run may write.
 #[derive(Clone, Debug, PartialEq)]
@@ -272,7 +272,7 @@ impl Reckoner<'_> {
         for velocity in &sweep.velocities {
             let seconds = stroke / self.number(velocity)?.abs();
             let rate = sweep.rate.as_ref().map(|rate| self.number(rate));
-            let samples = crate::procedures::damping_sweep::run::wanted(
+            let samples = super::damping_sweep::run::wanted(
                 seconds,
                 lag,
                 rate.map_or(Some(None), |rate| rate.map(Some))?,

@@ -1,0 +1,153 @@
+//! A run on the rig that the plan names, with its run log. In: a checked plan. Out: the run as it was recorded.
+
+use super::resume;
+use crate::cli::args::RunArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::provenance;
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::Circumstances;
+use crate::cli::files::run_folder::RunFolder;
+use crate::cli::operator::watch::{Attendance, Signals, Watcher};
+use crate::cli::operator::{expected, held, real_rig};
+use crate::cli::output::print_message;
+use crate::cli::settings::Settings;
+use crate::plan::{Link, Plan};
+use crate::report::Provenance;
+use crate::rig::{Wish, virtual_rig};
+use crate::run::replay;
+use crate::run::replay::Recorded;
+
+/// A run that came to an end, one way or another.
+pub(crate) struct Ran {
+    pub(crate) folder: RunFolder,
+    pub(crate) provenance: Provenance,
+    pub(crate) recorded: Recorded,
+    /// Why the person at the held rig wants the run to go on.
+    pub(crate) resume: Option<String>,
+}
+
+impl Ran {
+    /// Goes on with a run that was held, where the person at it wants that; None: it ends here.
+    pub(crate) fn goes_on(
+        &self,
+        plan: &Plan,
+        attendance: &Attendance,
+        settings: Settings,
+    ) -> Result<Option<Exit>, Failure> {
+        let Some(reason) = self.resume.clone() else {
+            return Ok(None);
+        };
+        let operator = real_rig::operator(plan, attendance).unwrap_or_default();
+        resume::go_on(
+            self.folder.path(),
+            &operator,
+            reason,
+            &self.recorded,
+            settings,
+        )
+    }
+}
+
+/// Runs the plan on the rig that it names, and keeps the record.
+pub(crate) fn on_its_rig(
+    plan: &Plan,
+    arguments: &RunArguments,
+    attendance: &Attendance,
+    settings: Settings,
+) -> Result<Ran, Failure> {
+    match plan.rig.link {
+        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, attendance, settings),
+        Link::Real(_) => on_a_real_rig(plan, arguments, attendance, settings),
+    }
+}
+
+/// Nothing is read of the machine, and no time passes.
+fn on_a_virtual_rig(
+    plan: &Plan,
+    arguments: &RunArguments,
+    attendance: &Attendance,
+    settings: Settings,
+) -> Result<Ran, Failure> {
+    let signals = Signals::caught(&Wish::default()).map_err(Failure::Signals)?;
+    let mut watcher = Watcher::new(settings, attendance, plan, true, signals);
+    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
+    let mut rig = virtual_rig(plan);
+    let device = record_file::device(rig.as_ref());
+    let header = record_file::header(
+        plan,
+        device,
+        &arguments.plan_settings,
+        &provenance,
+        Circumstances::default(),
+    );
+    let provenance = Provenance {
+        equipment: header.equipment.clone(),
+        ..provenance
+    };
+    let journal = record_file::begin(folder.path(), plan, &header)?;
+    let recorded = replay::record(plan, rig.as_mut(), &mut watcher, journal, Box::new(|| None));
+    watcher.finish();
+    Ok(Ran {
+        folder,
+        provenance,
+        recorded,
+        resume: None,
+    })
+}
+
+/// The rig is asked who it is before there is a folder: a rig that does not answer leaves nothing behind.
+fn on_a_real_rig(
+    plan: &Plan,
+    arguments: &RunArguments,
+    attendance: &Attendance,
+    settings: Settings,
+) -> Result<Ran, Failure> {
+    let (expected, _) = expected::of(plan);
+    let mut opened = real_rig::open(plan, attendance, &Wish::default(), settings)?;
+    opened.watcher.expect(expected);
+    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let circumstances = real_rig::circumstances(plan, attendance);
+    print_message(&provenance::told_of_another_day(
+        plan,
+        circumstances.began.as_deref(),
+    ));
+    let provenance = provenance::of_real_run(
+        plan,
+        arguments.plan_settings.date.as_deref(),
+        &circumstances,
+    );
+    let device = record_file::device(&opened.connected.rig);
+    let header = record_file::header(
+        plan,
+        device,
+        &arguments.plan_settings,
+        &provenance,
+        circumstances,
+    );
+    let provenance = Provenance {
+        equipment: header.equipment.clone(),
+        ..provenance
+    };
+    let journal = record_file::begin(folder.path(), plan, &header)?;
+    let wall = real_rig::wall_clock();
+    let recorded = replay::record(
+        plan,
+        &mut opened.connected.rig,
+        &mut opened.watcher,
+        journal,
+        wall,
+    );
+    let resume = held::stay(
+        &mut opened.connected.rig,
+        &mut opened.watcher,
+        &recorded.record,
+    );
+    opened.watcher.finish();
+    Ok(Ran {
+        folder,
+        provenance,
+        recorded,
+        resume,
+    })
+}

@@ -1,0 +1,53 @@
+//! The prediction of a whole run from the record of its rehearsal. In: the rehearsed part of a plan and its record. Out: the prediction,
+//! from a dry run on a virtual specimen as it was measured.
+
+use super::explain_plan::DryRun;
+use crate::plan::{Behaviour, Frame, Plan};
+use crate::record::{Outcome, Record};
+use crate::report::Prediction;
+use crate::rig::VirtualRig;
+use crate::run::rehearsal;
+use crate::text::diagnostic::excerpt::escape;
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+/// What the record of a rehearsal foretells of the whole run, by no more than it: None where it is none, or did not come to its
+/// end.
+pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
+    let plan = part
+        .rehearses
+        .as_deref()
+        .filter(|_| record.outcome == Outcome::Completed)?;
+    let stand_in = rehearsal::prediction(plan, record).ok()?;
+    Some(DryRun::on(plan, &stand_in, told(plan, &stand_in)).prediction())
+}
+
+/// On what it is predicted.
+pub fn told(plan: &Plan, stand_in: &Plan) -> String {
+    let specimen = VirtualRig::specimen_of(stand_in);
+    let storeys = specimen
+        .and_then(|specimen| specimen.frame.as_ref())
+        .map(Frame::degrees_of_freedom);
+    let stiffness = specimen
+        .and_then(|specimen| specimen.behaviour.as_ref())
+        .map(Behaviour::initial_stiffness);
+    let stiffness = stiffness.map_or_else(
+        || "unknown".to_owned(),
+        |stiffness| readable(stiffness, Dimension::STIFFNESS),
+    );
+    let noise = stand_in
+        .rig
+        .link
+        .as_virtual()
+        .map_or(0.0, |link| link.noise);
+    let noise = readable(noise, Dimension::FORCE);
+    let name = escape(&plan.rig.name);
+    if let Some(storeys) = storeys {
+        return format!(
+            "rehearsal of the run on rig `{name}`, predicted on the {storeys} storeys of the plan, noise {noise}"
+        );
+    }
+    format!(
+        "rehearsal of the run on rig `{name}`, predicted on a virtual specimen as measured: stiffness {stiffness}, noise {noise}"
+    )
+}

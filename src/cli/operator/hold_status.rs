@@ -1,0 +1,23 @@
+//! Whether a run that ended early left its rig on hold, and whether it can be resumed. In: the record.
+
+use crate::record::{EventKind, Record};
+use crate::run::UNLOADING;
+
+/// Whether the rig was seen at rest in the end.
+pub fn is_held(record: &Record) -> bool {
+    let last = record
+        .events
+        .iter()
+        .rev()
+        .find(|event| matches!(event.kind, EventKind::Held | EventKind::NotHeld));
+    last.is_none_or(|event| event.kind == EventKind::Held)
+}
+
+/// Whether the run had begun, and its specimen is still where it was.
+pub fn can_go_on(record: &Record) -> bool {
+    let unloaded = record
+        .events
+        .iter()
+        .any(|event| event.kind == EventKind::Hold && event.text == UNLOADING);
+    !record.procedures.is_empty() && !unloaded
+}

@@ -1,0 +1,76 @@
+//! The build of psd that made a run, in its record and its report.
+
+use super::rebuilt::{PlayedBack, Rebuilt};
+use super::tests::{folder, run, with};
+use crate::cli::commands::prediction::prediction;
+use crate::files::provenance::{BUILD, TOOLCHAIN};
+use crate::files::recorded_run;
+use crate::files::recorded_run::JOURNAL;
+use crate::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
+use crate::report::OutputFile;
+
+/// The record as another program would have begun it.
+fn of_another_build(journal: &[u8]) -> Vec<u8> {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join(JOURNAL);
+    let mut anew = Journal::create(
+        Box::new(FileStorage::create(&path).unwrap()),
+        Durability::Buffered,
+    );
+    for line in recover(journal).unwrap().lines {
+        let mut body = line.body();
+        // These the journal writes itself.
+        for own in ["format", "count", "head"] {
+            body.as_object_mut().unwrap().shift_remove(own);
+        }
+        if line.kind == EntryKind::Header {
+            (body["build"], body["toolchain"]) =
+                ("0".repeat(64).into(), "riscv64, another compiler".into());
+        }
+        match line.kind {
+            EntryKind::End => anew.end(&body).unwrap(),
+            kind => anew.append(kind, &body).unwrap(),
+        }
+    }
+    drop(anew);
+    std::fs::read(path).unwrap()
+}
+
+#[test]
+fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_report() {
+    let own = folder(run());
+    let journal = of_another_build(&run()[JOURNAL]);
+    let read = recorded_run::from_bytes(JOURNAL.as_ref(), &journal).unwrap();
+    let mut files: Vec<OutputFile> = Vec::new();
+    PlayedBack::of(read, None, &prediction)
+        .unwrap()
+        .results(&mut files)
+        .unwrap();
+    let page = files
+        .iter()
+        .find(|file| file.path == "certificate.html")
+        .unwrap();
+    let page = String::from_utf8(page.bytes.clone()).unwrap();
+    assert!(page.contains(&"0".repeat(64)) && page.contains("riscv64, another compiler"));
+    assert!(!page.contains(BUILD) && !page.contains(TOOLCHAIN));
+    // And nothing else of the results knows of it.
+    let others = files
+        .iter()
+        .filter(|file| !file.path.starts_with("certificate."));
+    let moved: Vec<&str> = others
+        .filter(|file| run()[&file.path] != file.bytes)
+        .map(|file| file.path.as_str())
+        .collect();
+    assert_eq!(moved, [""; 0]);
+    let told = Rebuilt::of(&with(&own, JOURNAL, Some(journal)), &prediction)
+        .report
+        .unwrap()
+        .other_build
+        .unwrap();
+    assert!(told.contains("build 0000"), "{told}");
+    let page = String::from_utf8(run()["certificate.html"].clone()).unwrap();
+    assert!(
+        page.contains(BUILD) && page.contains(TOOLCHAIN),
+        "a run names the program that makes it"
+    );
+}

@@ -1,0 +1,151 @@
+//! Failures of a command that are not errors of its plan: files, disks, rigs, devices.
+
+use std::path::PathBuf;
+
+use crate::text::diagnostic::Code;
+use crate::text::source::Position;
+
+/// Why a command could not do its work. Faults in a plan are diagnostics, not these.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    #[error("{message}")]
+    CommandLine {
+        message: String,
+        help: Option<String>,
+    },
+    #[error("{}: {reason}", path.display())]
+    File {
+        path: PathBuf,
+        reason: String,
+        help: Option<String>,
+    },
+    #[error("{}: not a plan: {reason}", path.display())]
+    NotAPlan {
+        path: PathBuf,
+        reason: String,
+        at: Option<Position>,
+    },
+    #[error("the results could not be made: {0}")]
+    Output(#[from] crate::report::OutputError),
+    #[error("standard output: {0}")]
+    Stdout(std::io::Error),
+    #[error(transparent)]
+    Record(#[from] crate::record::journal::FileFault),
+    #[error(transparent)]
+    Journal(#[from] crate::record::journal::JournalFault),
+    #[error("{0}")]
+    Rig(#[from] crate::rig::RigFault),
+    #[error(transparent)]
+    NoRoom(#[from] NoRoom),
+    #[error("{fault}")]
+    NotOpened {
+        fault: crate::rig::RigFault,
+        place: String,
+    },
+    #[error("no rehearsal: {0}")]
+    Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
+    #[error("the run cannot go on: {0}")]
+    Refused(#[from] crate::run::replay::Refusal),
+    #[error("not resumed, and nothing moved: {reason}")]
+    NotReleased { reason: String },
+    #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
+    Signals(std::io::Error),
+}
+
+impl Failure {
+    pub fn command_line(message: impl Into<String>) -> Self {
+        Self::CommandLine {
+            message: message.into(),
+            help: None,
+        }
+    }
+
+    pub fn file(path: impl Into<PathBuf>, reason: impl Into<String>) -> Self {
+        Self::File {
+            path: path.into(),
+            reason: reason.into(),
+            help: None,
+        }
+    }
+
+    /// Where in a file its text could not be read.
+    pub const fn place(&self) -> Option<Position> {
+        match self {
+            Self::NotAPlan { at, .. } => *at,
+            _ => None,
+        }
+    }
+
+    /// The same failure with a way out.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        if let Self::CommandLine { help, .. } | Self::File { help, .. } = &mut self {
+            *help = Some(text.into());
+        }
+        self
+    }
+
+    /// A rig that cannot be opened, with the place in the plan that says how.
+    #[must_use]
+    pub fn in_the_plan(self, place: impl FnOnce(&str) -> Option<String>) -> Self {
+        match self {
+            Self::Rig(fault) => match place(&fault.to_string()) {
+                Some(place) => Self::NotOpened { fault, place },
+                None => Self::Rig(fault),
+            },
+            other => other,
+        }
+    }
+}
+
+/// The disk is too small for what the run may write.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}: the run may write {}, and its disk has {} left; nothing has moved", folder.display(), amount(*need), amount(*room))]
+pub struct NoRoom {
+    pub folder: PathBuf,
+    /// Bytes.
+    pub need: u64,
+    pub room: u64,
+}
+
+impl NoRoom {
+    pub const CODE: Code = Code::NoRoom;
+
+    /// What to do.
+    pub fn help(&self) -> String {
+        let lacking = amount(self.need - self.room);
+        format!(
+            "free {lacking}, or name a folder on another disk with `--out`; `psd explain {}` says what is reckoned",
+            Self::CODE
+        )
+    }
+}
+
+/// Bytes for people: `12.4 MB`.
+pub fn amount(bytes: u64) -> String {
+    const UNITS: [&str; 4] = ["kB", "MB", "GB", "TB"];
+    #[expect(clippy::cast_precision_loss, reason = "three digits are shown")]
+    let (mut size, mut unit) = (bytes as f64 / 1e3, UNITS[0]);
+    for larger in &UNITS[1..] {
+        if size >= 999.5 {
+            (size, unit) = (size / 1e3, larger);
+        }
+    }
+    if size < 9.95 {
+        format!("{size:.1} {unit}")
+    } else {
+        format!("{size:.0} {unit}")
+    }
+}
+
+/// The system's word for an error, without its number.
+pub fn plain(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        _ => {
+            let text = error.to_string();
+            text.split(" (os error").next().unwrap_or(&text).to_owned()
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! A recorded run, read from the run log of its folder. In: a folder, or bytes. Out: the run log, and the plan checked again from it.
+//! The run log is enough: no other file is read.
+
+use std::path::{Path, PathBuf};
+
+use super::failure::{Failure, plain};
+use crate::language::check::{LoadError, Loader, Options, check};
+use crate::plan::Plan;
+use crate::record::equipment::{Device, Equipment};
+use crate::record::journal::{Line, OLDEST_FORMAT, Recovered, recover};
+use crate::report::{Build, Provenance, RealRun};
+use crate::run::rehearsal;
+use crate::run::replay;
+use crate::run::replay::{Header, Played};
+use crate::text::digest::sha256;
+
+/// Name of the journal in its run folder.
+pub const JOURNAL: &str = "journal.psdj";
+
+/// A record as it was read.
+pub struct ReadRecord {
+    pub recovered: Recovered,
+    pub played: Played,
+    pub plan: Plan,
+    pub provenance: Provenance,
+}
+
+/// Reads the journal of a run folder without touching it.
+pub fn read(run: &Path) -> Result<ReadRecord, Failure> {
+    let path = journal_of(run);
+    let bytes = std::fs::read(&path).map_err(|error| Failure::file(&path, plain(&error)))?;
+    from_bytes(&path, &bytes)
+}
+
+/// A record from the bytes of its journal.
+pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
+    let damaged = |reason: String| Failure::file(path, reason);
+    let recovered =
+        recover(bytes).map_err(|damage| damaged(format!("the record is damaged: {damage}")))?;
+    let played = Played::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
+    for (file, text) in played.header.files.iter().zip(&played.texts) {
+        if sha256(text.as_bytes()) != file.sha256 {
+            return Err(damaged(format!(
+                "the text of `{}` is not the one of its digest",
+                file.name
+            )));
+        }
+    }
+    let plan = plan_of(&played).map_err(damaged)?;
+    replay::well_formed(&recovered, &plan).map_err(|fault| damaged(fault.to_string()))?;
+    if played.header.equipment.is_none() && recovered.format() > OLDEST_FORMAT {
+        return Err(damaged(
+            "its header does not say what was measured with".to_owned(),
+        ));
+    }
+    fits(&played, &plan).map_err(damaged)?;
+    let provenance = provenance_of(&played.header, &plan, &recovered);
+    Ok(ReadRecord {
+        recovered,
+        played,
+        plan,
+        provenance,
+    })
+}
+
+/// The journal of a run folder.
+pub fn journal_of(run: &Path) -> PathBuf {
+    run.join(JOURNAL)
+}
+
+/// The plan of a record, checked again from the record alone.
+pub fn plan_of(played: &Played) -> Result<Plan, String> {
+    let header = &played.header;
+    let files = Files {
+        header,
+        texts: &played.texts,
+    };
+    let (Some(first), Some(text)) = (header.files.first(), played.texts.first()) else {
+        return Err("the record holds no plan".to_owned());
+    };
+    let (rig, settings, date) = (
+        header.rig.clone(),
+        header.settings.clone(),
+        header.date.clone(),
+    );
+    let options = Options {
+        rig,
+        settings,
+        date,
+        unattended: false,
+        recorded: true,
+    };
+    let checked = check(&first.name, text, &files, &options);
+    let plan = checked.plan.ok_or_else(|| {
+        let fault = checked.diagnostics.iter().find(|found| found.is_error());
+        let fault = fault.map_or_else(String::new, |fault| format!(": {}", fault.message));
+        format!("this version of psd finds the recorded plan faulty{fault}")
+    })?;
+    if header.rehearsal {
+        rehearsal::measured_part(&plan).map_err(|fault| fault.to_string())
+    } else {
+        Ok(plan)
+    }
+}
+
+/// What the header says of the equipment is what plan and rig say of it: nobody wrote another calibration into it.
+fn fits(played: &Played, plan: &Plan) -> Result<(), String> {
+    let (Some(told), Some(rig)) = (&played.header.equipment, &played.rig) else {
+        return Ok(());
+    };
+    if *told == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {
+        return Ok(());
+    }
+    Err(
+        "what its header says of rig, calibration or limits is not what its plan and its rig say"
+            .to_owned(),
+    )
+}
+
+/// The provenance that the record gives; the plan's own date counts where none was given on the command line.
+fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provenance {
+    let number = super::provenance::report_number(
+        &header.run_id,
+        plan,
+        recovered.ended,
+        Some(recovered.head()),
+    );
+    let stated = Provenance {
+        run_id: header.run_id.clone(),
+        number,
+        psd_version: header.psd.clone(),
+        build: Build {
+            sources: header.build.clone(),
+            toolchain: header.toolchain.clone(),
+        },
+        plan_sha256: header
+            .files
+            .first()
+            .map_or_else(String::new, |file| file.sha256.clone()),
+        equipment: header.equipment.clone(),
+        ..super::provenance::of(plan, header.date.as_deref())
+    };
+    if plan.rig.link.as_real().is_none() {
+        return stated;
+    }
+    let date = super::provenance::date_of_real_run(plan, header.began.as_deref());
+    Provenance {
+        date,
+        real: Some(real_run(header, recovered)),
+        ..stated
+    }
+}
+
+/// What a real run's record says of people and place, and of itself.
+fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
+    let wall = |line: &Line| {
+        line.body()
+            .get("wall")
+            .and_then(|wall| wall.as_str())
+            .map(str::to_owned)
+    };
+    RealRun {
+        operator: header.operator.clone(),
+        host: header.host.clone(),
+        began: header.began.clone(),
+        ended: recovered.lines.iter().rev().find_map(wall),
+        jumps: super::wall_clock::jumps(&recovered.lines),
+        sealed: Some((recovered.lines.len() as u64, recovered.head().to_owned())),
+    }
+}
+
+/// Gives the recorded files by the names they were used under.
+struct Files<'a> {
+    header: &'a Header,
+    texts: &'a [String],
+}
+
+impl Loader for Files<'_> {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
+        let found = self.header.files.iter().position(|file| file.name == path);
+        found
+            .and_then(|index| self.texts.get(index))
+            .cloned()
+            .ok_or(LoadError::NotFound)
+    }
+}

@@ -1,0 +1,24 @@
+//! A string that is sent over a line: ASCII, printable, not empty.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::messages::rigs as message;
+
+/// A string that is sent on a line of a protocol: `Some(None)` where it is left out.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
+pub fn line_text<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    name: &str,
+) -> Option<Option<String>> {
+    let Some((text, span)) = checker.text_argument(chosen, name)? else {
+        return Some(None);
+    };
+    if text.trim().is_empty() || text.chars().any(|c| c.is_control() || !c.is_ascii()) {
+        return checker.fail(message::bad_line_text(name, span));
+    }
+    Some(Some(text))
+}

@@ -1,0 +1,138 @@
+//! The uncertainty of the results of a damping sweep. In: the fit of its strokes, the stiffness that corrected them. Out: the
+//! contributions to the damping, the friction and the damping ratio.
+
+use crate::plan::formula::{Formula, ResultValue};
+use crate::plan::{DampingSweep, DeclaredNoise, Plan};
+use crate::procedures::fit_uncertainty::{Fits, attribute};
+use crate::record::{BroughtTogether, NamedResult, SweepHistory};
+use crate::run::inputs::Inputs;
+use crate::uncertainty::{Contribution, Source, share};
+
+/// Gives the results their contributions.
+pub(crate) fn propagate(
+    sweep: &DampingSweep,
+    found: &SweepHistory,
+    plan: &Plan,
+    inputs: &Inputs<'_>,
+    declared: DeclaredNoise,
+    results: &mut [NamedResult],
+) {
+    let shown = found.fit.map_or(1.0, |fit| fit.shown);
+    let fits = Fits {
+        line: found.fit,
+        bilinear: None,
+        curve: None,
+        shown: &|_| shown,
+        common_resolution: false,
+    };
+    attribute(&fits, plan, inputs.procedure(), declared, results);
+    of_stroke_stiffness(&found.together, &sweep.stiffness, inputs, results);
+    let specimen = plan.specimens.get(sweep.specimen);
+    let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);
+    damping_ratio(
+        results,
+        (&sweep.stiffness, found.own_stiffness),
+        (Source::SpecimenMass(sweep.specimen), uncertain),
+        inputs,
+    );
+}
+
+/// What the stiffness that brought the pairs of a sweep to one place makes of its line: that of the strokes, else that of the plan.
+fn of_stroke_stiffness(
+    together: &BroughtTogether,
+    planned: &Formula,
+    inputs: &Inputs<'_>,
+    results: &mut [NamedResult],
+) {
+    let of_strokes = |error| {
+        vec![Contribution::new(
+            Source::StrokeStiffness {
+                procedure: inputs.procedure(),
+            },
+            error,
+        )]
+    };
+    let of_plan = || {
+        planned
+            .contributions(inputs.results(), None)
+            .unwrap_or_default()
+    };
+    let in_stiffness = together.error.map_or_else(of_plan, of_strokes);
+    for (name, effect) in ["damping", "coulomb_force"]
+        .into_iter()
+        .zip(together.effects)
+    {
+        let Some(result) = results.iter_mut().find(|result| result.name == name) else {
+            continue;
+        };
+        if matches!(result.value, ResultValue::Number { value: Some(_), .. }) {
+            let parts = in_stiffness
+                .iter()
+                .map(|part| Contribution::new(part.source, effect * part.amount));
+            parts
+                .filter(|part| part.amount != 0.0)
+                .for_each(|part| share(&mut result.contributions, part));
+        }
+    }
+}
+
+/// ζ = c/(2√(KM)): by first order, ζ/c of what is in c, −ζ/(2K) of what is in K and −ζ/(2M) of what is in M; `mass` is what
+/// the mass hangs on and its relative uncertainty.
+fn damping_ratio(
+    results: &mut [NamedResult],
+    (stiffness, own): (&Formula, Option<(f64, f64)>),
+    mass: (Source, f64),
+    inputs: &Inputs<'_>,
+) {
+    let number = |name: &str| match results.iter().find(|result| result.name == name)?.value {
+        ResultValue::Number { value, .. } => value,
+        ResultValue::List(_) => None,
+    };
+    let (Some(ratio), Some(damping)) = (number("damping_ratio"), number("damping")) else {
+        return;
+    };
+    let (known, in_stiffness) = if let Some((stiffness, error)) = own {
+        (
+            stiffness,
+            vec![Contribution::new(
+                Source::StrokeStiffness {
+                    procedure: inputs.procedure(),
+                },
+                error,
+            )],
+        )
+    } else {
+        let found = (
+            stiffness.evaluate(inputs.results(), None),
+            stiffness.contributions(inputs.results(), None),
+        );
+        let (Ok(known), Ok(in_stiffness)) = found else {
+            return;
+        };
+        (known.value, in_stiffness)
+    };
+    let of_damping = results
+        .iter()
+        .find(|result| result.name == "damping")
+        .map(|found| found.contributions.clone());
+    let mut parts: Vec<Contribution> = of_damping.unwrap_or_default();
+    for part in &mut parts {
+        part.amount *= ratio / damping;
+    }
+    for part in in_stiffness {
+        share(
+            &mut parts,
+            Contribution::new(part.source, -0.5 * ratio / known * part.amount),
+        );
+    }
+    if mass.1 > 0.0 {
+        share(&mut parts, Contribution::new(mass.0, -0.5 * ratio * mass.1));
+    }
+    if let Some(result) = results
+        .iter_mut()
+        .find(|result| result.name == "damping_ratio")
+        && parts.iter().all(|part| part.amount.is_finite())
+    {
+        result.contributions = parts;
+    }
+}

@@ -1,0 +1,103 @@
+//! A frame and its ground motion, as a report describes them. In: the plan. Out: blocks.
+
+use super::described;
+use crate::plan::{Frame, Ground};
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number;
+use crate::report::wording::specimen as specimen_text;
+use crate::units::Dimension;
+
+/// Storeys from the ground up, or the files of the matrices.
+pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
+    let mut rows = vec![
+        ("degrees of freedom", frame.degrees_of_freedom().to_string()),
+        (
+            "mass of all floors",
+            number::stated(frame.total_mass(), Dimension::MASS),
+        ),
+    ];
+    if let Some([mass, stiffness]) = &frame.files {
+        rows.push(("mass matrix", mass.clone()));
+        rows.push(("stiffness matrix", stiffness.clone()));
+        rows.push(("virtual behaviour", "elastic, R = K·X".to_owned()));
+    }
+    body.push(described(rows));
+    if frame.storeys.is_empty() {
+        return;
+    }
+    let mut columns = vec![
+        Column::numbers("Storey"),
+        Column::numbers("Mass"),
+        Column::numbers("Stiffness"),
+        Column::numbers("Height"),
+        Column::words("Virtual behaviour", 1),
+    ];
+    // A column that is 0 for every storey is left out.
+    let damping = frame.storeys.iter().any(|storey| storey.damping != 0.0);
+    let friction = frame.storeys.iter().any(|storey| storey.coulomb != 0.0);
+    columns.extend(damping.then(|| Column::numbers("Virtual damping")));
+    columns.extend(friction.then(|| Column::numbers("Virtual friction")));
+    let row = |(index, storey): (usize, &crate::plan::Storey)| -> Vec<Text> {
+        let mut cells: Vec<Text> = vec![
+            (index + 1).to_string().into(),
+            number::stated(storey.mass, Dimension::MASS).into(),
+            number::stated(storey.stiffness, Dimension::STIFFNESS).into(),
+            storey
+                .height
+                .map_or_else(
+                    || "—".to_owned(),
+                    |height| number::stated(height, Dimension::LENGTH),
+                )
+                .into(),
+            specimen_text::words(&storey.behaviour, &number::stated).into(),
+        ];
+        cells.extend(damping.then(|| number::stated(storey.damping, Dimension::DAMPING).into()));
+        cells.extend(friction.then(|| number::stated(storey.coulomb, Dimension::FORCE).into()));
+        cells
+    };
+    body.push(Block::Table(Table {
+        columns,
+        rows: frame.storeys.iter().enumerate().map(row).collect(),
+    }));
+}
+
+/// The record as it was read.
+pub(crate) fn ground(ground: &Ground) -> Block {
+    let (shortest, longest) = ground.spacing();
+    let spacing = if longest - shortest <= 1e-6 * longest {
+        format!(
+            "{} samples, one every {}",
+            ground.times.len(),
+            number::stated(rounded(longest), Dimension::TIME)
+        )
+    } else {
+        format!(
+            "{} samples, {} to {} apart",
+            ground.times.len(),
+            number::stated(rounded(shortest), Dimension::TIME),
+            number::stated(rounded(longest), Dimension::TIME)
+        )
+    };
+    described(vec![
+        ("file", ground.file.clone()),
+        ("record", spacing),
+        (
+            "duration",
+            number::stated(ground.duration(), Dimension::TIME),
+        ),
+        (
+            "unit of its numbers",
+            number::stated(ground.unit, Dimension::ACCELERATION),
+        ),
+        ("scale", number::stated(ground.scale, Dimension::NUMBER)),
+        (
+            "largest acceleration, scaled",
+            number::text(ground.peak(), Dimension::ACCELERATION),
+        ),
+    ])
+}
+
+/// A difference of two times has the rounding of both.
+fn rounded(spacing: f64) -> f64 {
+    format!("{spacing:.9e}").parse().unwrap_or(spacing)
+}

@@ -1,0 +1,294 @@
+//! One condition. In: its value, its bound and the rule of decision. Out: a verdict with margin, guard band and probability of
+//! conformity.
+
+use super::{Bound, ConditionOutcome, Verdict};
+use crate::physics::statistics::student_t;
+use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results};
+use crate::plan::{Comparison, Condition, DecisionRule, Test};
+use crate::uncertainty::{FEW, Known, known};
+
+/// Value and bound are evaluated each on its own, so that a report shows whichever exists.
+pub(crate) fn assess_condition(
+    condition: &Condition,
+    rule: DecisionRule,
+    record: &dyn Results,
+) -> ConditionOutcome {
+    let value = condition.value.evaluate(record, None);
+    let bound = evaluate_bound(&condition.test, record);
+    let known = match (&value, &bound) {
+        (Ok(value), Ok(bound)) => Some((value.value, *bound)),
+        _ => None,
+    };
+    let lacking = no_uncertainty(condition, record);
+    let distance_known =
+        known.and_then(|(value, bound)| margin_known(condition, value, bound, record));
+    let (margin_known, unguarded) = match rule {
+        DecisionRule::Simple => (None, None),
+        DecisionRule::Guarded => (distance_known, lacking.clone()),
+    };
+    let told = distance_known.filter(|_| lacking.is_none());
+    let conforms = known
+        .zip(told)
+        .map(|((value, bound), told)| bound.conforms(value, told));
+    let wider_than_tolerance = known
+        .zip(told)
+        .is_some_and(|((_, bound), told)| match bound {
+            Bound::Within { tolerance, .. } => told.expanded() > tolerance,
+            Bound::Compare { .. } => false,
+        });
+    let guard_band = margin_known
+        .filter(|_| unguarded.is_none())
+        .map(Known::expanded);
+    let verdict = match (known, &unguarded) {
+        (Some((value, bound)), None) => bound.verdict(value, guard_band),
+        _ => Verdict::Inconclusive,
+    };
+    let missing = value
+        .as_ref()
+        .err()
+        .or(bound.as_ref().err())
+        .map(ToString::to_string)
+        .or(unguarded);
+    let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_known));
+    ConditionOutcome {
+        text: condition.text.clone(),
+        verdict,
+        dimension: condition.dimension,
+        value: value.as_ref().ok().map(|value| value.value),
+        uncertainty: value.as_ref().ok().and_then(|value| value.uncertainty),
+        degrees: how_well(&condition.value, record).map_or(f64::INFINITY, |known| known.degrees),
+        bound: bound.ok(),
+        margin: known.map(|(value, bound)| bound.margin(value)),
+        guard_band,
+        margin_degrees: margin_known.map_or(f64::INFINITY, |known| known.degrees),
+        conforms,
+        wider_than_tolerance,
+        reason: missing.or_else(too_near),
+    }
+}
+
+/// Why a guard band cannot be kept: a measured result that the condition reads has no expanded uncertainty.
+fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String> {
+    let mut references = Vec::new();
+    condition.collect_references(&mut references);
+    references
+        .into_iter()
+        .filter(|reference| reference.part == Part::Value)
+        .find_map(|read| record.no_uncertainty(read))
+}
+
+/// Why a limit within the guard band decides nothing, and why the band is wide where few readings made it so.
+fn near(margin: Option<Known>) -> String {
+    let few = margin.filter(|known| known.degrees < f64::from(FEW));
+    let why = few.map(|known| {
+        format!(
+            " = {:.2} u, of {:.1} degrees of freedom",
+            known.coverage(),
+            known.degrees
+        )
+    });
+    "the limit is nearer than the guard band w = U".to_owned() + &why.unwrap_or_default()
+}
+
+/// How well a formula is known, with its degrees of freedom.
+fn how_well(formula: &Formula, record: &dyn Results) -> Option<Known> {
+    known(&formula.contributions(record, None).ok()?, record)
+}
+
+/// w = U = k·u of the distance between value and bound, so that a limit which was measured itself counts too, and a result
+/// that stands on both sides counts once. None where nothing of it is uncertain.
+fn margin_known(
+    condition: &Condition,
+    value: f64,
+    bound: Bound,
+    record: &dyn Results,
+) -> Option<Known> {
+    let difference = |a: &Formula, b: &Formula| {
+        Formula::Binary(Operator::Subtract, Box::new(a.clone()), Box::new(b.clone()))
+    };
+    let distance = match (&condition.test, bound) {
+        (Test::Compare { limit, .. }, _) => difference(&condition.value, limit),
+        (
+            Test::Within {
+                target,
+                tolerance,
+                relative,
+            },
+            bound,
+        ) => {
+            let low_side = matches!(bound, Bound::Within { target, .. } if value < target);
+            let off = if low_side {
+                difference(target, &condition.value)
+            } else {
+                difference(&condition.value, target)
+            };
+            let tolerance = if *relative {
+                let size = Formula::Call(crate::plan::formula::Function::Abs, vec![target.clone()]);
+                Formula::Binary(
+                    Operator::Multiply,
+                    Box::new(tolerance.clone()),
+                    Box::new(size),
+                )
+            } else {
+                tolerance.clone()
+            };
+            difference(&off, &tolerance)
+        }
+    };
+    how_well(&distance, record).filter(|known| known.standard > 0.0)
+}
+
+fn evaluate_bound(test: &Test, record: &dyn Results) -> Result<Bound, FormulaError> {
+    let number = |formula: &Formula| {
+        formula
+            .evaluate(record, None)
+            .map(|estimate| estimate.value)
+    };
+    Ok(match test {
+        Test::Compare { comparison, limit } => Bound::Compare {
+            comparison: *comparison,
+            limit: number(limit)?,
+        },
+        Test::Within {
+            target,
+            tolerance,
+            relative,
+        } => {
+            let target = number(target)?;
+            let tolerance = number(tolerance)? * if *relative { target.abs() } else { 1.0 };
+            Bound::Within { target, tolerance }
+        }
+    })
+}
+
+/// Numbers that differ by no more than this share of the larger are one number: 0.3 mm read in quanta of 0.1 mm, or an energy
+/// that went through a square root and back, is off by some 1e-16 of itself, and no measurement tells such a difference.
+const ROUNDING: f64 = 1e-12;
+
+/// What rounding may make of numbers such as these.
+pub(super) fn rounding(a: f64, b: f64) -> f64 {
+    ROUNDING * a.abs().max(b.abs()).min(f64::MAX)
+}
+
+pub(super) fn equal(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= rounding(a, b)
+}
+
+impl ConditionOutcome {
+    /// How well the value is known.
+    #[must_use]
+    pub fn known(&self) -> Option<Known> {
+        self.uncertainty.map(|standard| Known {
+            standard,
+            degrees: self.degrees,
+        })
+    }
+
+    /// How well its margin is known, where a guard band is kept.
+    #[must_use]
+    pub fn margin_known(&self) -> Option<Known> {
+        let degrees = self.margin_degrees;
+        self.guard_band.map(|band| Known {
+            standard: band
+                / Known {
+                    standard: 1.0,
+                    degrees,
+                }
+                .coverage(),
+            degrees,
+        })
+    }
+}
+
+impl Bound {
+    /// Whether `value` (SI) meets it. What is equal but for rounding is equal.
+    #[must_use]
+    pub fn holds(self, value: f64) -> bool {
+        match self {
+            Self::Compare { comparison, limit } => match comparison {
+                Comparison::Less => value < limit && !equal(value, limit),
+                Comparison::LessEqual => value <= limit || equal(value, limit),
+                Comparison::Greater => value > limit && !equal(value, limit),
+                Comparison::GreaterEqual => value >= limit || equal(value, limit),
+                Comparison::Equal => equal(value, limit),
+                Comparison::NotEqual => !equal(value, limit),
+            },
+            Self::Within { .. } => self.margin(value) >= 0.0,
+        }
+    }
+
+    /// Probability that what was measured as `value` (SI) meets it, `known` how well the distance between them is.
+    #[must_use]
+    pub fn conforms(self, value: f64, known: Known) -> f64 {
+        let Known { standard, degrees } = known;
+        let below = |limit: f64| student_t::below((limit - value) / standard, degrees);
+        match self {
+            Self::Compare { comparison, limit } => match comparison {
+                Comparison::Less | Comparison::LessEqual => below(limit),
+                Comparison::Greater | Comparison::GreaterEqual => {
+                    student_t::below((value - limit) / standard, degrees)
+                }
+                Comparison::Equal => 0.0,
+                Comparison::NotEqual => 1.0,
+            },
+            Self::Within { target, tolerance } => {
+                below(target + tolerance) - below(target - tolerance)
+            }
+        }
+    }
+
+    /// The verdict on `value` (SI): without a guard band the value decides. With one, w (SI, above 0), it passes if it keeps
+    /// the bound by at least w, fails if it misses it by more than w, and else nothing is decided.
+    #[must_use]
+    pub fn verdict(self, value: f64, guard_band: Option<f64>) -> Verdict {
+        let Some(band) = guard_band else {
+            return if self.holds(value) {
+                Verdict::Pass
+            } else {
+                Verdict::Fail
+            };
+        };
+        let margin = self.margin(value);
+        let strict = matches!(
+            self,
+            Self::Compare {
+                comparison: Comparison::Less | Comparison::Greater | Comparison::NotEqual,
+                ..
+            }
+        );
+        if if strict {
+            margin > band
+        } else {
+            margin >= band
+        } {
+            Verdict::Pass
+        } else if margin < -band {
+            Verdict::Fail
+        } else {
+            Verdict::Inconclusive
+        }
+    }
+
+    /// Distance of `value` inside the bound; negative: missed by so much. Equality has nothing inside it, inequality
+    /// nothing outside.
+    #[must_use]
+    pub fn margin(self, value: f64) -> f64 {
+        match self {
+            Self::Compare { limit, .. } if equal(value, limit) => 0.0,
+            Self::Compare { comparison, limit } => match comparison {
+                Comparison::Less | Comparison::LessEqual => limit - value,
+                Comparison::Greater | Comparison::GreaterEqual => value - limit,
+                Comparison::Equal => -(value - limit).abs(),
+                Comparison::NotEqual => (value - limit).abs(),
+            },
+            Self::Within { target, tolerance } => {
+                let margin = tolerance - (value - target).abs();
+                if margin.abs() <= rounding(value, target) {
+                    0.0
+                } else {
+                    margin
+                }
+            }
+        }
+    }
+}

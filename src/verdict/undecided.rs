@@ -1,0 +1,155 @@
+//! Conditions that their results do not decide: a procedure that did not end, an energy balance that is off, a time step above the
+//! critical one, a zero drift, a peak that was not reached. In: the outcome of a condition. Out: the outcome, or inconclusive and why.
+
+use super::{ConditionOutcome, Verdict, unfinished_peaks};
+use crate::physics::impact::energy::WORTHLESS;
+use crate::plan::formula::{ResultReference, ResultValue, Results};
+use crate::plan::{Condition, DecisionRule};
+use crate::record::{Beyond, ProcedureRecord, Record};
+use crate::rig::safety::failpoint;
+use crate::rig::safety::failpoint::Guarding;
+use crate::units::Dimension;
+use crate::units::display::stated;
+
+/// A result that a condition reads: of which procedure, and its name.
+type Read<'a> = (&'a ProcedureRecord, &'static str);
+
+/// The outcome of a condition; inconclusive, with the reason, where its results decide nothing.
+pub(super) fn unless_undecided(
+    condition: &Condition,
+    rule: DecisionRule,
+    outcome: ConditionOutcome,
+    (record, results): (&Record, &dyn Results),
+) -> ConditionOutcome {
+    let mut references = Vec::new();
+    condition.collect_references(&mut references);
+    let procedure = |reference: &ResultReference| {
+        Some((
+            record.procedures.get(reference.procedure.0)?,
+            reference.name,
+        ))
+    };
+    let read: Vec<Read<'_>> = references.iter().filter_map(procedure).collect();
+    let unfinished = || {
+        let no_peak = || {
+            unfinished_peaks::undecided(condition, rule, results, |procedure| {
+                record
+                    .procedures
+                    .get(procedure.0)
+                    .map(|procedure| (&procedure.history, procedure.name.as_str()))
+            })
+        };
+        match cut_short(&read)
+            .or_else(|| unbalanced(&read))
+            .or_else(|| above_critical(&read))
+        {
+            Some(why) => Some(outcome.reason.clone().unwrap_or(why)),
+            None => no_peak(),
+        }
+    };
+    match drifted(&read, record).or_else(unfinished) {
+        Some(reason) => ConditionOutcome {
+            verdict: Verdict::Inconclusive,
+            reason: Some(reason),
+            ..outcome
+        },
+        None => outcome,
+    }
+}
+
+/// A procedure that did not run to its end: its peaks may not have been reached.
+fn cut_short(read: &[Read<'_>]) -> Option<String> {
+    let (procedure, _) = read.iter().find(|(procedure, _)| !procedure.complete)?;
+    Some(format!("{} did not run to its end", procedure.name))
+}
+
+/// Results that do not depend on the energy balance or on the length of the time steps.
+const BESIDE_THE_BALANCE: [&str; 7] = [
+    "energy_error",
+    "energy_errors",
+    "time_step",
+    "critical_time_step",
+    "steps",
+    "periods",
+    "levels",
+];
+
+/// An energy balance that is off by more than half of the input: the computed motion is not that of the specimen.
+fn unbalanced(read: &[Read<'_>]) -> Option<String> {
+    let told =
+        |(procedure, result): &&Read<'_>| !BESIDE_THE_BALANCE.contains(result) && off(procedure);
+    let (procedure, _) = read.iter().find(told)?;
+    Some(format!(
+        "the energy balance of {} is off by more than half of what was put in",
+        procedure.name
+    ))
+}
+
+/// Time steps above the critical one do not follow the motion of the specimen.
+fn above_critical(read: &[Read<'_>]) -> Option<String> {
+    let of = |(procedure, result): &Read<'_>| {
+        let (step, critical) = procedure
+            .history
+            .above_critical()
+            .filter(|_| !BESIDE_THE_BALANCE.contains(result))?;
+        Some(longer_than_critical(&procedure.name, step, critical))
+    };
+    read.iter().find_map(of)
+}
+
+/// The remark on a time step \[s\] above the critical one \[s\].
+pub(super) fn longer_than_critical(name: &str, step: f64, critical: f64) -> String {
+    let (step, critical) = (
+        stated(step, Dimension::TIME),
+        stated(critical, Dimension::TIME),
+    );
+    format!("the time step of {name}, {step}, is above the critical one, {critical} (W701)")
+}
+
+/// Whether the energy balance of a procedure, or of one of its impacts, is off by more than its bound.
+fn off(procedure: &ProcedureRecord) -> bool {
+    let found = |name| {
+        procedure
+            .results
+            .iter()
+            .find(|result| result.name == name)
+            .map(|result| &result.value)
+    };
+    let beyond = |error: &f64| error.is_nan() || error.abs() > WORTHLESS;
+    match found("energy_error").or_else(|| found("energy_errors")) {
+        Some(ResultValue::Number { value, .. }) => value.as_ref().is_none_or(beyond),
+        Some(ResultValue::List(errors)) => errors.iter().any(beyond),
+        None => false,
+    }
+}
+
+/// Results from readings whose zero drifted farther than the rig allows.
+fn drifted(read: &[Read<'_>], record: &Record) -> Option<String> {
+    let reason = |(procedure, result): &Read<'_>| {
+        beyond(record, |beyond| {
+            enters(beyond.of_force, procedure.kind, result)
+        })
+        .map(|beyond| beyond.reason)
+    };
+    read.iter().find_map(reason)
+}
+
+/// The first zero drift beyond its bound that is `of_interest`.
+pub(super) fn beyond(record: &Record, of_interest: impl Fn(&Beyond) -> bool) -> Option<Beyond> {
+    let drift = record
+        .drift
+        .as_ref()
+        .filter(|_| failpoint::on(Guarding::ZeroDrift))?;
+    drift.all_beyond().find(of_interest)
+}
+
+/// Whether readings of the force, or else of the displacement, enter a result. Results that are integrated or fitted depend on both;
+/// travels and speeds do not depend on the force.
+fn enters(of_force: bool, kind: &str, result: &str) -> bool {
+    let given = matches!(result, "time_step" | "steps");
+    let of_ways = matches!(
+        (kind, result),
+        ("stiffness ramp", "max_displacement") | ("damping sweep", "max_velocity")
+    );
+    !(given || (of_force && of_ways))
+}
