@@ -4,8 +4,8 @@
 #[cfg(test)]
 mod build_tests;
 mod check;
-#[cfg(test)]
 mod consistency;
+#[cfg(test)]
 mod damaged_tests;
 mod finding;
 mod folder;

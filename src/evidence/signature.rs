@@ -295,6 +295,7 @@ fn strict(bytes: &[u8]) -> Result<SignatureBox, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evidence::names::is_signature;
 
     #[test]
     fn the_file_of_a_role_has_a_name_that_every_system_takes() {

@@ -1,7 +1,6 @@
 //! `escalate NAME { … }`: the fields of an impact, its levels, and the condition for the next impact.
 
 use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::declarations::specimen::frame;
 use crate::language::check::declarations::striker::STANDARD_GRAVITY;
 use crate::language::check::messages::{cyclic as fault, names, values};
 use crate::plan::formula::{Formula, Function, Operator};

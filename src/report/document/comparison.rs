@@ -1,11 +1,10 @@
 //! A comparison as one HTML file that needs no other. In: the comparison, and its figures drawn. Out: text.
 
-use super::html::POLICY;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::document::POLICY;
+use super::html::POLICY;
 use crate::text::sanitize;
 
 const STYLE: &str = "body{font:15px/1.45 'DejaVu Sans',Verdana,sans-serif;color:#222;max-width:1100px;margin:2em auto;padding:0 1em}\

@@ -1,8 +1,6 @@
 //! Data files that a plan names: `record = "ground/quake.csv"`. In: the string and its span. Out: the file's
 //! text, which then belongs to the plan like a used file. The block that names the file interprets it.
 
-use std::sync::Arc;
-
 use super::data_file::DataFile;
 use crate::language::check::checker::Checker;
 use crate::language::check::imports::{MOST_FILES, refused, resolved};
