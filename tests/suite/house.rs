@@ -187,12 +187,8 @@ const LONG: &[&str] = &[
     "emulator/script.rs",
     "evidence/issues.rs",
     "evidence/tests.rs",
-    "physics/identification/multilinear_fit.rs",
-    "physics/relaxation/fit.rs",
-    "physics/relaxation/reached_fit.rs",
     "physics/self_test.rs",
     "record/mod.rs",
-    "remote/control.rs",
     "rig/controllers/native/codec.rs",
     "rig/guard/mod.rs",
     "rig/real/tests.rs",
@@ -203,9 +199,9 @@ const LONG: &[&str] = &[
     "tests/uncertainty/frame.rs",
     "tests/uncertainty/impact.rs",
     "tests/whole_runs.rs",
-    "uncertainty/cycle.rs",
     "verdict/mod.rs",
     "verdict/tests.rs",
+    "procedures/cycle/uncertainty.rs",
 ];
 
 #[test]
