@@ -12,7 +12,7 @@
 //! M Ẍ + C Ẋ + R(X) = f(t) + F e_s        Ms Ẍs = Ms g − F
 //! ```
 //!
-//! M, C and K are numbers, or bands of a frame ([`matrix`]); e_s is 1 at the struck degree of freedom. On ground of acceleration
+//! M, C and K are numbers, or bands of a frame ([`structure::matrix`]); e_s is 1 at the struck degree of freedom. On ground of acceleration
 //! ü_g the load is f = −M ι ü_g.
 //!
 //! # Tangent form of Newmark's method
@@ -51,13 +51,9 @@
 //! `examples/strike_a_beam.rs` strikes a beam in a loop of five lines, with [`impact::ImpactSolver`].
 
 pub mod contact;
-pub mod frame;
 pub mod identification;
 pub mod impact;
-mod impact_solver;
 pub mod integrator;
-pub mod matrix;
-pub mod perturbation;
 pub mod reintegration;
 pub mod relaxation;
 pub mod self_test;

@@ -6,7 +6,7 @@ use super::cost::TrialBudget;
 use super::instruments::InstrumentUncertainty;
 use super::threads::in_threads;
 use super::{Contribution, MOST_DRAWS, Source};
-use crate::physics::perturbation::{Perturbation, sign_of_input};
+use crate::physics::reintegration::perturbation::{Perturbation, sign_of_input};
 use crate::plan::formula::ProcedureId;
 
 /// A re-integrated run must lead to the recorded results, relatively.
@@ -390,7 +390,7 @@ fn of_finer_steps(reported: f64, nominal: f64, [half, quarter]: [f64; 2]) -> (f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::perturbation::ReadingErrors;
+    use crate::physics::reintegration::perturbation::ReadingErrors;
 
     fn source(index: usize) -> Source {
         Source::StrikerMass(index)

@@ -1,11 +1,11 @@
 //! What stands on a bench: a specimen of one degree of freedom, or a frame with a ram at every floor. In: where the rams
 //! stand, how they went there. Out: the restoring force of each. It knows no rig and no sensor.
 
-use crate::physics::frame::{drifts, floor_forces};
 use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use crate::physics::specimen::SpecimenModel;
-use crate::physics::structure::damping::CellDamping;
+use crate::physics::structure::cell_damping::CellDamping;
+use crate::physics::structure::{drifts, floor_forces};
 use crate::plan::{Behaviour, Frame, Storey};
 
 #[derive(Debug)]

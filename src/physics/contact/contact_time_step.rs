@@ -56,7 +56,7 @@ impl Approach {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Damping;
+    use crate::structure::Damping;
     use crate::structure::frame::Frame;
     use crate::structure::frame_properties::FrameProperties;
 

@@ -5,7 +5,7 @@ use super::{Advance, Approaching, Start};
 use crate::contact::state::StepState;
 use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Passage, Scratch, Striker};
-use crate::matrix::Vector;
+use crate::structure::matrix::Vector;
 
 /// Parts of a blow. The peak force is then good to about 1e-4; fewer, and it shows in the fourth digit.
 const PARTS_OF_A_BLOW: f64 = 200.0;

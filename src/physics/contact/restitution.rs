@@ -7,7 +7,7 @@ use super::{Advance, Start};
 use crate::contact::state::StepState;
 use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Passage, Scratch, Striker};
-use crate::matrix::Vector;
+use crate::structure::matrix::Vector;
 
 /// Flights shorter than this part of Δt are not followed: the bodies stay together. Larger, and bouncing ends too
 /// early; smaller, and a step near e = 1 takes more bounces than it is worth. Its error shrinks with Δt.

@@ -1,23 +1,25 @@
 //! The inputs of an impact, its state at the end of a step, and an impact on an ideal rig from start to end. In: masses,
-//! stiffnesses, a striker, a contact law. Out: numbers. The steps are those of `impact_solver`.
+//! stiffnesses, a striker, a contact law. Out: numbers. The steps are those of [`ImpactSolver`].
 
 pub mod energy;
 pub mod peaks;
+mod solver;
 pub mod summary;
 mod until;
 
+pub use solver::{FrameImpactSolver, ImpactSolver};
 pub use until::Until;
 
 use thiserror::Error;
 
-use super::contact::NeedsTangent;
-use super::contact::state::{ContactLaw, StepState};
-use super::impact::energy::Energies;
-pub use super::impact_solver::{FrameImpactSolver, ImpactSolver};
-use super::integrator::solver::{FrameError, State};
-use super::integrator::step_form::Matrices;
-use super::specimen::RestoringForce;
+use crate::contact::NeedsTangent;
+use crate::contact::state::{ContactLaw, StepState};
 use crate::integrator::Integrator;
+use crate::integrator::input::FrameError;
+use crate::integrator::state::State;
+use crate::specimen::RestoringForce;
+use crate::structure::Matrices;
+use energy::Energies;
 
 /// All that an impact on one degree of freedom starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]

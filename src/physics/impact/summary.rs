@@ -2,7 +2,7 @@
 
 use super::{ImpactInput, ImpactState, Sink};
 use crate::contact::state::{ContactLaw, StepState};
-use crate::integrator::solver::State;
+use crate::integrator::state::State;
 
 /// Results of an impact. Peaks are over step ends.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,9 +3,11 @@
 //! no contact law.
 
 pub mod coefficients;
+pub mod input;
 pub mod newmark;
 pub mod solver;
 pub mod stability;
+pub mod state;
 pub mod step_form;
 pub(crate) mod substep;
 pub mod tangent;

@@ -29,43 +29,9 @@
 
 use super::coefficients::Coefficients;
 use super::tangents::FollowedTangents;
-use crate::frame::{NotPositiveDefinite, SymmetricBand};
 use crate::integrator::Integrator;
-use crate::matrix::{Factor, Matrix, SetOut, Vector};
-
-/// M, C and K of a structure, of one order: kg, N·s/m, N/m.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Matrices<V: Vector> {
-    pub mass: V::Matrix,
-    pub damping: V::Matrix,
-    /// The initial one.
-    pub stiffness: V::Matrix,
-}
-
-/// Those of a frame.
-pub type FrameMatrices = Matrices<Vec<f64>>;
-
-impl FrameMatrices {
-    /// Degrees of freedom.
-    #[must_use]
-    pub const fn order(&self) -> usize {
-        self.mass.order()
-    }
-
-    /// −M ι `ü_g`, N: what a ground acceleration (m/s²) is to displacements against the ground.
-    pub fn ground_load(&self, acceleration: f64, load: &mut [f64]) {
-        if self.mass.half_bandwidth() == 0 {
-            for (load, mass) in load.iter_mut().zip(self.mass.band(0)) {
-                *load = mass * -acceleration;
-            }
-            return;
-        }
-        SymmetricBand::row_sums(&self.mass, load);
-        for load in load {
-            *load *= -acceleration;
-        }
-    }
-}
+use crate::structure::matrix::{Factor, Matrix, SetOut, Vector};
+use crate::structure::{Matrices, NotPositiveDefinite};
 
 /// A structure and how it is integrated.
 #[derive(Clone, Debug)]

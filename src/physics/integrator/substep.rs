@@ -2,7 +2,7 @@
 //! state at the step's start. Out: the motion after any part of the step. It knows no contact law.
 
 use super::step_form::{Moment, Motion, StepForm};
-use crate::matrix::{Factor, Matrix, Vector};
+use crate::structure::matrix::{Factor, Matrix, Vector};
 
 /// The striker, and where it hits.
 #[derive(Clone, Copy, Debug, PartialEq)]

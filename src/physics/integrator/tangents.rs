@@ -4,8 +4,8 @@
 use std::fmt::Debug;
 
 use super::tangent::TangentStiffness;
-use crate::frame::{SymmetricBand, set_storeys, storeys_of};
-use crate::matrix::{Matrix, Vector};
+use crate::structure::matrix::{Matrix, Vector};
+use crate::structure::{SymmetricBand, set_storeys, storeys_of};
 
 /// What the tangent form takes for `K_t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -261,7 +261,7 @@ impl FollowedTangents for StoreyTangents {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{floor_forces, storey_stiffness};
+    use crate::structure::{floor_forces, storey_stiffness};
 
     const INITIAL: [f64; 3] = [3000.0, 2000.0, 1000.0];
 

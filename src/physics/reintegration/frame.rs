@@ -7,14 +7,16 @@ use std::cell::Cell;
 use super::frame_path::{FrameAgain, FramePath};
 use super::impact::{Outcome, Telling};
 use crate::contact::state::{ContactLaw, StepState};
-use crate::frame::{
-    FrameError, FrameInput, FrameMatrices, FrameSolver, FrameState, Tangents, drifts, shears,
-};
 use crate::impact::Until;
 use crate::impact::peaks::{Extremes, Peak, farther};
 use crate::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactState, Sink, Striking};
 use crate::integrator::Integrator;
-use crate::perturbation::Perturbation;
+use crate::integrator::input::{FrameError, FrameInput};
+use crate::integrator::solver::FrameSolver;
+use crate::integrator::state::FrameState;
+use crate::integrator::tangents::Tangents;
+use crate::reintegration::perturbation::Perturbation;
+use crate::structure::{FrameMatrices, drifts, shears};
 
 /// How a frame is integrated.
 #[derive(Clone, Debug)]

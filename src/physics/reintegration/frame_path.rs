@@ -8,8 +8,8 @@
 //! the recorded readings come back as they were, to the bit.
 
 use super::hysteresis_replay::{Again, Reading, RecordedPath, lag, nearest};
-use crate::frame::{SymmetricBand, drifts, shears, storeys_of};
-use crate::perturbation::Perturbation;
+use crate::reintegration::perturbation::Perturbation;
+use crate::structure::{SymmetricBand, drifts, shears, storeys_of};
 
 /// One step of the record, an entry a floor.
 #[derive(Clone, Debug, PartialEq)]
@@ -300,7 +300,7 @@ impl FrameAgain<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::storey_stiffness;
+    use crate::structure::storey_stiffness;
 
     const STIFFNESSES: [f64; 3] = [3000.0, 2000.0, 1000.0];
 

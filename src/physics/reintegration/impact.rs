@@ -9,8 +9,8 @@ use std::cell::Cell;
 
 use crate::impact::Until;
 use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink};
-use crate::integrator::solver::State;
-use crate::perturbation::Perturbation;
+use crate::integrator::state::State;
+use crate::reintegration::perturbation::Perturbation;
 
 /// What an impact comes to, SI; NaN where it does not exist.
 #[derive(Clone, Copy, Debug, PartialEq)]

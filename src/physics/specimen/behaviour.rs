@@ -5,7 +5,7 @@ use super::{Bolted, Breaks, Deterioration, Pinching, Table};
 use crate::relaxation::logarithmic::lost_after_long;
 use crate::structure::beam::{self, Beam};
 use crate::structure::portal::Portal;
-use crate::structure::portal_mass::{self, EquivalentMasses};
+use crate::structure::portal::mass::{self, EquivalentMasses};
 
 /// Restoring force of a virtual specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
@@ -264,7 +264,7 @@ impl Behaviour {
     pub fn equivalent_masses(&self) -> Option<EquivalentMasses> {
         match self {
             Self::Beam(beam) => beam::equivalent_masses(beam),
-            Self::Portal(portal) => portal_mass::equivalent_masses(portal),
+            Self::Portal(portal) => mass::equivalent_masses(portal),
             Self::Fracture { of, .. }
             | Self::Rate { of, .. }
             | Self::Maxwell { of, .. }

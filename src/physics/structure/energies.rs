@@ -2,8 +2,8 @@
 
 use std::ops::{Add as _, Sub as _};
 
-use crate::integrator::step_form::Matrices;
-use crate::matrix::{Matrix as _, Vector};
+use super::matrices::Matrices;
+use super::matrix::{Matrix as _, Vector};
 
 /// Energies at the end of a step, all in J, cumulated from the start; of displacements and velocities against the ground
 /// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90: what an absolute one adds is the ground's own work). They add up:

@@ -4,14 +4,14 @@
 use thiserror::Error;
 
 use crate::contact::contact_time_step::Approach;
-use crate::frame::BandFactor;
-use crate::frame::{
+use crate::integrator::Integrator;
+use crate::integrator::stability::{Met, longest_stable_step};
+use crate::structure::BandFactor;
+use crate::structure::frame::Frame;
+use crate::structure::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand,
     damping_matrix, modes, storey_stiffness,
 };
-use crate::integrator::Integrator;
-use crate::integrator::stability::{Met, longest_stable_step};
-use crate::structure::frame::Frame;
 
 /// A frame, ready to be integrated.
 #[derive(Clone, Debug)]

@@ -6,9 +6,9 @@ use super::setting::{Setting, StruckStructure};
 use crate::physics::contact::state::ContactLaw;
 use crate::physics::impact::ImpactError;
 use crate::physics::impact::summary::ImpactSummary;
-use crate::physics::perturbation::Perturbation;
 use crate::physics::reintegration::hysteresis_replay::{Reading, RecordedPath};
 use crate::physics::reintegration::impact::{OUTCOMES, Outcome, foretold, rerun};
+use crate::physics::reintegration::perturbation::Perturbation;
 use crate::plan::formula::{Formula, ProcedureId, Results};
 use crate::plan::{Contact, Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::perturbed_inputs::{

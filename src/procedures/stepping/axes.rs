@@ -1,8 +1,8 @@
 //! Several axes in one step: the tracking of each, and the report to an observer of the run. In: targets, readings, the end of a step.
 //! Out: numbers of each axis. It moves nothing.
 
-use crate::physics::integrator::solver::State;
-use crate::physics::matrix::Vector;
+use crate::physics::integrator::state::State;
+use crate::physics::structure::matrix::Vector;
 use crate::physics::tracking::monitor::{Monitor, Tracking};
 use crate::rig::Reading;
 use crate::run::{AxisReport, StepReport};

@@ -3,8 +3,9 @@
 //! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
 use super::uncertainty::RestUncertainty;
-use crate::physics::frame::{Damping, Loaded, Unloading, UnloadingPath};
+use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::physics::structure::frame_properties::FrameProperties;
+use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::formula::{Formula, ResultValue};
 use crate::plan::{Frame, FrameUnload, Plan, Unload};
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};

@@ -1,6 +1,6 @@
 //! Where a specimen rests, unloaded by a rig that reads wrong, against what one run with a right one foretells.
 
-use crate::physics::frame::Unloading;
+use crate::physics::structure::Unloading;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::formula::{NoResults, ProcedureId};
 use crate::plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
@@ -13,7 +13,7 @@ use crate::rig::{
 use crate::run::Unwatched;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
-use crate::tests::procedures::frame_sequence::{close, three};
+use crate::tests::procedures::frame::{close, three};
 use crate::tests::testing::elastic_plan;
 use crate::uncertainty::{Contribution, Source, combined};
 

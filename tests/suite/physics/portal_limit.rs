@@ -1,7 +1,7 @@
 //! How high a load a portal's mechanism follows: in closed form where it is one, and by the moments along its members, which are summed
 //! here from the inertia point by point. The sums share nothing with the product.
 
-use psd::physics::structure::portal_limit::mechanism_limit;
+use psd::physics::structure::portal::limit::mechanism_limit;
 use psd::plan::{FrameMasses, Loads, Portal, Sections};
 
 const SPAN: f64 = 4.0;

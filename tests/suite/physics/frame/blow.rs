@@ -2,8 +2,8 @@
 //! momentum and energy.
 
 use psd::physics::contact::state::ContactLaw;
-use psd::physics::frame::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::physics::impact::{FrameImpactSolver, Striking};
+use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::plan::Integrator;
 
 use super::support::{at, number};

@@ -1,9 +1,9 @@
 //! What the field has published of these integrators: HHT-α, and what an actuator that misses its target does to a run.
 
-use psd::physics::frame::{
-    Damping, FrameInput, FrameMatrices, FrameSolver, FrameState, SymmetricBand, damping_matrix,
-    modes,
-};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::solver::FrameSolver;
+use psd::physics::integrator::state::FrameState;
+use psd::physics::structure::{Damping, FrameMatrices, SymmetricBand, damping_matrix, modes};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform};
@@ -43,7 +43,7 @@ fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
         &found,
     )
     .expect("ratios");
-    let dense = |band: &psd::physics::frame::SymmetricBand| {
+    let dense = |band: &psd::physics::structure::SymmetricBand| {
         std::array::from_fn::<[f64; 3], 3, _>(|i| std::array::from_fn(|j| band.entry(i, j)))
     };
     let (m, c, k) = (

@@ -1,11 +1,14 @@
 //! Frames on ground that moves: a harmonic motion against its exact solution, and an elastic–plastic building under a record
 //! against exact arcs between yields and unloadings.
 
-use psd::physics::frame::{
-    Damping, FrameInput, FrameMatrices, FrameSolver, SymmetricBand, Tangents, damping_matrix,
-    drifts, floor_forces, modes, storey_stiffness,
-};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::solver::FrameSolver;
+use psd::physics::integrator::tangents::Tangents;
 use psd::physics::specimen::{Bilinear, RestoringForce};
+use psd::physics::structure::{
+    Damping, FrameMatrices, SymmetricBand, damping_matrix, drifts, floor_forces, modes,
+    storey_stiffness,
+};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform, uniform_frequency, uniform_shape};

@@ -2,8 +2,10 @@
 
 use psd::physics::contact::NeedsTangent;
 use psd::physics::contact::state::ContactLaw;
-use psd::physics::frame::{FrameInput, FrameMatrices, SymmetricBand, Tangents, storey_stiffness};
 use psd::physics::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactState, Striking};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::tangents::Tangents;
+use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::plan::Integrator;
 
 use super::super::support::{impact, run};

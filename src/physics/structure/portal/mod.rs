@@ -3,6 +3,9 @@
 //! Axial and shear strains are left out, and so is the effect of axial force on the plastic moment. What mass moves with it stands in
 //! `portal_mass.rs`.
 
+pub mod limit;
+pub mod mass;
+
 /// A portal frame and the loads on it (Melo et al. 2006, Fig. 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Portal {

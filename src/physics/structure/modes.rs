@@ -4,8 +4,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::PI;
 use thiserror::Error;
 
-use super::band::SymmetricBand;
-use super::factor::{BandFactor, NotPositiveDefinite};
+use super::matrix::{BandFactor, NotPositiveDefinite, SymmetricBand};
 
 /// The modes, the longest period first.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,7 +130,7 @@ pub fn modes(mass: &SymmetricBand, stiffness: &SymmetricBand) -> Result<Modes, M
 
 #[cfg(test)]
 mod tests {
-    use super::super::storeys::storey_stiffness;
+    use super::super::shear_building::storey_stiffness;
     use super::*;
 
     /// Masses 2, 1 and storeys 2, 1: det(K − ω²M) = (3 − 2ω²)(1 − ω²) − 1 = (2ω² − 1)(ω² − 2), and φ₂ = (3 − 2ω²)φ₁:

@@ -148,7 +148,12 @@ fn no_procedure_writes_more_than_it_is_reckoned_to() {
         );
     }
     let velocities = [0.4, 0.8];
-    let ratio_of = |between| ratio(&super::frame_sequence::rising(&velocities, between));
+    let ratio_of = |between| {
+        ratio(&crate::tests::procedures::frame::impact_series::rising(
+            &velocities,
+            between,
+        ))
+    };
     for (between, most) in [(Between::Home, 8.0), (Between::Unload, 8.0)] {
         let ratio = ratio_of(between);
         assert!(

@@ -6,8 +6,8 @@
 //! is left and the slope was no stiffer than the one before it, a move takes the rest. Where the way back softens, as specimens do, no move
 //! passes the place without load.
 
-use super::storeys::{drifts, shears};
-use super::unloading::{BELIEVED, Loaded, Unloading};
+use super::super::shear_building::{drifts, shears};
+use super::{BELIEVED, Loaded, Unloading};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 
 /// Part of the load that the first move takes, by the expected slope: a way back may be this much stiffer.
@@ -232,9 +232,9 @@ fn largest(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::band::SymmetricBand;
-    use super::super::storeys::storey_stiffness;
     use super::*;
+    use crate::structure::matrix::SymmetricBand;
+    use crate::structure::shear_building::storey_stiffness;
 
     /// Places and forces of one degree of freedom from `start` (m) on, by its own curve, until it carries less than a thousandth.
     fn followed(expected: f64, start: f64, force: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {

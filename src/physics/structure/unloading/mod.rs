@@ -4,9 +4,12 @@
 //! In a shear building each storey's shear is a function of its own drift, so that the system falls apart: storey j is off by
 //! −Vⱼ/kⱼ, and kⱼ is the secant that a move showed. Any other frame takes K⁻¹ of the initial stiffness throughout.
 
-use super::band::SymmetricBand;
-use super::factor::{BandFactor, NotPositiveDefinite};
-use super::storeys::{drifts, shears, storeys_of};
+mod path;
+
+pub use path::UnloadingPath;
+
+use super::matrix::{BandFactor, NotPositiveDefinite, SymmetricBand};
+use super::shear_building::{drifts, shears, storeys_of};
 
 /// A stiffness shown by a move is believed within this factor of the expected one.
 pub(super) const BELIEVED: f64 = 16.0;
@@ -164,7 +167,7 @@ fn between(from: Loaded<'_>, to: Loaded<'_>) -> [Vec<f64>; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::storeys::{floor_forces, storey_stiffness};
+    use super::super::shear_building::{floor_forces, storey_stiffness};
     use super::*;
 
     /// Storeys of 3 and 2 N/m under forces 1 and 4 N of their floors: shears 5 and 4 N, drifts 5/3 and 2 m.

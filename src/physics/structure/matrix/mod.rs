@@ -2,11 +2,16 @@
 //! bands. In: the operations of an integrator. Out: the same arithmetic for both; for one degree of freedom it compiles to
 //! plain floating-point code. It knows no equation of motion.
 
+mod band;
+mod factor;
+
 use std::fmt::Debug;
 
-use super::frame::{BandFactor, NotPositiveDefinite, SymmetricBand};
-use super::integrator::tangents::{FollowedTangents, StoreyTangent, StoreyTangents};
-use super::integrator::tridiagonal;
+pub use band::{RowsError, SymmetricBand};
+pub use factor::{BandFactor, NotPositiveDefinite};
+
+use crate::integrator::tangents::{FollowedTangents, StoreyTangent, StoreyTangents};
+use crate::integrator::tridiagonal;
 
 /// One quantity of every degree of freedom.
 pub trait Vector: Clone + Debug + Default + PartialEq {
@@ -89,7 +94,7 @@ pub struct SetOut<'a, V: Vector> {
 
 /// [`Vector::set_out`] for matrices of any band.
 #[inline]
-pub(super) fn set_out_by_products<V: Vector>(
+pub(crate) fn set_out_by_products<V: Vector>(
     step: &SetOut<V>,
     push: &mut V,
     glide: &mut V,

@@ -2,17 +2,18 @@
 //! energies. In: a structure, a striker. Out: targets, and the end of each step. It commands no rig: whoever does asks for the next
 //! displacements and gives back what was measured there.
 
-use super::contact::state::StepState;
-use super::contact::{Advance, AnyContact, Approaching, Decided, ImpulseContact, Start};
-use super::impact::energy::Energies;
-use super::impact::{ImpactError, ImpactInput, ImpactState, Sink, Striking};
-use super::integrator::solver::{Solver, SolverInput, State};
-use super::integrator::step_form::StepForm;
-use super::integrator::substep::{Passage, Striker, Workspace};
-use super::integrator::tangents::Tangents;
-use super::matrix::{Factor, Matrix, Vector};
-use crate::impact::Until;
+use super::energy::Energies;
+use super::{ImpactError, ImpactInput, ImpactState, Sink, Striking, Until};
+use crate::contact::state::StepState;
+use crate::contact::{Advance, AnyContact, Approaching, Decided, ImpulseContact, Start};
 use crate::integrator::Integrator;
+use crate::integrator::input::SolverInput;
+use crate::integrator::solver::Solver;
+use crate::integrator::state::State;
+use crate::integrator::step_form::StepForm;
+use crate::integrator::substep::{Passage, Striker, Workspace};
+use crate::integrator::tangents::Tangents;
+use crate::structure::matrix::{Factor, Matrix, Vector};
 
 /// The impact on a rig: `predict`, command, read, `complete`.
 #[derive(Clone, Debug)]
@@ -367,16 +368,21 @@ impl<V: Vector> ImpactSolver<V> {
         self.striker_stopped |= self.state.striker_velocity <= 0.0;
     }
 
-    /// What the recursion takes for the forces at these targets (m) where this is measured, m and N.
+    /// Effective forces r* \[N\] at these targets for these readings \[m\], \[N\].
     #[must_use]
-    pub fn taken_at(&self, target: V::View<'_>, measured: V::View<'_>, force: V::View<'_>) -> V {
-        self.structure.taken_at(target, measured, force)
+    pub fn effective_force_at(
+        &self,
+        target: V::View<'_>,
+        measured: V::View<'_>,
+        force: V::View<'_>,
+    ) -> V {
+        self.structure.effective_force_at(target, measured, force)
     }
 
-    /// What the recursion took for the forces at the targets of the last step, N.
+    /// Effective forces r* at the targets of the last step \[N\].
     #[must_use]
-    pub fn taken(&self) -> V::View<'_> {
-        self.structure.taken()
+    pub fn effective_force(&self) -> V::View<'_> {
+        self.structure.effective_force()
     }
 
     /// The struck degree of freedom and the striker at the end of the last step.

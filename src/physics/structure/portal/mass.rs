@@ -2,7 +2,7 @@
 //! portal that says what it weighs. Out: its equivalent masses, by the shapes that it goes through. How it is loaded, and when
 //! it yields, it does not decide.
 
-use super::beam::partly_built_in_mass_factor;
+use super::super::beam::partly_built_in_mass_factor;
 use crate::structure::portal::{Mechanism, Portal, Sections, elastic_stiffnesses};
 
 /// Masses of the single degree of freedom that stands for a beam or portal, kg: that which has its kinetic energy, M = ∫m φ² ds with a

@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn a_loose_direction_is_found() {
         let loose =
-            |stiffnesses: &[f64]| BandFactor::new(&crate::frame::storey_stiffness(stiffnesses));
+            |stiffnesses: &[f64]| BandFactor::new(&crate::structure::storey_stiffness(stiffnesses));
         assert!(loose(&[1.0, 2.0, 3.0, 4.0]).is_ok());
         for free in 0..4 {
             let mut stiffnesses = [1.0, 2.0, 3.0, 4.0];

@@ -1,106 +1,15 @@
-//! Uncertainty of the results of frames, shaken and struck: one storey is one degree of freedom, two elastic storeys are their
-//! modes, and the virtual rig itself, run again and again, scatters as one run foretells.
+//! One storey compared with one degree of freedom, two elastic storeys with their modes.
 
+use super::{constant, storey, shaken, storeys, rebuilt, entry, from};
 use crate::physics::reintegration::impact::OUTCOMES;
-use crate::plan::formula::{Formula, ResultValue};
-use crate::plan::{
-    Behaviour, Calibration, Contact, Frame, Ground, Impact, Link, Plan, ProcedureKind, Shake,
-    ShakeDamping, Stepping, Storey, Until, VirtualLink,
-};
-use crate::record::Record;
-use crate::tests::testing::{
-    Uniform, elastic_plan, every, impact, number, run_unwatched, scatter, struck_frame,
-};
+use crate::plan::{Calibration, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Storey, Until, VirtualLink};
+use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
 use crate::uncertainty::{Contribution, Source, combined};
-
-pub(crate) fn constant(value: f64) -> Formula {
-    Formula::Constant(value)
-}
-
-pub(crate) fn storey(mass: f64, stiffness: f64) -> Storey {
-    Storey::new(mass, stiffness, Behaviour::Elastic { stiffness })
-}
-
-/// A frame on ground that begins to move at once, with these accelerations 10 ms apart.
-pub(crate) fn shaken(storeys: Vec<Storey>, accelerations: Vec<f64>, time_step: f64) -> Plan {
-    let shake = Shake {
-        specimen: 0,
-        ground: 0,
-        damping: ShakeDamping::Rayleigh(constant(0.0)),
-        damping_uncertainty: 0.0,
-        stepping: Stepping {
-            max_tangent_ratio: constant(2.0),
-            ..every(time_step)
-        },
-        scale: constant(1.0),
-        duration: None,
-    };
-    let mut plan = elastic_plan(1.0, vec![ProcedureKind::Shake(shake)]);
-    let times = (0..accelerations.len())
-        .map(|sample| 0.01 * f64::from(u32::try_from(sample).unwrap()))
-        .collect();
-    let ground = Ground {
-        name: "quake".to_owned(),
-        file: "quake.csv".to_owned(),
-        unit: 1.0,
-        scale: 1.0,
-        scale_uncertainty: 0.0,
-        times,
-        accelerations,
-    };
-    plan.grounds = vec![ground];
-    plan.specimens[0].frame = Some(Frame::of_storeys(storeys));
-    plan.specimens[0].behaviour = None;
-    plan
-}
-
-fn storeys(plan: &mut Plan) -> &mut Vec<Storey> {
-    &mut plan.specimens[0].frame.as_mut().unwrap().storeys
-}
-
-fn rebuilt(mut plan: Plan) -> Plan {
-    let storeys = std::mem::take(storeys(&mut plan));
-    plan.specimens[0].frame = Some(Frame::of_storeys(storeys));
-    plan
-}
-
-fn shake(plan: &mut Plan) -> &mut Shake {
-    match &mut plan.procedures[0].kind {
-        ProcedureKind::Shake(shake) => shake,
-        other => panic!("{other:?}"),
-    }
-}
-
-/// A number of a result with its contributions.
-pub(crate) fn entry(record: &Record, name: &str, entry: usize) -> (f64, Vec<Contribution>) {
-    let result = record.procedures[0].result(name).unwrap();
-    let value = match &result.value {
-        ResultValue::List(values) => values[entry],
-        ResultValue::Number { value, .. } => value.unwrap(),
-    };
-    (
-        value,
-        result
-            .contributions
-            .iter()
-            .filter(|part| part.entry == entry)
-            .copied()
-            .collect(),
-    )
-}
-
-pub(crate) fn from(parts: &[Contribution], source: Source) -> f64 {
-    parts
-        .iter()
-        .filter(|part| part.source == source)
-        .map(|part| part.amount)
-        .sum()
-}
 
 /// A striker that sticks to a frame of one storey is the impact of one degree of freedom, and as uncertain: the same
 /// contributions of the same inputs, drawn errors too.
 #[test]
-fn one_storey_is_as_uncertain_as_one_degree_of_freedom() {
+fn one_storey_has_the_uncertainty_of_one_degree_of_freedom() {
     const STIFFNESS: f64 = 327.65;
     let uncertain = |mut plan: Plan, link: VirtualLink| {
         plan.strikers[0].mass_uncertainty = 0.1;
@@ -265,7 +174,7 @@ const NAMES: [(&str, usize); 5] = [
 ];
 
 #[test]
-fn two_elastic_storeys_come_out_by_their_modes() {
+fn two_elastic_storeys_have_the_uncertainty_of_their_modes() {
     let (masses, stiffnesses) = ([2.0, 1.5], [3000.0, 1800.0]);
     let mut plan = shaken(
         vec![storey(2.0, 3000.0), storey(1.5, 1800.0)],
@@ -361,7 +270,7 @@ fn two_elastic_storeys_come_out_by_their_modes() {
 
 /// ω² of two storeys by hand: the periods go as √(m/k) of each, and the ratios of Rayleigh damping as they are stated.
 #[test]
-fn periods_are_as_uncertain_as_masses_and_stiffnesses() {
+fn periods_have_the_uncertainty_of_masses_and_stiffnesses() {
     let mut plan = shaken(
         vec![storey(2.0, 3000.0), storey(2.0, 3000.0)],
         vec![1.0; 11],
@@ -435,7 +344,7 @@ fn periods_are_as_uncertain_as_masses_and_stiffnesses() {
 
 /// Nothing uncertain, nothing told.
 #[test]
-fn an_exact_frame_is_as_uncertain_as_its_time_step() {
+fn an_exact_frame_has_the_uncertainty_of_its_time_step() {
     for plan in [
         struck_frame(),
         shaken(
@@ -457,200 +366,5 @@ fn an_exact_frame_is_as_uncertain_as_its_time_step() {
             "{:?}",
             record.events
         );
-    }
-}
-
-const RUNS: u32 = 150;
-
-/// The virtual rig run `RUNS` times with inputs as they may be, against what one run of `doubtful` foretells. The standard
-/// deviation of a standard deviation of normal numbers is 1/√(2(n − 1)) of it, and that of the foretold one 1/√(2·64) where it
-/// is drawn: three of both together.
-fn scatters_as_foretold(
-    doubtful: &Plan,
-    names: &[(&str, usize)],
-    drawn: bool,
-    draw: &mut dyn FnMut(&mut Uniform, u64) -> Plan,
-) {
-    let told = run_unwatched(doubtful);
-    let mut uniform = Uniform(20_060_102);
-    let mut found: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
-    for run in 0..RUNS {
-        let record = run_unwatched(&draw(&mut uniform, u64::from(run)));
-        for (values, (name, place)) in found.iter_mut().zip(names) {
-            values.push(entry(&record, name, *place).0);
-        }
-    }
-    let within =
-        3.0 * (1.0 / (2.0 * f64::from(RUNS - 1)) + if drawn { 1.0 / 128.0 } else { 0.0 }).sqrt();
-    for (values, (name, place)) in found.iter().zip(names) {
-        let (_, parts) = entry(&told, name, *place);
-        let (scatter, u) = (scatter(values), combined(&parts).unwrap());
-        // Where the record leaves open how the storeys go on, the most of what they may do is told, and marked.
-        let sure = parts
-            .iter()
-            .all(|part| part.smooth || part.amount.abs() < 0.1 * u);
-        let most = if sure { within } else { 1.0 };
-        let told = u / scatter - 1.0;
-        assert!(
-            (-within..most).contains(&told),
-            "{name}[{place}]: {scatter} of runs, {u} foretold"
-        );
-    }
-}
-
-fn yielding(mass: f64, stiffness: f64, yield_force: f64) -> Storey {
-    Storey {
-        behaviour: Behaviour::Bilinear {
-            stiffness,
-            yield_force,
-            hardening: 0.1,
-        },
-        ..storey(mass, stiffness)
-    }
-}
-
-/// Two storeys that yield forth and back on shaking ground, with masses, damping and the factor of the ground as they may be.
-#[test]
-fn shakes_of_the_true_rig_scatter_as_foretold() {
-    let ground: Vec<f64> = (0..150)
-        .map(|step| 3.0 * (0.085 * f64::from(step)).sin() * (0.03 * f64::from(step)).sin())
-        .collect();
-    let with = |masses: [f64; 2], scale: f64, ratio: f64| {
-        let accelerations = ground
-            .iter()
-            .map(|acceleration| scale * acceleration)
-            .collect();
-        let mut plan = shaken(
-            vec![
-                yielding(masses[0], 900.0, 12.0),
-                yielding(masses[1], 700.0, 8.0),
-            ],
-            accelerations,
-            5e-3,
-        );
-        shake(&mut plan).damping = ShakeDamping::Rayleigh(constant(ratio));
-        plan
-    };
-    let mut doubtful = with([3.0, 2.0], 1.0, 0.05);
-    for storey in storeys(&mut doubtful) {
-        storey.mass_uncertainty = 0.01 * storey.mass;
-    }
-    doubtful.grounds[0].scale_uncertainty = 0.01;
-    shake(&mut doubtful).damping_uncertainty = 0.01;
-    let names = [
-        ("max_displacement", 0),
-        ("max_displacement", 1),
-        ("max_drift", 0),
-        ("max_drift", 1),
-        ("final_drift", 0),
-        ("max_base_shear", 0),
-    ];
-    scatters_as_foretold(&rebuilt(doubtful), &names, false, &mut |uniform, _| {
-        let masses = [3.0, 2.0].map(|mass: f64| mass * (1.0 + 0.01 * uniform.normal()));
-        let scale = 1.0 + 0.01 * uniform.normal();
-        with(masses, scale, 0.05 + 0.01 * uniform.normal())
-    });
-}
-
-/// A blow on the upper of two storeys that yield.
-#[test]
-fn blows_on_a_storey_scatter_as_foretold() {
-    let with = |mass: f64, velocity: f64, striker: f64| {
-        let mut plan = struck_frame();
-        storeys(&mut plan)[1].mass = mass;
-        plan.strikers[0].velocity = velocity;
-        plan.strikers[0].mass = striker;
-        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
-            panic!()
-        };
-        blow.contact = Contact::Restitution {
-            coefficient: constant(0.0),
-        };
-        blow.stepping = Stepping {
-            max_tangent_ratio: constant(2.0),
-            ..every(2e-3)
-        };
-        rebuilt(plan)
-    };
-    let mut doubtful = with(1.0, 1.0, 10.0);
-    storeys(&mut doubtful)[1].mass_uncertainty = 0.02;
-    doubtful.strikers[0].velocity_uncertainty = 0.01;
-    doubtful.strikers[0].mass_uncertainty = 0.1;
-    let names = [
-        ("max_displacement", 0),
-        ("absorbed_energy", 0),
-        ("final_displacement", 0),
-        ("max_velocity", 0),
-        ("max_drift", 0),
-        ("max_drift", 1),
-        ("floor_displacement", 0),
-        ("final_drift", 0),
-        ("final_drift", 1),
-        ("storey_energy", 0),
-        ("storey_energy", 1),
-        ("max_base_shear", 0),
-    ];
-    scatters_as_foretold(&doubtful, &names, false, &mut |uniform, _| {
-        let mass = 1.0 + 0.02 * uniform.normal();
-        with(
-            mass,
-            1.0 + 0.01 * uniform.normal(),
-            10.0 + 0.1 * uniform.normal(),
-        )
-    });
-}
-
-/// Noise of the cells of an elastic frame: runs that differ in nothing but the seed.
-#[test]
-fn noise_of_the_cells_scatters_as_foretold() {
-    let with = |seed: u64| {
-        let mut plan = shaken(
-            vec![storey(3.0, 900.0), storey(2.0, 700.0)],
-            vec![1.0; 60],
-            5e-3,
-        );
-        plan.rig.link = Link::Virtual(VirtualLink {
-            noise: 0.3,
-            seed,
-            ..VirtualLink::default()
-        });
-        plan
-    };
-    let names = [
-        ("max_displacement", 0),
-        ("max_displacement", 1),
-        ("max_drift", 1),
-        ("final_drift", 0),
-    ];
-    scatters_as_foretold(&with(1), &names, true, &mut |_, run| with(run + 1));
-}
-
-/// Of a long record with many inputs the floors' and the axes' are drawn together: what they come to is the same, as far as so
-/// many draws tell, and a study costs no more.
-#[test]
-fn inputs_drawn_together_come_to_what_they_come_to_one_by_one() {
-    let plan = |duration: f64| {
-        let ground: Vec<f64> = (0..600)
-            .map(|step| (0.085 * f64::from(step)).sin())
-            .collect();
-        let mut plan = shaken((0..8).map(|_| storey(2.0, 9000.0)).collect(), ground, 1e-3);
-        for storey in storeys(&mut plan) {
-            storey.mass_uncertainty = 0.02;
-        }
-        plan.rig.calibration.force_uncertainty = 0.01;
-        shake(&mut plan).duration = Some(constant(duration));
-        rebuilt(plan)
-    };
-    // 16 inputs, moved twice each at least, are 32 runs: of 300 steps of 8 floors one may have so many, of 2200 one may not.
-    for (duration, together) in [(0.3, false), (2.2, true)] {
-        let record = run_unwatched(&plan(duration));
-        let (value, parts) = entry(&record, "max_displacement", 7);
-        let drawn = parts
-            .iter()
-            .filter(|part| matches!(part.source, Source::Drawn { .. }))
-            .count();
-        assert_eq!(drawn > 0, together, "{} parts of {value}", parts.len());
-        let u = combined(&parts).unwrap();
-        assert!(u > 1e-3 * value && u < 0.05 * value, "{u} of {value}");
     }
 }

@@ -1,7 +1,7 @@
 //! Shear buildings: floors of a frame, each held against the one below by its storey. In: storey stiffnesses, forces of
 //! the floors. Out: stiffness matrices, drifts, shears. Floor 0 here is the lowest that moves.
 
-use super::band::SymmetricBand;
+use super::matrix::SymmetricBand;
 
 /// K of a shear building from the total stiffness of each storey, N/m, from the ground up (Melo et al. 2006, Fig. 1: two
 /// columns k make 2k): `K_ii = k_i + k_(i+1)`, `K_(i+1,i) = −k_(i+1)`.

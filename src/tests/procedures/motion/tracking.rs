@@ -1,8 +1,9 @@
 //! Floors that are sent along sines by a virtual rig that errs in a known way: indicator, energy error, NRMS and peak of each axis
 //! against closed forms, in both modes; and runs that are held by them.
 
-use crate::physics::frame::{Damping, FrameEnergies, FrameState};
+use crate::physics::integrator::state::FrameState;
 use crate::physics::structure::frame_properties::FrameProperties;
+use crate::physics::structure::{Damping, FrameEnergies};
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Integrator, Interval, Link, Mode, Plan, ProcedureKind, Stepping, VirtualLink};
 use crate::procedures::stepping::axes::AxesState;
