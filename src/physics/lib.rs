@@ -6,7 +6,7 @@
 //!
 //! # Equation of motion
 //! X is the displacement of the structure and Xs that of the striker, F the force between them, f the load and g the acceleration
-//! along the striker's way:
+//! along the striker's path:
 //!
 //! ```text
 //! M Ẍ + C Ẋ + R(X) = f(t) + F e_s        Ms Ẍs = Ms g − F
@@ -34,14 +34,14 @@
 //!
 //! # Contact
 //! Every end velocity of the struck point is linear in the force, Ẋ₁ = v_free + w F. In the tangent form
-//! w = ½Δt e_sᵀ(M + ½Δt C + ¼Δt² K_t)⁻¹e_s. The rigid law asks that striker and structure end the step with one velocity:
+//! w = ½Δt e_sᵀ(M + ½Δt C + ¼Δt² K_t)⁻¹e_s. Under the rigid law striker and structure end the step with one velocity:
 //!
 //! ```text
 //! F = (V_s − v_free) / (Δt/M_s + w),        V_s = Ẋs + g Δt
 //! ```
 //!
 //! A tensile force is dropped, and one beyond a limit force is cut to it. A contact of finite stiffness follows Hunt and Crossley,
-//! with δ the overlap of the two surfaces, and divides the step where the blow is shorter than it:
+//! with δ the overlap of the two surfaces, and divides the step where the contact is shorter than it:
 //!
 //! ```text
 //! F = k δ^1.5 (1 + λ δ̇) ≥ 0

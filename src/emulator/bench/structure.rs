@@ -148,7 +148,7 @@ impl Structure {
                 forces
                     .iter()
                     .zip(velocities)
-                    .map(|(force, v)| damping.felt(*force, *v) + relaxing)
+                    .map(|(force, v)| damping.measured_force(*force, *v) + relaxing)
                     .collect()
             }
             Self::Storeys {
@@ -163,7 +163,7 @@ impl Structure {
                 let relaxing = relaxing.iter().map(RelaxationState::force);
                 let storeys = dampers.iter_mut().zip(&*shear).zip(apart).zip(relaxing);
                 let beside = storeys.map(|(((damper, shear), v), relaxing)| {
-                    damper.felt(*shear, v) - shear + relaxing
+                    damper.measured_force(*shear, v) - shear + relaxing
                 });
                 let mut more = vec![0.0; velocities.len()];
                 floor_forces(&beside.collect::<Vec<f64>>(), &mut more);

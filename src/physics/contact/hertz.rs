@@ -1,5 +1,5 @@
 //! Contact of finite stiffness: Hunt–Crossley's F = k δ^1.5 (1 + loss·δ̇), never pulling, with an optional limit force
-//! past which the surface is dented. A blow is much shorter than a step and is followed in parts of its own length.
+//! beyond which the surface is indented. An impact is much shorter than a step and is integrated in parts of its own duration.
 
 use super::{Advance, Approaching, Start};
 use crate::contact::state::StepState;
@@ -7,11 +7,11 @@ use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Passage, Scratch, Striker};
 use crate::structure::matrix::Vector;
 
-/// Parts of a blow. The peak force is then good to about 1e-4; fewer, and it shows in the fourth digit.
-const PARTS_OF_A_BLOW: f64 = 200.0;
-/// Parts of a step at most; a step of many blows' length is then resolved more coarsely.
+/// Parts of an impact. The relative error of the peak force is then about 1e-4; fewer parts change its fourth digit.
+const PARTS_OF_AN_IMPACT: f64 = 200.0;
+/// Parts of a step, at most; a step much longer than the impact is then resolved more coarsely.
 const MOST_PARTS: f64 = 1e6;
-/// Gauss–Legendre on [0, 1], three points: (place, weight).
+/// Gauss–Legendre on [0, 1], three points: (node, weight).
 const GAUSS: [(f64, f64); 3] = [
     (0.112_701_665_379_258_31, 5.0 / 18.0),
     (0.5, 8.0 / 18.0),
@@ -26,7 +26,7 @@ struct Closing {
 }
 
 impl Closing {
-    /// From an overlap, m.
+    /// From an overlap \[m\].
     const fn new(depth: f64) -> Self {
         Self {
             touching: depth > 0.0,
@@ -34,25 +34,25 @@ impl Closing {
         }
     }
 
-    /// Takes a part with its mean force (N) and the overlap at its end (m).
+    /// Adds a part with its mean force \[N\] and the overlap at its end \[m\].
     fn take(&mut self, force: f64, depth: f64) {
         let closed = force > 0.0 || depth > 0.0;
         self.contacts += u32::from(closed && !self.touching);
-        // One that opened again inside the part is over.
+        // A contact that opened again inside the part has ended.
         self.touching = depth > 0.0;
     }
 }
 
-/// A blow that takes time.
+/// A contact of finite stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HertzContact {
-    /// k, N/m^1.5
+    /// k \[N/m^1.5\]
     stiffness: f64,
-    /// s/m
+    /// λ \[s/m\]
     loss: f64,
-    /// N; infinite if none.
+    /// \[N\]; infinite if none.
     force_limit: f64,
-    /// Length of a part of a step, s.
+    /// Duration of a part of a step \[s\].
     part: f64,
 }
 
@@ -69,12 +69,12 @@ impl HertzContact {
         let reduced_mass = mass * striker_mass / (mass + striker_mass);
         let speed = velocity.abs();
         let deepest = (1.25 * reduced_mass * speed * speed / stiffness).powf(0.4);
-        let blow = if speed > 0.0 {
+        let duration_of_impact = if speed > 0.0 {
             2.943 * deepest / speed
         } else {
             time_step
         };
-        let part = (blow / PARTS_OF_A_BLOW).max(time_step / MOST_PARTS);
+        let part = (duration_of_impact / PARTS_OF_AN_IMPACT).max(time_step / MOST_PARTS);
         Self {
             stiffness,
             loss,
@@ -91,14 +91,14 @@ impl HertzContact {
         }
     }
 
-    /// Mean force over a way from one depth to another, and its slope against the second.
+    /// Mean force between two depths \[N\], and its derivative by the second \[N/m\].
     fn mean(&self, from: f64, to: f64, duration: f64) -> (f64, f64) {
         let (mut force, mut slope) = (0.0, 0.0);
-        for (place, weight) in GAUSS {
-            let depth = from + place * (to - from);
+        for (node, weight) in GAUSS {
+            let depth = from + node * (to - from);
             if depth > 0.0 {
                 force += weight * self.elastic(depth);
-                slope += weight * place * 1.5 * self.stiffness * depth.sqrt();
+                slope += weight * node * 1.5 * self.stiffness * depth.sqrt();
             }
         }
         let factor = 1.0 + self.loss * (to - from) / duration;
@@ -112,13 +112,13 @@ impl HertzContact {
         }
     }
 
-    /// Mean force of a part: `to = from + way − yielding·F` and F = mean(from, to), by Newton's method between bounds.
+    /// Mean force of a part: `to = from + travel − yielding·F` and F = mean(from, to), by Newton's method between bounds.
     /// Both sides are monotone, so that there is one answer.
-    fn solve(&self, from: f64, way: f64, yielding: f64, duration: f64) -> f64 {
-        let (mut low, mut high) = (0.0, self.mean(from, from + way, duration).0);
+    fn solve(&self, from: f64, travel: f64, yielding: f64, duration: f64) -> f64 {
+        let (mut low, mut high) = (0.0, self.mean(from, from + travel, duration).0);
         let mut force = high.min(self.elastic(from));
         for _ in 0..60 {
-            let (mean, slope) = self.mean(from, from + way - yielding * force, duration);
+            let (mean, slope) = self.mean(from, from + travel - yielding * force, duration);
             let residual = force - mean;
             if residual > 0.0 {
                 high = force;
@@ -140,14 +140,14 @@ impl HertzContact {
         force
     }
 
-    /// Parts of a step in which the blow is followed.
+    /// Number of parts of a step.
     fn parts(&self, time_step: f64) -> f64 {
         (time_step / self.part).ceil().max(1.0)
     }
 
-    /// Mean force of a part (as `solve` has it), N, and whether it is the limit that bounds it.
-    fn force(&self, from: f64, way: f64, yielding: f64, duration: f64) -> (f64, bool) {
-        let force = self.solve(from, way, yielding, duration);
+    /// Mean force of a part (see `solve`) \[N\], and whether the limit bounds it.
+    fn force(&self, from: f64, travel: f64, yielding: f64, duration: f64) -> (f64, bool) {
+        let force = self.solve(from, travel, yielding, duration);
         if force > self.force_limit {
             (self.force_limit, true)
         } else {
@@ -155,22 +155,22 @@ impl HertzContact {
         }
     }
 
-    /// The dent that the limit force leaves of an overlap, m: what the surface cannot hold elastically.
+    /// Permanent indentation by the limit force at an overlap \[m\]: the inelastic part of the overlap.
     fn dent(&self, overlap: f64) -> f64 {
         overlap - (self.force_limit / self.stiffness).powf(2.0 / 3.0)
     }
 
-    /// Force of an instant, N.
+    /// Force at an instant \[N\].
     fn instant(&self, depth: f64, rate: f64) -> f64 {
         (self.elastic(depth) * (1.0 + self.loss * rate)).clamp(0.0, self.force_limit)
     }
 
-    /// A mean of forces up to the limit is not above it by a rounding either, N.
+    /// Bounds the mean of forces up to the limit, which rounding may exceed \[N\].
     const fn bounded(&self, mean: f64) -> f64 {
         mean.min(self.force_limit)
     }
 
-    /// The step in tangent form from where `scratch` stands, whose end goes into `to`.
+    /// The step in tangent form from the state in `scratch`; its end is written to `to`.
     #[inline]
     pub(crate) fn pass<V: Vector>(
         &self,
@@ -273,7 +273,7 @@ impl HertzContact {
     }
 }
 
-/// Eq. (5), if the surfaces stay apart.
+/// Eq. (5), if the surfaces remain apart.
 #[inline]
 fn apart<V: Vector>(
     passage: &mut Passage<V>,

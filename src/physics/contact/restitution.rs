@@ -15,7 +15,7 @@ const SHORTEST_FLIGHT: f64 = 1e-3;
 /// Halvings of an interval of time: past the resolution of a double.
 const HALVINGS: u32 = 60;
 /// Impacts of one step that bounce. `SHORTEST_FLIGHT` lets no more into a step whose structure slows down steadily; past
-/// them the next impact is taken as the one with which the bounces die out.
+/// them the next impact is treated as the last of the series.
 const MOST_BOUNCES: u32 = 2000;
 
 /// Separation speed = `coefficient` × closing speed.
@@ -37,7 +37,7 @@ impl RestitutionContact {
     }
 }
 
-/// Two bodies meet: what passes between them, whatever else moves.
+/// A collision of two bodies: the impulse between them.
 struct Collision {
     coefficient: f64,
     /// M Ms/(M + Ms), kg.
@@ -79,7 +79,7 @@ impl Collision {
         2.0 * self.separation() <= deceleration * SHORTEST_FLIGHT * time_step
     }
 
-    /// The impulse (N·s) that takes their separation back, and what it loses (J): from then on they move as one.
+    /// The impulse \[N·s\] that cancels their separation velocity, and its energy loss \[J\]: from then on they move as one.
     const fn joining(&self) -> (f64, f64) {
         let separation = self.separation();
         (
@@ -89,13 +89,13 @@ impl Collision {
     }
 }
 
-/// Structure and striker while a step is under way; the motion looked at is `ahead`.
+/// Structure and striker inside a step; `ahead` is the motion under examination.
 struct Course<'a, 'b, V: Vector> {
     passage: &'a mut Passage<'b, V>,
     striker: Striker,
     now: &'a mut Motion<V>,
     ahead: &'a mut Motion<V>,
-    /// Whether `now` and `ahead` stand for each other's memory.
+    /// Whether `now` and `ahead` have exchanged their memory.
     swapped: bool,
     striker_displacement: f64,
     striker_velocity: f64,
@@ -181,7 +181,7 @@ fn locate(end: f64, mut reached: impl FnMut(f64) -> bool) -> f64 {
 }
 
 impl RestitutionContact {
-    /// The step in tangent form from where `scratch` stands, whose end goes into `to`.
+    /// The step in tangent form from the state in `scratch`; its end is written to `to`.
     #[inline]
     pub(crate) fn pass<V: Vector>(
         &mut self,
@@ -275,7 +275,7 @@ impl RestitutionContact {
         true
     }
 
-    /// An impact: the bodies part with what restitution leaves them, or go on as one.
+    /// An impact: the bodies separate by the coefficient of restitution, or continue as one.
     fn collide<V: Vector>(&mut self, course: &mut Course<V>, may_bounce: bool) {
         let Striker {
             mass,

@@ -1,6 +1,6 @@
 //! An impact, step by step, on one degree of freedom or on one floor of many: prediction, the force read back, the striker, the
-//! energies. In: a structure, a striker. Out: targets, and the end of each step. It commands no rig: whoever does asks for the next
-//! displacements and gives back what was measured there.
+//! energies. In: a structure, a striker, readings. Out: targets, and the end of each step. It commands no rig: the caller moves the
+//! specimen to the targets and returns the readings.
 
 use super::energy::Energies;
 use super::{ImpactError, ImpactInput, ImpactState, Sink, Striking, Until};
@@ -15,21 +15,21 @@ use crate::integrator::substep::{Passage, Striker, Workspace};
 use crate::integrator::tangents::Tangents;
 use crate::structure::matrix::{Factor, Matrix, Vector};
 
-/// The impact on a rig: `predict`, command, read, `complete`.
+/// A pseudo-dynamic impact test: `predict`, command, read, `complete`.
 #[derive(Clone, Debug)]
 pub struct ImpactSolver<V: Vector = f64> {
     structure: Solver<V>,
     law: AnyContact,
     striker: Striker,
     decided: Decided,
-    /// The step under way, of a law that follows its own path through it.
+    /// The step in progress, for a law that divides the step.
     passed: Option<Advance>,
     workspace: Workspace<V>,
     reach: Option<Reach<V>>,
     unloaded: V,
     /// ½ Ms V0², J.
     striker_energy: f64,
-    /// [`ImpactState::input`] but for the work of a weight, J.
+    /// [`ImpactState::input`] without the work of a weight \[J\].
     first_input: f64,
     state: ImpactState,
     striker_stopped: bool,
@@ -66,7 +66,7 @@ impl<V: Vector> Reach<V> {
         })
     }
 
-    /// ½RᵀK⁻¹R: what a structure under these forces (N) gives back elastically, J.
+    /// ½RᵀK⁻¹R: elastic energy of a structure under these forces \[N\], in \[J\].
     fn stored(&self, force: &V) -> f64 {
         let mut bent = force.clone();
         self.stiffness.solve(&mut bent);
@@ -291,7 +291,7 @@ impl<V: Vector> ImpactSolver<V> {
         }
     }
 
-    /// Ends the step with what was measured at the targets.
+    /// Ends the step with the readings at the targets.
     #[inline]
     pub fn complete(
         &mut self,
@@ -425,7 +425,7 @@ impl<V: Vector> ImpactSolver<V> {
         back >= fastest || state.striker_displacement < farthest + state.indentation
     }
 
-    /// Whether the run has come to its end before its duration.
+    /// Whether the run has ended before its duration.
     #[must_use]
     pub fn over(&self, until: Until) -> bool {
         until.reached(|| self.finished(), || self.rebounded())

@@ -14,7 +14,7 @@ pub mod tangent;
 pub mod tangents;
 pub(crate) mod tridiagonal;
 
-/// How a run goes from one step to the next.
+/// A time-integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrator {
     /// Newmark's constant average acceleration with the measured tangent stiffness (Melo et al. 2006, eqs. 2 to 6).
@@ -26,7 +26,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// The word of the language.
+    /// Its name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

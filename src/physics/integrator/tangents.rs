@@ -7,7 +7,7 @@ use super::tangent::TangentStiffness;
 use crate::structure::matrix::{Matrix, Vector};
 use crate::structure::{SymmetricBand, set_storeys, storeys_of};
 
-/// What the tangent form takes for `K_t`.
+/// `K_t` of the tangent form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tangents {
     /// K0 throughout: for a frame whose matrix has no storeys.
@@ -105,7 +105,7 @@ impl Storey {
         Self { followed, last }
     }
 
-    /// Takes the next reading of a storey that stands alone: every secant counts, for its factor costs one division.
+    /// Adds the next reading of a single storey: every secant is used, because its factor costs one division.
     #[inline]
     fn take_alone(&mut self, displacement: f64, force: f64, stiffness: &mut f64) -> bool {
         self.followed.take(displacement, force);

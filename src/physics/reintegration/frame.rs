@@ -4,11 +4,11 @@
 
 use std::cell::Cell;
 
-use super::frame_path::{FrameAgain, FramePath};
-use super::impact::{Outcome, Telling};
+use super::frame_path::{FramePath, FrameRetrace};
+use super::impact::{ImpactResults, Outcome};
 use crate::contact::state::{ContactLaw, StepState};
 use crate::impact::Until;
-use crate::impact::peaks::{Extremes, Peak, farther};
+use crate::impact::peaks::{Peak, PeakDisplacements, farther};
 use crate::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactState, Sink, Striking};
 use crate::integrator::Integrator;
 use crate::integrator::input::{FrameError, FrameInput};
@@ -103,7 +103,7 @@ pub struct StrikerOutcome {
 impl FrameRun {
     fn input<'a>(
         &'a self,
-        again: &'a FrameAgain,
+        retrace: &'a FrameRetrace,
         load: &'a [f64],
         time_step: f64,
     ) -> FrameInput<'a> {
@@ -114,8 +114,8 @@ impl FrameRun {
             i_modification: self.i_modification,
             tangents: self.tangents,
             time_step,
-            initial_displacement: again.start(),
-            initial_restoring_force: again.force(),
+            initial_displacement: retrace.start(),
+            initial_restoring_force: retrace.force(),
             initial_load: load,
             force_noise: self.force_noise,
             resolution: self.resolution,
@@ -132,12 +132,12 @@ impl FrameRun {
         path: &FramePath,
         readings: &Perturbation,
     ) -> Result<FloorsOutcome, FrameError> {
-        let mut again = path.again(readings);
+        let mut retrace = path.retrace(readings);
         let mut load = vec![0.0; self.matrices.order()];
         let at = |step: usize| ground.get(step).copied().unwrap_or(0.0);
         self.matrices.ground_load(at(0), &mut load);
         let time_step = self.time_step / f64::from(readings.finer);
-        let mut solver = FrameSolver::new(&self.input(&again, &load, time_step))?;
+        let mut solver = FrameSolver::new(&self.input(&retrace, &load, time_step))?;
         let mut told = Peaks::new(self.matrices.order(), time_step);
         told.take(solver.state(), 1.0);
         let mut passing = Passing::new(self, path);
@@ -146,12 +146,15 @@ impl FrameRun {
         {
             self.matrices.ground_load(at(step), &mut load);
             solver.predict(&load);
-            let velocities = passing.foretold(&mut |to| solver.predicted_velocity(to));
-            again.move_to(solver.predict(&load), velocities);
-            if again.departed() {
+            let velocities = passing.predicted_velocities(&mut |to| solver.predicted_velocity(to));
+            retrace.move_to(solver.predict(&load), velocities);
+            if retrace.departed() {
                 told.departs();
             }
-            told.take(solver.complete(again.displacement(), again.force()), 1.0);
+            told.take(
+                solver.complete(retrace.displacement(), retrace.force()),
+                1.0,
+            );
         }
         Ok(told.finish(passing))
     }
@@ -166,7 +169,7 @@ impl FrameRun {
         path: &FramePath,
         readings: &Perturbation,
     ) -> Result<BlowOutcome, ImpactError> {
-        let mut again = path.again(readings);
+        let mut retrace = path.retrace(readings);
         let order = self.matrices.order();
         let Blow {
             struck,
@@ -182,14 +185,14 @@ impl FrameRun {
             ..body.striking()
         };
         let mut solver =
-            FrameImpactSolver::on(&self.input(&again, &unloaded, body.time_step), &striking)?;
+            FrameImpactSolver::on(&self.input(&retrace, &unloaded, body.time_step), &striking)?;
         let start = ImpactState {
-            measured_displacement: again.displacement()[struck],
+            measured_displacement: retrace.displacement()[struck],
             ..*solver.state()
         };
         let departed = Cell::new(false);
         let mut found = StruckFloors {
-            impact: Telling::new(&body, until, &start),
+            impact: ImpactResults::new(&body, until, &start),
             peaks: Peaks::new(order, body.time_step),
             energy: StoreyWork::new(solver.structure()),
             first_blow: 0,
@@ -201,12 +204,12 @@ impl FrameRun {
         found.peaks.take(solver.structure(), 1.0);
         let mut passing = Passing::new(self, path);
         let read = |solver: &mut FrameImpactSolver| {
-            let velocities = passing.foretold(&mut |to| {
+            let velocities = passing.predicted_velocities(&mut |to| {
                 solver.predicted_velocity(to);
             });
-            again.move_to(solver.predict(), velocities);
-            departed.set(again.departed());
-            [again.displacement().to_vec(), again.force().to_vec()]
+            retrace.move_to(solver.predict(), velocities);
+            departed.set(retrace.departed());
+            [retrace.displacement().to_vec(), retrace.force().to_vec()]
         };
         let steps = self.steps * u64::from(readings.finer);
         solver.run(Some(until), steps, read, &mut found);
@@ -221,7 +224,7 @@ impl FrameRun {
 
 /// An impact on one floor, collected from the ends of its steps.
 struct StruckFloors<'a> {
-    impact: Telling,
+    impact: ImpactResults,
     peaks: Peaks,
     energy: StoreyWork,
     first_blow: u64,
@@ -276,7 +279,7 @@ impl Passing {
         }
     }
 
-    fn foretold(&mut self, tell: &mut dyn FnMut(&mut [f64])) -> &[f64] {
+    fn predicted_velocities(&mut self, tell: &mut dyn FnMut(&mut [f64])) -> &[f64] {
         if !self.now.is_empty() {
             tell(&mut self.now);
         }
@@ -290,8 +293,8 @@ impl Passing {
 /// Peaks of all floors and storeys, step by step.
 struct Peaks {
     ends: Floors,
-    displacement: Extremes,
-    drift: Extremes,
+    displacement: PeakDisplacements,
+    drift: PeakDisplacements,
     base_shear: Peak,
     time_step: f64,
     velocity: Vec<f64>,
@@ -313,8 +316,8 @@ impl Peaks {
         };
         Self {
             ends,
-            displacement: Extremes::new(floors, time_step),
-            drift: Extremes::new(floors, time_step),
+            displacement: PeakDisplacements::new(floors, time_step),
+            drift: PeakDisplacements::new(floors, time_step),
             base_shear: Peak::default(),
             time_step,
             velocity: nothing(),

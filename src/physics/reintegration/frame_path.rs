@@ -7,7 +7,7 @@
 //! was at the same step and, off its recorded place, for as stiff as it was at first: exact where it is elastic. At the recorded targets
 //! the recorded readings come back as they were, to the bit.
 
-use super::hysteresis_replay::{Again, Reading, RecordedPath, lag, nearest};
+use super::hysteresis_replay::{Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
 use crate::structure::{SymmetricBand, drifts, shears, storeys_of};
 
@@ -143,11 +143,11 @@ impl FramePath {
 
     /// Takes the way again from its beginning.
     #[must_use]
-    pub fn again<'a>(&'a self, readings: &'a Perturbation) -> FrameAgain<'a> {
+    pub fn retrace<'a>(&'a self, readings: &'a Perturbation) -> FrameRetrace<'a> {
         let walks = match &self.bends {
             Bends::Storeys(paths) => paths
                 .iter()
-                .map(|path| (path, path.again(readings.finer)))
+                .map(|path| (path, path.retrace(readings.finer)))
                 .collect(),
             Bends::Together(..) => Vec::new(),
         };
@@ -157,7 +157,7 @@ impl FramePath {
             .iter()
             .zip(&readings.axes)
             .map(|(place, axis)| place * axis.displacement_scale);
-        let mut again = FrameAgain {
+        let mut retrace = FrameRetrace {
             path: self,
             readings,
             storeys: walks,
@@ -169,8 +169,8 @@ impl FramePath {
             displacement: first.displacement.clone(),
             force: first.force.clone(),
         };
-        again.read();
-        again
+        retrace.read();
+        retrace
     }
 }
 
@@ -183,10 +183,10 @@ fn to(to_storeys: fn(&[f64], &mut [f64]), floors: &[f64]) -> Vec<f64> {
 
 /// The way as it is taken again.
 #[derive(Clone, Debug)]
-pub struct FrameAgain<'a> {
+pub struct FrameRetrace<'a> {
     path: &'a FramePath,
     readings: &'a Perturbation,
-    storeys: Vec<(&'a RecordedPath, Again<'a>)>,
+    storeys: Vec<(&'a RecordedPath, Retrace<'a>)>,
     /// Of its own steps.
     own_step: usize,
     /// The step of the record that is nearest.
@@ -201,7 +201,7 @@ pub struct FrameAgain<'a> {
     force: Vec<f64>,
 }
 
-impl FrameAgain<'_> {
+impl FrameRetrace<'_> {
     /// Where it begins, m.
     #[must_use]
     pub fn start(&self) -> &[f64] {
@@ -223,7 +223,7 @@ impl FrameAgain<'_> {
     /// Whether a storey has departed from the record.
     #[must_use]
     pub fn departed(&self) -> bool {
-        self.storeys.iter().any(|(_, again)| again.departed())
+        self.storeys.iter().any(|(_, retrace)| retrace.departed())
     }
 
     /// Goes to the targets of the next step, m, passing them with these velocities (m/s) if it does not stop there, and reads.
@@ -275,8 +275,8 @@ impl FrameAgain<'_> {
             let drift = self.place[storey] - below;
             let velocity = self.velocity[storey] - slower;
             (below, slower) = (self.place[storey], self.velocity[storey]);
-            let (path, again) = &mut self.storeys[storey];
-            let (displacement, shear) = again.pass(drift, velocity);
+            let (path, retrace) = &mut self.storeys[storey];
+            let (displacement, shear) = retrace.pass(drift, velocity);
             let recorded = *path.recorded(self.step);
             off += displacement - recorded.displacement;
             self.displacement[storey] += off;
@@ -345,12 +345,12 @@ mod tests {
         for stiffness in [storey_stiffness(&STIFFNESSES), coupled] {
             let path = path(&stiffness);
             let none = Perturbation::none(3);
-            let mut again = path.again(&none);
-            assert_eq!(again.start(), targets()[0]);
+            let mut retrace = path.retrace(&none);
+            assert_eq!(retrace.start(), targets()[0]);
             for reading in path.readings.iter().skip(1) {
-                again.move_to(&reading.target, &[0.0; 3]);
+                retrace.move_to(&reading.target, &[0.0; 3]);
                 assert_eq!(
-                    (again.displacement(), again.force()),
+                    (retrace.displacement(), retrace.force()),
                     (reading.displacement.as_slice(), reading.force.as_slice())
                 );
             }
@@ -374,7 +374,7 @@ mod tests {
                 instruments.displacement_scale = [1.05, 0.95, 1.0][axis];
                 instruments.zero_offset = [1.0, 2.0, -3.0][axis];
             }
-            let mut again = path.again(&readings);
+            let mut retrace = path.retrace(&readings);
             for (step, target) in targets()
                 .iter()
                 .chain(&[[0.03, 0.01, -0.04]; 3])
@@ -382,7 +382,7 @@ mod tests {
                 .skip(1)
             {
                 let off: Vec<f64> = target.iter().map(|place| place + 1e-3).collect();
-                again.move_to(&off, &[0.0; 3]);
+                retrace.move_to(&off, &[0.0; 3]);
                 let places: Vec<f64> = off
                     .iter()
                     .enumerate()
@@ -395,7 +395,7 @@ mod tests {
                     // The other frame is 0.5 N/m stiffer off its way, of at most 50 mm.
                     let within = if storeys { 1e-9 } else { 0.5 * 0.05 * 1.2 };
                     assert!(
-                        (again.force()[axis] - expected).abs() < within,
+                        (retrace.force()[axis] - expected).abs() < within,
                         "step {step}, axis {axis}"
                     );
                 }

@@ -19,7 +19,7 @@ pub enum Behaviour {
         hardening: f64,
     },
     /// The same, wearing with the energy it has taken.
-    WearingBilinear {
+    DeterioratingBilinear {
         stiffness: f64,
         yield_force: f64,
         hardening: f64,
@@ -88,7 +88,7 @@ impl Behaviour {
         match self {
             Self::Elastic { stiffness }
             | Self::Bilinear { stiffness, .. }
-            | Self::WearingBilinear { stiffness, .. }
+            | Self::DeterioratingBilinear { stiffness, .. }
             | Self::BoucWen { stiffness, .. }
             | Self::Degrading { stiffness, .. } => *stiffness,
             Self::Beam(beam) => beam.stiffness,
@@ -131,7 +131,7 @@ impl Behaviour {
             | Self::Parallel(_) => self.stiffness_of_parts(Self::largest_stiffness),
             Self::Elastic { .. }
             | Self::Bilinear { .. }
-            | Self::WearingBilinear { .. }
+            | Self::DeterioratingBilinear { .. }
             | Self::Beam(_)
             | Self::Multilinear { .. }
             | Self::Pinching(_)
@@ -200,7 +200,7 @@ impl Behaviour {
                 hardening,
                 ..
             }
-            | Self::WearingBilinear {
+            | Self::DeterioratingBilinear {
                 yield_force,
                 hardening,
                 ..
@@ -298,7 +298,7 @@ impl Behaviour {
                 yield_force,
                 ..
             }
-            | Self::WearingBilinear {
+            | Self::DeterioratingBilinear {
                 stiffness,
                 yield_force,
                 ..

@@ -24,7 +24,7 @@ pub use bilinear::Bilinear;
 pub use bolted::{Bolted, BoltedJoint};
 pub use bouc_wen::BoucWen;
 pub use degrading::Degrading;
-pub use deteriorating_bilinear::WearingBilinear;
+pub use deteriorating_bilinear::DeterioratingBilinear;
 pub use deterioration::Deterioration;
 pub use fracture::{Breaks, Fracture};
 pub use multilinear::Multilinear;
@@ -61,7 +61,7 @@ impl RestoringForce for Elastic {
 pub enum SpecimenModel {
     Elastic(Elastic),
     Bilinear(Bilinear),
-    WearingBilinear(Box<WearingBilinear>),
+    DeterioratingBilinear(Box<DeterioratingBilinear>),
     Multilinear(Multilinear),
     BoucWen(Box<BoucWen>),
     Pinched(Box<PinchedHysteresis>),
@@ -90,12 +90,12 @@ impl SpecimenModel {
                 yield_force,
                 hardening,
             } => Self::Bilinear(Bilinear::new(*stiffness, *yield_force, *hardening)),
-            Behaviour::WearingBilinear {
+            Behaviour::DeterioratingBilinear {
                 stiffness,
                 yield_force,
                 hardening,
                 deterioration,
-            } => Self::WearingBilinear(Box::new(WearingBilinear::new(
+            } => Self::DeterioratingBilinear(Box::new(DeterioratingBilinear::new(
                 *stiffness,
                 *yield_force,
                 *hardening,
@@ -149,7 +149,7 @@ impl RestoringForce for SpecimenModel {
         match self {
             Self::Elastic(model) => model.move_to(displacement),
             Self::Bilinear(model) => model.move_to(displacement),
-            Self::WearingBilinear(model) => model.move_to(displacement),
+            Self::DeterioratingBilinear(model) => model.move_to(displacement),
             Self::Multilinear(model) => model.move_to(displacement),
             Self::BoucWen(model) => model.move_to(displacement),
             Self::Pinched(model) => model.move_to(displacement),
@@ -170,7 +170,7 @@ impl RestoringForce for SpecimenModel {
         match self {
             Self::Elastic(model) => model.initial_stiffness(),
             Self::Bilinear(model) => model.initial_stiffness(),
-            Self::WearingBilinear(model) => model.initial_stiffness(),
+            Self::DeterioratingBilinear(model) => model.initial_stiffness(),
             Self::Multilinear(model) => model.initial_stiffness(),
             Self::BoucWen(model) => model.initial_stiffness(),
             Self::Pinched(model) => model.initial_stiffness(),

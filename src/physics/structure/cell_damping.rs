@@ -1,5 +1,5 @@
-//! What a load cell reads beside the restoring force while a specimen is moved: viscous and Coulomb damping, and the strength
-//! that some specimens gain with speed.
+//! Force of a load cell beside the restoring force while a specimen moves: viscous and Coulomb damping, and the rate dependence of
+//! strength. In: a restoring force, a velocity. Out: the force that the load cell measures.
 
 use crate::specimen::Behaviour;
 
@@ -79,8 +79,8 @@ impl CellDamping {
         self.viscous == 0.0 && self.coulomb == 0.0 && self.rate.is_none()
     }
 
-    /// All that the cell reads at `velocity` (m/s) of a specimen that resists with `restoring_force` (N) at rest, N.
-    pub fn felt(&mut self, restoring_force: f64, velocity: f64) -> f64 {
+    /// Force of the load cell at `velocity` \[m/s\], for a specimen with `restoring_force` \[N\] at rest \[N\].
+    pub fn measured_force(&mut self, restoring_force: f64, velocity: f64) -> f64 {
         let gained = self
             .rate
             .map_or(0.0, |rate| restoring_force * rate.gain(velocity));
@@ -120,9 +120,9 @@ mod tests {
             exponent: 0.2,
         };
         let mut damping = CellDamping::new(10.0, 3.0).with_rate_of(&behaviour);
-        assert!((damping.felt(100.0, 0.01) - (150.0 + 0.1 + 3.0)).abs() < 1e-12);
-        assert!((damping.felt(-100.0, -0.32) - (-200.0 - 3.2 - 3.0)).abs() < 1e-12);
-        assert_eq!(damping.felt(100.0, 0.0), 97.0);
-        assert_eq!(CellDamping::new(0.0, 0.0).felt(100.0, 1.0), 100.0);
+        assert!((damping.measured_force(100.0, 0.01) - (150.0 + 0.1 + 3.0)).abs() < 1e-12);
+        assert!((damping.measured_force(-100.0, -0.32) - (-200.0 - 3.2 - 3.0)).abs() < 1e-12);
+        assert_eq!(damping.measured_force(100.0, 0.0), 97.0);
+        assert_eq!(CellDamping::new(0.0, 0.0).measured_force(100.0, 1.0), 100.0);
     }
 }

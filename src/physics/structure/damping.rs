@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::matrix::SymmetricBand;
 use super::modes::Modes;
 
-/// How the damping of a frame is said.
+/// The damping of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Damping {
     None,

@@ -21,7 +21,7 @@ impl FrameMatrices {
         self.mass.order()
     }
 
-    /// −M ι `ü_g`, N: what a ground acceleration (m/s²) is to displacements against the ground.
+    /// Load −M ι `ü_g` of a ground acceleration \[m/s²\] on displacements relative to the ground \[N\].
     pub fn ground_load(&self, acceleration: f64, load: &mut [f64]) {
         if self.mass.half_bandwidth() == 0 {
             for (load, mass) in load.iter_mut().zip(self.mass.band(0)) {

@@ -1,4 +1,4 @@
-//! Natural modes of a frame. In: mass and stiffness. Out: periods, shapes, what part of a ground motion each mode takes.
+//! Natural modes of a frame. In: mass and stiffness. Out: periods, shapes, participation in a ground motion.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::PI;

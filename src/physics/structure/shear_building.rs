@@ -1,4 +1,4 @@
-//! Shear buildings: floors of a frame, each held against the one below by its storey. In: storey stiffnesses, forces of
+//! Shear buildings: floors of a frame, each connected to the one below by its storey. In: storey stiffnesses, forces of
 //! the floors. Out: stiffness matrices, drifts, shears. Floor 0 here is the lowest that moves.
 
 use super::matrix::SymmetricBand;

@@ -220,7 +220,7 @@ pub(crate) fn to_rest(
     steps.push(step_of(before, start, &at, secants, session));
     let noise = session.guard.declared_noise();
     let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
-    let detectable = (NOISE * noise.force).max(unloading.felt(noise.resolution.max(rounding)));
+    let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
     let mut left = largest(&at.force);
     let within = within.unwrap_or_else(|| detectable.max(SMALL * left).max(f64::MIN_POSITIVE));
     let mut path = UnloadingPath::new(unloading, (noise.force, noise.resolution), loaded(&at));
@@ -231,7 +231,7 @@ pub(crate) fn to_rest(
         if left <= within {
             return Ok(rest(at));
         }
-        let increments = path.way(&at.force);
+        let increments = path.moves(&at.force);
         let target: Vec<f64> = session
             .guard
             .commanded()

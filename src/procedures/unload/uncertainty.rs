@@ -81,7 +81,7 @@ impl<'run> RestUncertainty<'run> {
             values.fold(0.0, |most: f64, value| most.max(value.abs()))
         };
         let told = NOISE * most(&mut errors.iter().map(|error| error.0));
-        let told = told.max(unloading.felt(most(&mut errors.iter().map(|error| error.1))));
+        let told = told.max(unloading.force_of(most(&mut errors.iter().map(|error| error.1))));
         if !exact && most(&mut rest.force.iter().copied()) > told {
             let RestUncertainty {
                 procedure, blow, ..
@@ -155,7 +155,7 @@ impl<'run> RestUncertainty<'run> {
 
 /// Forces (N) that a source makes of the floors move the place where none is left.
 fn moves(rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) {
-    for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.way(force)) {
+    for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.moves(force)) {
         parts.extend((amount != 0.0).then(|| Contribution::new(source, amount)));
     }
 }

@@ -72,7 +72,7 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
                 ("hardening", *hardening, Of::NUMBER),
             ],
         ),
-        Behaviour::WearingBilinear {
+        Behaviour::DeterioratingBilinear {
             stiffness,
             yield_force,
             hardening,

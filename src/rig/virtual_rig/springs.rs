@@ -148,7 +148,7 @@ impl Springs {
             let storeys = storeys.iter_mut().zip(of_drifts(velocities));
             let shears: Vec<f64> = storeys
                 .map(|(storey, velocity)| {
-                    storey.damper.felt(storey.shear, velocity) + storey.relaxing.force()
+                    storey.damper.measured_force(storey.shear, velocity) + storey.relaxing.force()
                 })
                 .collect();
             floor_forces(&shears, &mut felt);

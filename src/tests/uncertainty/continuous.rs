@@ -3,7 +3,7 @@
 
 use super::frame::{constant, entry, shaken};
 use super::rest::{Misread, RIGHT};
-use crate::physics::impact::peaks::{Extremes, Peak};
+use crate::physics::impact::peaks::{Peak, PeakDisplacements};
 use crate::plan::{
     Behaviour, Calibration, Frame, Integrator, Link, Mode, Plan, ProcedureKind, Settle, Shake,
     ShakeDamping, Stepping, Storey, VirtualLink,
@@ -190,8 +190,8 @@ fn numbers(record: &Record) -> [f64; 7] {
         panic!("{:?}", record.outcome)
     };
     let (mut places, mut drifts, mut shear) = (
-        Extremes::new(2, TIME_STEP),
-        Extremes::new(2, TIME_STEP),
+        PeakDisplacements::new(2, TIME_STEP),
+        PeakDisplacements::new(2, TIME_STEP),
         Peak::default(),
     );
     for step in &history.steps {

@@ -14,12 +14,12 @@ mod rate_correction;
 mod reintegrated;
 
 pub(crate) use rate_correction::lag;
-pub use reintegrated::Again;
+pub use reintegrated::Retrace;
 pub(crate) use reintegrated::nearest;
 
 use self::pieces::{Branch, Piece};
 use crate::integrator::tangent::NOISE_MULTIPLE;
-use crate::reintegration::hysteresis_replay::rate_correction::UnderWay;
+use crate::reintegration::hysteresis_replay::rate_correction::ContinuousReadings;
 
 /// One step of the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +52,7 @@ pub struct RecordedPath {
     /// Whether its curves keep Masing's rule.
     keeps_masing: bool,
     /// Of readings made without a stop: `readings` are those of the specimen at rest.
-    under_way: Option<UnderWay>,
+    under_way: Option<ContinuousReadings>,
 }
 
 impl RecordedPath {
@@ -88,7 +88,7 @@ impl RecordedPath {
         if readings.is_empty() {
             return None;
         }
-        let found = UnderWay::of(readings, velocities, time_step, resolution);
+        let found = ContinuousReadings::of(readings, velocities, time_step, resolution);
         Some(Self::of(
             found.at_rest(),
             Some(found),
@@ -99,7 +99,7 @@ impl RecordedPath {
 
     fn of(
         readings: Vec<Reading>,
-        under_way: Option<UnderWay>,
+        under_way: Option<ContinuousReadings>,
         stiffness: f64,
         (force_noise, resolution): (f64, f64),
     ) -> Self {
@@ -141,8 +141,8 @@ impl RecordedPath {
 
     /// Goes along it again from its beginning, in `finer` steps for each of the record.
     #[must_use]
-    pub fn again(&self, finer: u8) -> Again<'_> {
-        Again::new(self, finer)
+    pub fn retrace(&self, finer: u8) -> Retrace<'_> {
+        Retrace::new(self, finer)
     }
 
     /// Displacement and force at `place` (m) on the curve of `piece`, looked for from the reading of `step`.

@@ -6,7 +6,7 @@
 //! and Preisach's models). So one branch may have pieces of several curves, and one curve pieces on several branches.
 
 use super::Reading;
-use super::rate_correction::UnderWay;
+use super::rate_correction::ContinuousReadings;
 
 /// Loops no thicker than this share of the force they span are none: the way back is the way there.
 const THIN: f64 = 1e-3;
@@ -61,7 +61,7 @@ pub(super) struct Branch {
 pub(super) fn cut(
     readings: &[Reading],
     (stiffness, force_noise, least): (f64, f64, f64),
-    under_way: Option<&UnderWay>,
+    under_way: Option<&ContinuousReadings>,
 ) -> (Vec<Branch>, Vec<Piece>) {
     let mut branches: Vec<Branch> = Vec::new();
     let mut pieces: Vec<Piece> = Vec::new();
@@ -70,7 +70,7 @@ pub(super) fn cut(
     let mut elastic = stiffness;
     let found = under_way.map_or_else(
         || stretches(readings),
-        |under_way| stretches_of(under_way.velocities()),
+        |under_way| branches_of(under_way.velocities()),
     );
     for (begin, end, direction) in found {
         let branch = branches.len();
@@ -187,11 +187,11 @@ pub(super) fn cut(
 /// Readings at the ends of each stretch without a turn, and its direction.
 fn stretches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
     let moved = readings.windows(2).map(|two| two[1].target - two[0].target);
-    stretches_of(std::iter::once(0.0).chain(moved))
+    branches_of(std::iter::once(0.0).chain(moved))
 }
 
 /// The same of how it went to each reading: a way, or a velocity.
-pub(super) fn stretches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
+pub(super) fn branches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::new();
     let (mut begin, mut last, mut direction) = (0, 0, 0.0);
     for (step, moved) in went.enumerate() {

@@ -44,7 +44,7 @@
 //! the middle of all, each weighed by what it tells, is not moved by those in which the specimen yields.
 
 use super::Reading;
-use super::pieces::stretches_of;
+use super::pieces::branches_of;
 
 /// Increments taken together: few enough that the tangent is one, one more than the two unknowns need.
 const TOGETHER: usize = 4;
@@ -57,7 +57,7 @@ const OF_MEDIAN: f64 = 1.4826;
 
 /// Readings made under way.
 #[derive(Clone, Debug)]
-pub(super) struct UnderWay {
+pub(super) struct ContinuousReadings {
     /// Of the specimen behind its target, s.
     lag: f64,
     /// Of the specimen, N·s/m.
@@ -72,20 +72,23 @@ pub(super) struct UnderWay {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Speed {
     /// As foretold for a target.
-    foretold: f64,
-    pub felt: f64,
+    predicted: f64,
+    pub actual: f64,
 }
 
-impl UnderWay {
+impl ContinuousReadings {
     /// `velocities` are those foretold for the targets, m/s, and of the same time as `time_step` (s); `resolution` in m.
     pub fn of(readings: Vec<Reading>, velocities: &[f64], time_step: f64, resolution: f64) -> Self {
-        let foretold: Vec<f64> = velocities
+        let predicted: Vec<f64> = velocities
             .iter()
             .copied()
             .chain(std::iter::repeat(0.0))
             .take(readings.len())
             .collect();
-        let passed = readings.into_iter().zip(foretold.iter().copied()).collect();
+        let passed = readings
+            .into_iter()
+            .zip(predicted.iter().copied())
+            .collect();
         let mut found = Self {
             lag: 0.0,
             damping: 0.0,
@@ -97,12 +100,12 @@ impl UnderWay {
             let behind = found
                 .passed
                 .iter()
-                .map(|(reading, felt)| (reading.target - reading.displacement, *felt));
+                .map(|(reading, actual)| (reading.target - reading.displacement, *actual));
             found.lag = lag(behind, resolution);
             let mut speed = Speed::default();
-            for (step, foretold) in foretold.iter().enumerate() {
-                speed = found.speed(speed, *foretold, 1);
-                found.passed[step].1 = speed.felt;
+            for (step, predicted) in predicted.iter().enumerate() {
+                speed = found.speed(speed, *predicted, 1);
+                found.passed[step].1 = speed.actual;
             }
         }
         found.damping = damping(&found.at_rest(), &found.velocities().collect::<Vec<f64>>());
@@ -121,19 +124,19 @@ impl UnderWay {
 
     /// Once a target is passed for which a velocity (m/s) is foretold: ẋ = (d − x)/τ, the foretold one even from step to step, of which
     /// there are `finer` for each of the record.
-    pub fn speed(&self, before: Speed, foretold: f64, finer: u8) -> Speed {
+    pub fn speed(&self, before: Speed, predicted: f64, finer: u8) -> Speed {
         if self.lag <= 0.0 {
             return Speed {
-                foretold,
-                felt: foretold,
+                predicted,
+                actual: predicted,
             };
         }
         let time_step = self.time_step / f64::from(finer);
-        let slower = (foretold - before.foretold) / time_step * self.lag;
-        let fading = (before.felt - before.foretold + slower) * (-time_step / self.lag).exp();
+        let slower = (predicted - before.predicted) / time_step * self.lag;
+        let fading = (before.actual - before.predicted + slower) * (-time_step / self.lag).exp();
         Speed {
-            foretold,
-            felt: foretold - slower + fading,
+            predicted,
+            actual: predicted - slower + fading,
         }
     }
 
@@ -218,7 +221,7 @@ pub fn lag(behind: impl Iterator<Item = (f64, f64)>, resolution: f64) -> f64 {
 fn damping(readings: &[Reading], velocities: &[f64]) -> f64 {
     // Of each few increments: c (N·s/m), and what it tells (m²/s²).
     let mut told: Vec<(f64, f64)> = Vec::new();
-    for (begin, end, _) in stretches_of(velocities.iter().copied()) {
+    for (begin, end, _) in branches_of(velocities.iter().copied()) {
         // The increment in which it turned has two tangents.
         let mut first = if begin == 0 { 0 } else { begin + 1 };
         while first + TOGETHER <= end {
@@ -314,7 +317,7 @@ mod tests {
     const TIME_STEP: f64 = 2e-3;
 
     /// Targets ahead of the specimen by τẋ, what was read there, and the velocities foretold for them.
-    fn read(model: &mut impl RestoringForce, damping: f64, noise: f64) -> UnderWay {
+    fn read(model: &mut impl RestoringForce, damping: f64, noise: f64) -> ContinuousReadings {
         let way = way();
         let reading = |(step, [place, velocity, _]): (usize, &[f64; 3])| {
             let sign = if step % 7 < 3 || step % 5 == 1 {
@@ -330,11 +333,11 @@ mod tests {
             }
         };
         let readings = way.iter().enumerate().map(reading).collect();
-        let foretold: Vec<f64> = way
+        let predicted: Vec<f64> = way
             .iter()
             .map(|[_, velocity, acceleration]| velocity + LAG * acceleration)
             .collect();
-        UnderWay::of(readings, &foretold, TIME_STEP, 1e-6)
+        ContinuousReadings::of(readings, &predicted, TIME_STEP, 1e-6)
     }
 
     /// An elastic and a yielding specimen, exactly and with noise: τ by 1 µm of quantum, c by hand.

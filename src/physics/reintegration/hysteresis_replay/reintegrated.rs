@@ -15,7 +15,7 @@ pub const fn nearest(step: usize, finer: u8) -> usize {
 
 /// The way as it is taken again.
 #[derive(Clone, Debug)]
-pub struct Again<'a> {
+pub struct Retrace<'a> {
     path: &'a RecordedPath,
     /// Steps for each of the record.
     finer: u8,
@@ -57,7 +57,7 @@ struct Aside {
     direction: f64,
 }
 
-impl<'a> Again<'a> {
+impl<'a> Retrace<'a> {
     pub(super) fn new(path: &'a RecordedPath, finer: u8) -> Self {
         let turns = path
             .branches
@@ -105,11 +105,11 @@ impl<'a> Again<'a> {
             .path
             .under_way
             .as_ref()
-            .map_or(target, |under_way| under_way.place(target, speed.felt));
+            .map_or(target, |under_way| under_way.place(target, speed.actual));
         let before = self.step;
         self.own_step += 1;
         self.step = nearest(self.own_step, self.finer);
-        self.go(place, speed.felt, before);
+        self.go(place, speed.actual, before);
         (self.place, self.speed) = (place, speed);
         self.read()
     }
@@ -159,7 +159,11 @@ impl<'a> Again<'a> {
             let against = moved * path.branches[self.branch()].direction < 0.0;
             if against {
                 let between = under_way.and_then(|it| {
-                    it.turn_between((self.place, self.speed.felt), (place, velocity), self.finer)
+                    it.turn_between(
+                        (self.place, self.speed.actual),
+                        (place, velocity),
+                        self.finer,
+                    )
                 });
                 let from = between.unwrap_or(self.place);
                 if self.matched(before) {
@@ -325,11 +329,11 @@ impl<'a> Again<'a> {
         let (displacement, force) = self.recorded();
         let step = self.looked_from();
         let recorded = self.path.readings[step].force;
-        let felt = self
+        let actual = self
             .path
             .under_way
             .as_ref()
-            .map(|under_way| under_way.force(step, (force, recorded), self.speed.felt));
-        (displacement, felt.unwrap_or(force))
+            .map(|under_way| under_way.force(step, (force, recorded), self.speed.actual));
+        (displacement, actual.unwrap_or(force))
     }
 }

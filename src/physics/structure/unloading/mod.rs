@@ -1,5 +1,5 @@
-//! How the forces of a frame fall as its load goes. In: the initial stiffness, then places and forces of the floors. Out: by how much
-//! each floor is from where the frame carries no load. It moves nothing.
+//! Unloading of a frame. In: the initial stiffness, then displacements and forces of the floors. Out: the distance of each floor from its
+//! unloaded position. It moves nothing.
 //!
 //! In a shear building each storey's shear is a function of its own drift, so that the system falls apart: storey j is off by
 //! −Vⱼ/kⱼ, and kⱼ is the secant that a move showed. Any other frame takes K⁻¹ of the initial stiffness throughout.
@@ -74,30 +74,30 @@ impl Unloading {
         }
     }
 
-    /// The force that `quantum` (m) at every floor can be, N: nothing below it is told from none.
+    /// Force by a displacement resolution `quantum` \[m\] at every floor \[N\]: a smaller force is not distinguished from zero.
     #[must_use]
-    pub const fn felt(&self, quantum: f64) -> f64 {
+    pub const fn force_of(&self, quantum: f64) -> f64 {
         self.stiffest * quantum
     }
 
     /// By how much each floor is to move (m) for these forces (N) to vanish.
     #[must_use]
-    pub fn way(&self, force: &[f64]) -> Vec<f64> {
+    pub fn moves(&self, force: &[f64]) -> Vec<f64> {
         match &self.slopes {
             Slopes::Storeys { shown, .. } => {
-                let mut way = vec![0.0; force.len()];
-                shears(force, &mut way);
+                let mut moves = vec![0.0; force.len()];
+                shears(force, &mut moves);
                 let mut below = 0.0;
-                for (way, stiffness) in way.iter_mut().zip(shown) {
-                    below -= *way / stiffness;
-                    *way = below;
+                for (moves, stiffness) in moves.iter_mut().zip(shown) {
+                    below -= *moves / stiffness;
+                    *moves = below;
                 }
-                way
+                moves
             }
             Slopes::Whole(factor) => {
-                let mut way: Vec<f64> = force.iter().map(|force| -force).collect();
-                factor.solve_in_place(&mut way);
-                way
+                let mut moves: Vec<f64> = force.iter().map(|force| -force).collect();
+                factor.solve_in_place(&mut moves);
+                moves
             }
         }
     }
@@ -175,13 +175,13 @@ mod tests {
     fn a_shear_building_falls_apart_into_its_storeys() {
         let stiffness = storey_stiffness(&[3.0, 2.0]);
         let unloading = Unloading::of(&stiffness).unwrap();
-        let way = unloading.way(&[1.0, 4.0]);
+        let moves = unloading.moves(&[1.0, 4.0]);
         assert!(
-            (way[0] + 5.0 / 3.0).abs() < 1e-15 && (way[1] + 5.0 / 3.0 + 2.0).abs() < 1e-15,
-            "{way:?}"
+            (moves[0] + 5.0 / 3.0).abs() < 1e-15 && (moves[1] + 5.0 / 3.0 + 2.0).abs() < 1e-15,
+            "{moves:?}"
         );
         // Rows of |K|: 5 + 2 and 2 + 2.
-        assert!((unloading.felt(0.5) - 3.5).abs() < 1e-15);
+        assert!((unloading.force_of(0.5) - 3.5).abs() < 1e-15);
     }
 
     /// The same by K⁻¹, of a frame with a spring from its top to the ground: no shear building.
@@ -191,11 +191,11 @@ mod tests {
         let braced = SymmetricBand::from_dense(&[vec![5.0, -6.0], vec![-6.0, 9.0]]).unwrap();
         for matrix in [stiffness, braced] {
             let unloading = Unloading::of(&matrix).unwrap();
-            let places = [0.25, -0.5];
+            let displacements = [0.25, -0.5];
             let mut force = [0.0; 2];
-            matrix.mul_into(&places, &mut force);
-            for (way, place) in unloading.way(&force).iter().zip(places) {
-                assert!((way + place).abs() < 1e-14);
+            matrix.mul_into(&displacements, &mut force);
+            for (moves, displacement) in unloading.moves(&force).iter().zip(displacements) {
+                assert!((moves + displacement).abs() < 1e-14);
             }
         }
     }
@@ -205,17 +205,18 @@ mod tests {
     fn each_storey_is_off_by_the_stiffness_that_it_shows() {
         let mut unloading = Unloading::of(&storey_stiffness(&[3.0, 2.0])).unwrap();
         let softer = storey_stiffness(&[1.5, 2.0]);
-        let force_at = |places: &[f64]| {
+        let force_at = |displacements: &[f64]| {
             let mut force = [0.0; 2];
-            softer.mul_into(places, &mut force);
+            softer.mul_into(displacements, &mut force);
             force
         };
-        let (places, next) = ([1.0, 1.5], [0.7, 1.1]);
-        let (force, felt) = (force_at(&places), force_at(&next));
-        let [from, to] = [(&places, &force), (&next, &felt)].map(|(displacement, force)| Loaded {
-            displacement,
-            force,
-        });
+        let (displacements, next) = ([1.0, 1.5], [0.7, 1.1]);
+        let (force, force_of) = (force_at(&displacements), force_at(&next));
+        let [from, to] =
+            [(&displacements, &force), (&next, &force_of)].map(|(displacement, force)| Loaded {
+                displacement,
+                force,
+            });
         assert!(
             unloading
                 .secants(from, to)
@@ -226,10 +227,10 @@ mod tests {
         unloading.learn_where(from, to, &|_, _, _| true);
         assert!(
             unloading
-                .way(&felt)
+                .moves(&force_of)
                 .iter()
                 .zip(next)
-                .all(|(way, place)| (way + place).abs() < 1e-14)
+                .all(|(moves, displacement)| (moves + displacement).abs() < 1e-14)
         );
         let mut noisy = [0.0; 2];
         floor_forces(&[100.0, -100.0], &mut noisy);
@@ -245,10 +246,10 @@ mod tests {
                 .all(|secant| secant.is_some_and(|secant| secant.abs() > 9e4))
         );
         unloading.learn_where(from, to, &|_, _, _| true);
-        let way = unloading.way(&[0.0, 12.0]);
+        let moves = unloading.moves(&[0.0, 12.0]);
         assert!(
-            (way[0] + 0.25).abs() < 1e-12 && (way[1] + 0.25 + 96.0).abs() < 1e-12,
-            "{way:?}"
+            (moves[0] + 0.25).abs() < 1e-12 && (moves[1] + 0.25 + 96.0).abs() < 1e-12,
+            "{moves:?}"
         );
     }
 }

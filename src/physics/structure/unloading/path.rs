@@ -1,18 +1,18 @@
-//! The moves that take the load off, one after the other, without loading the other way. In: how the forces are expected to fall, then
-//! places and forces of the floors. Out: by how much each floor is to move next. It moves nothing.
+//! The moves that unload a frame, one after the other, without loading it in the opposite direction. In: the expected slopes, then
+//! displacements and forces of the floors. Out: the next move of each floor. It moves nothing.
 //!
 //! A specimen may come back stiffer than it was loaded, softer, or first by the jump of its friction. A first short move shows the slope;
 //! then each move takes most of the load that is left, by the slope that was shown or the expected one, whichever is stiffer. Once little
-//! is left and the slope was no stiffer than the one before it, a move takes the rest. Where the way back softens, as specimens do, no move
-//! passes the place without load.
+//! is left and the slope was no stiffer than the one before it, a move takes the rest. Where the unloading branch softens, as specimens do, no move
+//! passes the unloaded position.
 
 use super::super::shear_building::{drifts, shears};
 use super::{BELIEVED, Loaded, Unloading};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 
-/// Part of the load that the first move takes, by the expected slope: a way back may be this much stiffer.
+/// Part of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
 const FIRST: f64 = 1.0 / BELIEVED;
-/// And every further one, before little is left: what noise makes of a slope then counts for a ninth of itself at most.
+/// Part that every further move removes: the error of a slope by noise then has a ninth of its effect, at most.
 const FURTHER: f64 = 0.9;
 /// A slope that exceeds the one before it by less is no stiffer.
 const STIFFER: f64 = 1.1;
@@ -23,7 +23,7 @@ const LITTLE: f64 = 0.3;
 /// And so little by the slope that was shown, also where a stiffer one was expected.
 const LEAST: f64 = 0.1;
 
-/// What is known on the way, storey by storey; of a frame that is no shear building, of all floors as one.
+/// State of the unloading, storey by storey; of all floors as one for a frame that is not a shear building.
 #[derive(Clone, Debug)]
 pub struct UnloadingPath {
     unloading: Unloading,
@@ -31,19 +31,19 @@ pub struct UnloadingPath {
     at_once: bool,
 }
 
-/// A storey on its way. All floors as one have the largest force for their load, and count the way in loads: their expected slope is 1.
+/// A storey. All floors as one have the largest force for their load and count the move in loads: their expected slope is 1.
 #[derive(Clone, Debug)]
 struct Part {
     /// N/m
     expected: f64,
-    /// By the last move that told it, N/m.
+    /// By the last move that determined it \[N/m\].
     slope: f64,
-    /// Whether that one was no stiffer than what was known before.
+    /// Whether that slope was no stiffer than the one before.
     falls: bool,
     moved: bool,
     /// Load where it began, N.
     start: f64,
-    /// Drift (m) and load (N) from where the slope is told.
+    /// Drift \[m\] and load \[N\] from which the slope is determined.
     told_from: (f64, f64),
     /// Noise of the load, N, and of the drift, m.
     noise: (f64, f64),
@@ -52,7 +52,7 @@ struct Part {
 impl UnloadingPath {
     /// `force` (N) and `place` (m): standard deviation of a reading of one floor.
     #[must_use]
-    pub fn new(unloading: Unloading, (force, place): (f64, f64), at: Loaded<'_>) -> Self {
+    pub fn new(unloading: Unloading, (force, displacement): (f64, f64), at: Loaded<'_>) -> Self {
         let part = |expected: f64, told_from: (f64, f64), noise: (f64, f64)| Part {
             expected,
             slope: expected,
@@ -69,7 +69,11 @@ impl UnloadingPath {
                     #[expect(clippy::cast_precision_loss, reason = "some storeys")]
                     let above = (floors - storey) as f64;
                     let ends = if storey == 0 { 1.0 } else { 2.0_f64 };
-                    part(*expected, read, (force * above.sqrt(), place * ends.sqrt()))
+                    part(
+                        *expected,
+                        read,
+                        (force * above.sqrt(), displacement * ends.sqrt()),
+                    )
                 };
                 expected
                     .iter()
@@ -81,7 +85,7 @@ impl UnloadingPath {
             None => vec![part(
                 1.0,
                 (0.0, largest(at.force)),
-                (force, unloading.felt(place)),
+                (force, unloading.force_of(displacement)),
             )],
         };
         Self {
@@ -102,27 +106,27 @@ impl UnloadingPath {
 
     /// By how much each floor is to move next (m) under these forces (N).
     #[must_use]
-    pub fn way(&self, force: &[f64]) -> Vec<f64> {
+    pub fn moves(&self, force: &[f64]) -> Vec<f64> {
         if self.at_once {
-            return self.unloading.way(force);
+            return self.unloading.moves(force);
         }
         if self.unloading.storeys().is_none() {
-            let share = self.parts[0].way(largest(force)).abs() / largest(force);
+            let share = self.parts[0].moves(largest(force)).abs() / largest(force);
             return self
                 .unloading
-                .way(force)
+                .moves(force)
                 .into_iter()
-                .map(|way| share * way)
+                .map(|moves| share * moves)
                 .collect();
         }
-        let mut way = vec![0.0; force.len()];
-        shears(force, &mut way);
+        let mut moves = vec![0.0; force.len()];
+        shears(force, &mut moves);
         let mut below = 0.0;
-        for (way, part) in way.iter_mut().zip(&self.parts) {
-            below += part.way(*way);
-            *way = below;
+        for (moves, part) in moves.iter_mut().zip(&self.parts) {
+            below += part.moves(*moves);
+            *moves = below;
         }
-        way
+        moves
     }
 
     /// Largest load of a part, N: it falls with every move that leads on.
@@ -135,7 +139,7 @@ impl UnloadingPath {
         }
     }
 
-    /// Whether a part is loaded the other way by more than little: held by its friction, say, it is not moved to and fro.
+    /// Whether a part is loaded in the opposite direction by more than a little: a part held by friction is not moved to and fro.
     #[must_use]
     pub fn passed(&self, force: &[f64]) -> bool {
         let most = LEAST
@@ -169,7 +173,7 @@ impl UnloadingPath {
                 .learn_within(OF_OLDER, from, to, &|_, _, _| true);
         } else if self.unloading.storeys().is_none() {
             let [before, after] = [from, to].map(|at| largest(at.force));
-            let went = self.parts[0].way(before);
+            let went = self.parts[0].moves(before);
             let part = &mut self.parts[0];
             part.learn(part.told_from.0 + went, after);
         } else {
@@ -183,7 +187,7 @@ impl UnloadingPath {
 
 impl Part {
     /// How far it is to go (m) under this load (N).
-    fn way(&self, load: f64) -> f64 {
+    fn moves(&self, load: f64) -> f64 {
         let by_noise = load.abs() <= 2.0 * NOISE_MULTIPLE * self.noise.0;
         let known_to = |part: f64| self.falls && load.abs() <= part * self.start.abs();
         let share = match (by_noise || known_to(LITTLE), self.moved) {
@@ -252,8 +256,8 @@ mod tests {
         let mut all = vec![at];
         while at.1.abs() > 1e-3 * all[0].1.abs() && all.len() < 40 {
             let before = at;
-            let place = at.0 + path.way(&[at.1])[0];
-            at = (place, force(place));
+            let displacement = at.0 + path.moves(&[at.1])[0];
+            at = (displacement, force(displacement));
             let ((x, r), (to_x, to_r)) = (read(&before), read(&at));
             let [from, to] = [(&x, &r), (&to_x, &to_r)].map(|(displacement, force)| Loaded {
                 displacement,
@@ -287,13 +291,13 @@ mod tests {
         for curve in [&bends as &dyn Fn(f64) -> f64, &jumps] {
             for expected in [1e4, 2.5e4, 8e4, 1.2e5] {
                 let path = followed(expected, 0.02, curve);
-                let (place, force) = path[path.len() - 1];
+                let (displacement, force) = path[path.len() - 1];
                 assert!(
                     path.iter().all(|(_, force)| *force > -1e-9),
                     "by {expected} N/m: {path:?}"
                 );
                 assert!(
-                    force.abs() <= 1e-3 * path[0].1 && (place - 0.012).abs() < 4e-5,
+                    force.abs() <= 1e-3 * path[0].1 && (displacement - 0.012).abs() < 4e-5,
                     "by {expected} N/m: {path:?}"
                 );
             }
@@ -327,42 +331,42 @@ mod tests {
                 SymmetricBand::from_dense(&[vec![15.0, -18.0], vec![-18.0, 27.0]]).unwrap(),
             ),
         ] {
-            let force_at = |places: &[f64]| {
+            let force_at = |displacements: &[f64]| {
                 let mut force = [0.0; 2];
-                truly.mul_into(places, &mut force);
+                truly.mul_into(displacements, &mut force);
                 force
             };
-            let mut places = vec![1.0, 1.5];
-            let start = force_at(&places);
+            let mut displacements = vec![1.0, 1.5];
+            let start = force_at(&displacements);
             let at = Loaded {
-                displacement: &places,
+                displacement: &displacements,
                 force: &start,
             };
             let mut path = UnloadingPath::new(Unloading::of(&expected).unwrap(), (0.0, 0.0), at);
             for _ in 0..12 {
-                let force = force_at(&places);
+                let force = force_at(&displacements);
                 if largest(&force) < 1e-9 {
                     break;
                 }
-                let next: Vec<f64> = places
+                let next: Vec<f64> = displacements
                     .iter()
-                    .zip(path.way(&force))
-                    .map(|(place, way)| place + way)
+                    .zip(path.moves(&force))
+                    .map(|(displacement, moves)| displacement + moves)
                     .collect();
-                let felt = force_at(&next);
+                let force_of = force_at(&next);
                 path.learn(
                     Loaded {
-                        displacement: &places,
+                        displacement: &displacements,
                         force: &force,
                     },
                     Loaded {
                         displacement: &next,
-                        force: &felt,
+                        force: &force_of,
                     },
                 );
-                places = next;
+                displacements = next;
             }
-            assert!(largest(&places) < 1e-9, "{places:?}");
+            assert!(largest(&displacements) < 1e-9, "{displacements:?}");
         }
     }
 
@@ -374,7 +378,7 @@ mod tests {
             force: &[15.0],
         };
         let path = UnloadingPath::new(Unloading::of_one(1000.0), (1.0, 0.0), at);
-        assert_eq!(path.way(&[15.0]), [-0.015]);
+        assert_eq!(path.moves(&[15.0]), [-0.015]);
         let mut loaded = UnloadingPath::new(
             Unloading::of_one(1000.0),
             (1.0, 0.0),
@@ -383,7 +387,7 @@ mod tests {
                 ..at
             },
         );
-        assert_eq!(loaded.way(&[400.0]), [-0.025]);
+        assert_eq!(loaded.moves(&[400.0]), [-0.025]);
         loaded.learn(
             Loaded {
                 force: &[400.0],
@@ -395,7 +399,7 @@ mod tests {
             },
         );
         assert!(
-            (loaded.way(&[400.0])[0] + 0.36).abs() < 1e-12,
+            (loaded.moves(&[400.0])[0] + 0.36).abs() < 1e-12,
             "half a millimetre shows nothing"
         );
     }
