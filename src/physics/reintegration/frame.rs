@@ -58,7 +58,7 @@ pub struct Floors {
 }
 
 impl Floors {
-    /// The largest displacement of all floors, m; NaN where one is none.
+    /// Peak |X| of all floors \[m\]; NaN where one is NaN.
     #[must_use]
     pub fn farthest(&self) -> f64 {
         self.max_displacement
@@ -67,36 +67,35 @@ impl Floors {
     }
 }
 
-/// What a run comes to: as the run itself tells it, at the ends of steps, and as it is between them.
+/// Results of a run: at the ends of steps, as the run itself reports them, and interpolated between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorsOutcome {
     pub ends: Floors,
     pub between: Floors,
-    /// The latter as they were where the run departed from the record.
+    /// The latter at the departure of the run from the record.
     pub before_departure: Option<Floors>,
-    /// With which velocities the floors of a run without stops were foretold to pass their targets, m/s: told where the way that it
-    /// was taken along does not know them.
+    /// Velocities predicted for the floors at the targets of a continuous motion \[m/s\]; given where the path does not know them.
     pub velocities: Vec<Vec<f64>>,
 }
 
-/// What a blow on one floor comes to.
+/// Results of an impact on one floor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlowOutcome {
     pub blow: Outcome,
     pub floors: FloorsOutcome,
     pub striker: StrikerOutcome,
-    /// The latter as it was where the run departed from the record.
+    /// The latter at the departure of the run from the record.
     pub before_departure: Option<StrikerOutcome>,
 }
 
-/// What a blow on one floor comes to beside the impact and the floors.
+/// Results of an impact on one floor beside those of the impact and of the floors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrikerOutcome {
-    /// ∫ shear d(drift) of each storey, J.
+    /// ∫ shear d(drift) of each storey \[J\].
     pub storey_energy: Vec<f64>,
     /// Steps in contact from the first touch on.
     pub first_blow: u64,
-    /// Of the striker at the end, m/s.
+    /// Final velocity of the striker \[m/s\].
     pub striker_velocity: f64,
 }
 
@@ -122,7 +121,7 @@ impl FrameRun {
         }
     }
 
-    /// Re-integrates a shake, the ground's accelerations (m/s²) at the ends of the finer steps from 0 on.
+    /// Re-integrates a ground-motion test; ground accelerations \[m/s²\] at the ends of the finer steps from 0 on.
     ///
     /// # Errors
     /// The frame, with what was moved, cannot be stepped.

@@ -22,26 +22,26 @@ pub struct FrameReading {
     pub force: Vec<f64>,
 }
 
-/// Readings of all floors along the way.
+/// Readings of all floors along the path.
 #[derive(Clone, Debug)]
 pub struct FramePath {
     readings: Vec<FrameReading>,
-    /// With which each target was passed, m/s, an entry a floor; of readings made at rest, none.
+    /// Velocity at each target \[m/s\], one entry per floor; empty for readings at rest.
     velocities: Vec<Vec<f64>>,
     bends: Bends,
 }
 
 #[derive(Clone, Debug)]
 enum Bends {
-    /// From the ground up: shear over drift.
+    /// From the ground up: shear over storey drift.
     Storeys(Vec<RecordedPath>),
-    /// K at no displacement, N/m; how long each floor is behind its target, s.
+    /// Initial K \[N/m\]; lag of each floor behind its target \[s\].
     Together(SymmetricBand, Vec<f64>),
 }
 
 impl FramePath {
-    /// `velocities` are those foretold for the targets (m/s), of readings made under way each `time_step` (s); `stiffness` is K at no displacement;
-    /// `force_noise` (N) and `resolution` (m) are those of one floor's readings. None of no reading.
+    /// `velocities` are those predicted for the targets \[m/s\] of a continuous motion with a reading each `time_step` \[s\]; `stiffness` is the
+    /// initial K; `force_noise` \[N\] and `resolution` \[m\] are those of one floor. None without readings.
     #[must_use]
     pub fn new(
         readings: Vec<FrameReading>,
@@ -105,7 +105,7 @@ impl FramePath {
                         return RecordedPath::new(readings, stiffness, noise, quantum);
                     }
                     let passed: Vec<f64> = passed.iter().map(|storeys| storeys[storey]).collect();
-                    RecordedPath::under_way(
+                    RecordedPath::continuous(
                         readings,
                         (&passed, time_step),
                         stiffness,
@@ -156,7 +156,7 @@ impl FramePath {
             .target
             .iter()
             .zip(&readings.axes)
-            .map(|(place, axis)| place * axis.displacement_scale);
+            .map(|(position, axis)| position * axis.displacement_scale);
         let mut retrace = FrameRetrace {
             path: self,
             readings,
@@ -164,7 +164,7 @@ impl FramePath {
             own_step: 0,
             step: 0,
             target: target.collect(),
-            place: first.target.clone(),
+            position: first.target.clone(),
             velocity: vec![0.0; first.target.len()],
             displacement: first.displacement.clone(),
             force: first.force.clone(),
@@ -194,7 +194,7 @@ pub struct FrameRetrace<'a> {
     /// Where it begins, m.
     target: Vec<f64>,
     /// The last targets, in metres of the record.
-    place: Vec<f64>,
+    position: Vec<f64>,
     /// With which they were passed, m/s, in metres of the record.
     velocity: Vec<f64>,
     displacement: Vec<f64>,
@@ -235,7 +235,7 @@ impl FrameRetrace<'_> {
                 *to = self.readings.recorded(axis, *from);
             }
         };
-        of_record(&mut self.place, targets);
+        of_record(&mut self.position, targets);
         of_record(&mut self.velocity, velocities);
         let recorded = &self.path.readings[self.step.min(self.path.readings.len() - 1)];
         self.displacement.copy_from_slice(&recorded.displacement);
@@ -244,10 +244,10 @@ impl FrameRetrace<'_> {
             Bends::Storeys(_) => self.bend_storeys(),
             Bends::Together(stiffness, lags) => {
                 let mut off: Vec<f64> = self
-                    .place
+                    .position
                     .iter()
                     .zip(&recorded.target)
-                    .map(|(place, target)| place - target)
+                    .map(|(position, target)| position - target)
                     .collect();
                 if let Some(passed_with) = self.path.velocities.get(self.step) {
                     let faster = self
@@ -272,9 +272,9 @@ impl FrameRetrace<'_> {
     fn bend_storeys(&mut self) {
         let (mut below, mut slower, mut off) = (0.0, 0.0, 0.0);
         for storey in 0..self.storeys.len() {
-            let drift = self.place[storey] - below;
+            let drift = self.position[storey] - below;
             let velocity = self.velocity[storey] - slower;
-            (below, slower) = (self.place[storey], self.velocity[storey]);
+            (below, slower) = (self.position[storey], self.velocity[storey]);
             let (path, retrace) = &mut self.storeys[storey];
             let (displacement, shear) = retrace.pass(drift, velocity);
             let recorded = *path.recorded(self.step);
@@ -309,7 +309,7 @@ mod tests {
         storey_stiffness(&STIFFNESSES).mul_into(target, &mut force);
         FrameReading {
             target: target.to_vec(),
-            displacement: target.iter().map(|place| place + 1e-5).collect(),
+            displacement: target.iter().map(|position| position + 1e-5).collect(),
             force,
         }
     }
@@ -381,7 +381,7 @@ mod tests {
                 .enumerate()
                 .skip(1)
             {
-                let off: Vec<f64> = target.iter().map(|place| place + 1e-3).collect();
+                let off: Vec<f64> = target.iter().map(|position| position + 1e-3).collect();
                 retrace.move_to(&off, &[0.0; 3]);
                 let places: Vec<f64> = off
                     .iter()

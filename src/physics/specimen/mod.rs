@@ -32,11 +32,11 @@ pub use pinching::{Capping, PinchedHysteresis, Pinching};
 pub use series::Series;
 pub use table::{AlongTheCurve, PlasticCurve, Table, Unloading};
 
-/// What a virtual rig bends.
+/// A restoring-force (hysteretic) model.
 pub trait RestoringForce {
-    /// Moves on to `displacement` (m) and gives the force there, N.
+    /// Moves to `displacement` \[m\] and returns the force there \[N\].
     fn move_to(&mut self, displacement: f64) -> f64;
-    /// Stiffness before anything has happened, N/m.
+    /// Initial stiffness \[N/m\].
     fn initial_stiffness(&self) -> f64;
 }
 
@@ -56,7 +56,7 @@ impl RestoringForce for Elastic {
     }
 }
 
-/// Any specimen a plan can declare. The two of every day stand in it; the others, which carry more, stand beside.
+/// Any model. The two smallest are stored inline, the larger ones boxed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpecimenModel {
     Elastic(Elastic),
@@ -75,7 +75,7 @@ pub enum SpecimenModel {
 }
 
 impl SpecimenModel {
-    /// A model of `behaviour`, at no displacement and untouched. What acts on the load cell by its speed or in time is the rig's.
+    /// A model of `behaviour`, undamaged at zero displacement. Rate dependence and relaxation are not part of it.
     #[must_use]
     pub fn new(behaviour: &Behaviour) -> Self {
         match behaviour {

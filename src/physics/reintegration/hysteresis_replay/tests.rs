@@ -118,14 +118,14 @@ fn noise_makes_no_tangent() {
 }
 
 /// Steps of `step` (m) from turn to turn.
-fn way(turns: &[f64], step: f64) -> Vec<f64> {
+fn motion(turns: &[f64], step: f64) -> Vec<f64> {
     let mut places = vec![turns[0]];
     for ends in turns.windows(2) {
         let count = ((ends[1] - ends[0]).abs() / step).round();
-        let mut taken = 0.0;
-        while taken < count {
-            taken += 1.0;
-            places.push(ends[0] + (ends[1] - ends[0]) * taken / count);
+        let mut selected = 0.0;
+        while selected < count {
+            selected += 1.0;
+            places.push(ends[0] + (ends[1] - ends[0]) * selected / count);
         }
     }
     places
@@ -162,13 +162,13 @@ const STEP: f64 = 2e-3;
 fn elements_side_by_side_are_told_wherever_they_are_turned() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
     let cut = 0.5 * 1000.0 * STEP;
-    let path = recorded(bilinear(), &way(&LOOPS, STEP));
+    let path = recorded(bilinear(), &motion(&LOOPS, STEP));
     assert!(path.keeps_masing);
-    let off = worst(&path, bilinear(), &way(&MOVED, STEP));
+    let off = worst(&path, bilinear(), &motion(&MOVED, STEP));
     assert!(off < 1e-9, "{off} N");
     let multilinear = || Multilinear::new(&[[0.1, 100.0], [0.25, 200.0], [0.7, 300.0]]);
-    let path = recorded(multilinear(), &way(&LOOPS, STEP));
-    let off = worst(&path, multilinear(), &way(&MOVED, STEP));
+    let path = recorded(multilinear(), &motion(&LOOPS, STEP));
+    let off = worst(&path, multilinear(), &motion(&MOVED, STEP));
     assert!(off <= cut, "{off} N");
 }
 
@@ -178,9 +178,9 @@ fn finer_steps_cut_less() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
     for step in [7e-3, 1.9e-3, 5.3e-4] {
         let off = worst(
-            &recorded(bilinear(), &way(&LOOPS, step)),
+            &recorded(bilinear(), &motion(&LOOPS, step)),
             bilinear(),
-            &way(&MOVED, step),
+            &motion(&MOVED, step),
         );
         assert!(
             off > 1e-3 * 1000.0 * step && off <= 0.5 * 1000.0 * step,
@@ -193,15 +193,15 @@ fn finer_steps_cut_less() {
 #[test]
 fn turns_are_its_own() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
-    let path = recorded(bilinear(), &way(&[0.0, 0.4, 0.38, 0.6, 0.5], STEP));
-    let straight = way(&[0.0, 0.61, 0.5], STEP);
+    let path = recorded(bilinear(), &motion(&[0.0, 0.4, 0.38, 0.6, 0.5], STEP));
+    let straight = motion(&[0.0, 0.61, 0.5], STEP);
     let off = worst(&path, bilinear(), &straight);
     assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
     for turn in [0.39, 0.41] {
         let off = worst(
             &path,
             bilinear(),
-            &way(&[0.0, turn, turn - 0.02, 0.6, 0.5], STEP),
+            &motion(&[0.0, turn, turn - 0.02, 0.6, 0.5], STEP),
         );
         assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
     }
@@ -211,8 +211,8 @@ fn turns_are_its_own() {
 #[test]
 fn a_turn_that_was_not_recorded_is_told() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
-    let path = recorded(bilinear(), &way(&[0.0, 0.6], STEP));
-    let targets = way(&[0.0, 0.4, 0.35, 0.6], STEP);
+    let path = recorded(bilinear(), &motion(&[0.0, 0.6], STEP));
+    let targets = motion(&[0.0, 0.4, 0.35, 0.6], STEP);
     let off = worst(&path, bilinear(), &targets);
     assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
     let mut retrace = path.retrace(1);
@@ -283,11 +283,11 @@ fn a_record_says_whether_it_keeps_masings_rule() {
             (vec![0.0, 0.6, -0.4], vec![0.0, 0.61, -0.4]),
             (swings(0.0), swings(0.02)),
         ] {
-            let path = recorded(model.clone(), &way(&turns, STEP));
+            let path = recorded(model.clone(), &motion(&turns, STEP));
             assert_eq!(path.keeps_masing, keeps, "{model:?}");
             let departed = |turns: &[f64]| {
                 let mut retrace = path.retrace(1);
-                way(turns, STEP)[1..].iter().for_each(|target| {
+                motion(turns, STEP)[1..].iter().for_each(|target| {
                     retrace.move_to(*target);
                 });
                 retrace.departed()
@@ -296,6 +296,6 @@ fn a_record_says_whether_it_keeps_masings_rule() {
             assert_eq!(departed(&elsewhere), !keeps, "{model:?}");
         }
     }
-    let curved = path(|x| 1000.0 * x + 800.0 * x.powi(3), &way(&LOOPS, STEP));
+    let curved = path(|x| 1000.0 * x + 800.0 * x.powi(3), &motion(&LOOPS, STEP));
     assert!(curved.keeps_masing);
 }
