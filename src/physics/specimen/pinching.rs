@@ -47,7 +47,7 @@ pub struct Capping {
 ///   displacement U_p of the peak of that direction, and on to the peak; where u₀ is past the break point, straight to the peak;
 /// - beyond the peak it is the backbone;
 /// - basic strength, post-capping strength, unloading stiffness and the target of reloading deteriorate by the energy of its excursions
-///   ([`Degradation`]); not while it is elastic.
+///   (`Degradation`); not while it is elastic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinchedHysteresis {
     plan: Pinching,

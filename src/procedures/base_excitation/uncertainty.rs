@@ -3,7 +3,6 @@
 
 use super::setting::Setting;
 use crate::physics::integrator::input::FrameError;
-use crate::physics::reintegration::perturbation::Perturbation;
 use crate::physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::perturbation::Perturbation;

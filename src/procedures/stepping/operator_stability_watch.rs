@@ -3,7 +3,6 @@
 //! observation. It stops nothing.
 
 use super::start::Start;
-use crate::physics::structure::{FrameMatrices, drifts, shears, storeys_of};
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::physics::structure::{FrameMatrices, drifts, shears, storeys_of};

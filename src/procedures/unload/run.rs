@@ -3,7 +3,6 @@
 //! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
 use super::uncertainty::RestUncertainty;
-use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::formula::{Formula, ResultValue};

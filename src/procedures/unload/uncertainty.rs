@@ -7,7 +7,6 @@
 //! that is no source. What left the specimen where it is, a blow say, is not measured by where it rests, and no source of it.
 
 use super::run::NOISE;
-use crate::physics::structure::{Loaded, Unloading};
 use crate::physics::integrator::tangent::NOISE_MULTIPLE;
 use crate::physics::structure::{Loaded, Unloading};
 use crate::plan::Plan;

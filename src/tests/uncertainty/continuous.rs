@@ -1,5 +1,5 @@
-//! What a study tells of a shaken frame with an input moved, against the same run on the same rig with that input truly moved:
-//! every kind of storey, stopping and under way, with a damper in each storey and without.
+//! Sensitivity of a ground-motion test by re-integration, compared with a re-run on the same rig with the input perturbed: every kind of
+//! storey, ramp-and-hold and continuous, with a damper in each storey and without.
 
 use super::frame::{constant, entry, shaken};
 use super::rest::{Misread, RIGHT};

@@ -1,6 +1,6 @@
 //! Impact series on a storey.
 
-use super::{close, rest, storey};
+use super::{close, rest};
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{Between, Comparison, Condition, Escalate, Impact, Plan, Procedure, ProcedureKind, Striker, Test};

@@ -1,4 +1,4 @@
-//! Runs on a rig that goes wrong on the way: nothing that is no number passes, everything before it stays.
+//! Runs on a rig that fails during the run: no invalid number passes, and the record before the fault is kept.
 
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::{EventKind, History, Outcome, Record};

@@ -1,4 +1,4 @@
-//! Holds of a rig that waits until it has settled: that is time at rest, and what relaxes meanwhile is not lost to the fit.
+//! Dwells of a rig that waits until it has settled: the settling is time at rest, and the fit includes the relaxation during it.
 
 use crate::physics::relaxation::law::RelaxationLaw;
 use crate::physics::relaxation::time_constant::RelaxationModel;

@@ -1,4 +1,4 @@
-//! What a run is reckoned to write, held against what it wrote: never less, and not wildly more.
+//! Estimated size of a run's record compared with the size written: never smaller, and not much larger.
 
 use crate::plan::formula::Formula::Constant;
 use crate::plan::{

@@ -1,4 +1,4 @@
-//! The integrators on linear frames: order of convergence, the stability limit, the energy balance, and what a storey's own
+//! The integrators on linear frames: order of convergence, the stability limit, the energy balance, and the effect of a storey's own
 //! tangent changes (nothing).
 
 use psd::physics::integrator::input::FrameInput;

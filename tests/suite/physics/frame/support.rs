@@ -57,7 +57,7 @@ pub fn at<'a>(
     }
 }
 
-/// So many steps on an ideal linear specimen under `load`, from the given displacement at rest; told every state.
+/// `steps` steps on an ideal linear specimen under `load`, from the given displacement at rest; every state is passed on.
 pub fn run_linear(
     input: &FrameInput,
     displacement: &[f64],

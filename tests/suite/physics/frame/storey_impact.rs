@@ -1,4 +1,4 @@
-//! A blow on one of two floors against closed forms: the joined chain of a plastic blow, free masses under Hertz's contact,
+//! An impact on one of two floors compared with closed forms: the joined chain of a plastic impact, free masses under Hertz's contact,
 //! momentum and energy.
 
 use psd::physics::contact::state::ContactLaw;
@@ -43,7 +43,7 @@ fn solver(
     FrameImpactSolver::on(&input, &striking).expect("an impact")
 }
 
-/// One step on the linear frame that the matrices say.
+/// One step on the linear frame of the matrices.
 fn step(solver: &mut FrameImpactSolver, frame: &FrameMatrices) {
     let target = solver.predict().to_vec();
     let mut force = [0.0; 2];
@@ -74,7 +74,7 @@ fn modal(masses: [f64; 2], v: [f64; 2], time: f64) -> [f64; 2] {
     x
 }
 
-/// Largest error of either floor after 12 ms of a blow on `struck`, over the largest displacement, in so many steps.
+/// Largest error of either floor after 12 ms of an impact on `struck`, over the peak displacement, in `steps` steps.
 fn error(struck: usize, coefficient: f64, steps: u32) -> f64 {
     const END: f64 = 0.012;
     let frame = frame(0.0);
@@ -112,7 +112,7 @@ fn error(struck: usize, coefficient: f64, steps: u32) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The two-mass chain, struck below or above, joined by a plastic blow or left behind by an elastic one: the modal solution,
+/// The two-mass chain, struck below or above, joined by a plastic impact or separated by an elastic one: the modal solution,
 /// with the square of the step.
 #[test]
 fn a_struck_chain_is_its_modal_solution_to_second_order() {
@@ -153,7 +153,7 @@ fn a_hertz_blow_on_a_floor_is_that_of_free_masses() {
             largest = largest.max(solver.state().contact_force);
             touching += usize::from(solver.state().contact_force > 0.0);
         }
-        // The mean over a fiftieth of the blow at its top, and the frame's own give.
+        // The mean over a fiftieth of the contact at its peak, and the compliance of the frame.
         assert!(
             (largest / peak - 1.0).abs() < 2e-3,
             "{largest} is not {peak}"
@@ -172,7 +172,7 @@ fn a_hertz_blow_on_a_floor_is_that_of_free_masses() {
     }
 }
 
-/// What the striker loses the floors have, and the ground has taken: Σ M Ẋ + Ms Ẋs + ∫ V dt = Ms V0, the shear by the
+/// The momentum that the striker loses is that of the floors and of the ground: Σ M Ẋ + Ms Ẋs + ∫ V dt = Ms V0, the shear by the
 /// trapezoid; and the energy closes to rounding, damped or not.
 #[test]
 fn momentum_and_energy_close_under_the_laws_of_impulses() {
