@@ -4,7 +4,7 @@
 use super::{Advance, Approaching, Start};
 use crate::contact::state::StepState;
 use crate::integrator::step_form::Motion;
-use crate::integrator::substep::{Passage, Scratch, Striker};
+use crate::integrator::substep::{Scratch, Striker, Substep};
 use crate::structure::matrix::Vector;
 
 /// Parts of an impact. The relative error of the peak force is then about 1e-4; fewer parts change its fourth digit.
@@ -174,22 +174,22 @@ impl HertzContact {
     #[inline]
     pub(crate) fn pass<V: Vector>(
         &self,
-        passage: &mut Passage<V>,
+        substep: &mut Substep<V>,
         striker: &Striker,
         start: &Start,
         scratch: &mut Scratch<V>,
         to: &mut Motion<V>,
     ) -> Advance {
-        match apart(passage, striker, start, scratch, to) {
+        match apart(substep, striker, start, scratch, to) {
             Some(advance) => advance,
-            None => self.follow(passage, striker, start, scratch, to),
+            None => self.follow(substep, striker, start, scratch, to),
         }
     }
 
     /// The midpoint rule over parts of the step: it keeps the energy balance to rounding whatever the force is.
     fn follow<V: Vector>(
         &self,
-        passage: &mut Passage<V>,
+        substep: &mut Substep<V>,
         striker: &Striker,
         start: &Start,
         scratch: &mut Scratch<V>,
@@ -210,21 +210,21 @@ impl HertzContact {
         let parts = self.parts(time_step);
         let duration = time_step / parts;
         let half = 0.5 * duration;
-        passage.prepare(duration, 0.0);
+        substep.prepare(duration, 0.0);
         // M̂⁻¹ e_s: how the structure yields to a force on the struck degree of freedom.
         response.update([], |_, []| 0.0);
         response.as_mut_slice()[struck] = 1.0;
-        passage.solve(response);
+        substep.solve(response);
         let yielding = duration * half * (1.0 / mass + response.as_slice()[struck]);
         let (mut xs, mut vs) = (start.striker_displacement, start.striker_velocity);
         let mut indentation = start.indentation;
         let (mut impulse, mut contact_loss, mut damping_work, mut limited) = (0.0, 0.0, 0.0, false);
         let mut done = 0.0;
-        let mut closing = Closing::new(xs - passage.of_struck(&now).0 - indentation);
+        let mut closing = Closing::new(xs - substep.of_struck(&now).0 - indentation);
         while done < parts {
-            let depth = xs - passage.of_struck(&now).0 - indentation;
-            passage.momentum(&now, half, (done + 0.5) / parts, &mut mean_velocity);
-            passage.solve(&mut mean_velocity);
+            let depth = xs - substep.of_struck(&now).0 - indentation;
+            substep.momentum(&now, half, (done + 0.5) / parts, &mut mean_velocity);
+            substep.solve(&mut mean_velocity);
             done += 1.0;
             let falling = vs + half * gravity;
             let approach = duration * (falling - mean_velocity.as_slice()[struck]);
@@ -233,22 +233,22 @@ impl HertzContact {
             let mean_striker = falling - half * force / mass;
             let pushed = half * force;
             mean_velocity.update([response], |mean, [response]| mean + pushed * response);
-            passage.drift(&mut now, &mean_velocity, duration);
+            substep.drift(&mut now, &mean_velocity, duration);
             let striker_moved = duration * mean_striker;
             xs += striker_moved;
             vs = 2.0 * mean_striker - vs;
             impulse += force * duration;
             contact_loss += force * (striker_moved - duration * mean_velocity.as_slice()[struck]);
-            damping_work += passage.damped(&mean_velocity, duration);
-            let overlap = xs - passage.of_struck(&now).0;
+            damping_work += substep.damped(&mean_velocity, duration);
+            let overlap = xs - substep.of_struck(&now).0;
             if over {
                 indentation = indentation.max(self.dent(overlap));
             }
             closing.take(force, overlap - indentation);
         }
-        let (displacement, velocity) = passage.of_struck(&now);
+        let (displacement, velocity) = substep.of_struck(&now);
         let force = self.instant(xs - displacement - indentation, vs - velocity);
-        passage.settle(force, &mut now);
+        substep.settle(force, &mut now);
         (**at_start, **mean) = (std::mem::replace(to, now), mean_velocity);
         let state = match (limited, impulse > 0.0) {
             (true, _) => StepState::Limit,
@@ -276,7 +276,7 @@ impl HertzContact {
 /// Eq. (5), if the surfaces remain apart.
 #[inline]
 fn apart<V: Vector>(
-    passage: &mut Passage<V>,
+    substep: &mut Substep<V>,
     striker: &Striker,
     start: &Start,
     scratch: &Scratch<V>,
@@ -288,11 +288,11 @@ fn apart<V: Vector>(
     if start.displacement + start.indentation - start.striker_displacement < 0.0 {
         return None;
     }
-    passage.follow(scratch.now, [time_step, 1.0], None, to);
+    substep.follow(scratch.now, [time_step, 1.0], None, to);
     let striker_velocity = start.striker_velocity + gravity * time_step;
     let striker_displacement =
         start.striker_displacement + 0.5 * time_step * (start.striker_velocity + striker_velocity);
-    if passage.of_struck(to).0 + start.indentation - striker_displacement < 0.0 {
+    if substep.of_struck(to).0 + start.indentation - striker_displacement < 0.0 {
         return None;
     }
     Some(Advance {
@@ -302,7 +302,7 @@ fn apart<V: Vector>(
         contact_force: 0.0,
         indentation: start.indentation,
         contact_loss: 0.0,
-        damping_work: passage.damped_between(scratch.now, to, time_step),
+        damping_work: substep.damped_between(scratch.now, to, time_step),
         indentation_work: 0.0,
         contacts: 0,
     })

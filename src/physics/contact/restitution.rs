@@ -6,7 +6,7 @@
 use super::{Advance, Start};
 use crate::contact::state::StepState;
 use crate::integrator::step_form::Motion;
-use crate::integrator::substep::{Passage, Scratch, Striker};
+use crate::integrator::substep::{Scratch, Striker, Substep};
 use crate::structure::matrix::Vector;
 
 /// Flights shorter than this part of Δt are not followed: the bodies stay together. Larger, and bouncing ends too
@@ -91,7 +91,7 @@ impl Collision {
 
 /// Structure and striker inside a step; `ahead` is the motion under examination.
 struct Course<'a, 'b, V: Vector> {
-    passage: &'a mut Passage<'b, V>,
+    substep: &'a mut Substep<'b, V>,
     striker: Striker,
     now: &'a mut Motion<V>,
     ahead: &'a mut Motion<V>,
@@ -123,7 +123,7 @@ impl<V: Vector> Course<'_, '_, V> {
             1.0 - (self.left - duration) / time_step
         };
         let joined = joined.then_some([mass, mass * gravity]);
-        self.passage
+        self.substep
             .follow(self.now, [duration, part], joined, self.ahead);
         [
             &self.ahead.displacement,
@@ -136,9 +136,9 @@ impl<V: Vector> Course<'_, '_, V> {
     /// Goes on for `duration` to where it looked.
     #[inline]
     fn go(&mut self, striker_velocity: f64, duration: f64) {
-        let moved = self.passage.of_struck(self.ahead).0 - self.passage.of_struck(self.now).0;
+        let moved = self.substep.of_struck(self.ahead).0 - self.substep.of_struck(self.now).0;
         let striker_moved = 0.5 * duration * (self.striker_velocity + striker_velocity);
-        self.damping_work += self.passage.damped_between(self.now, self.ahead, duration);
+        self.damping_work += self.substep.damped_between(self.now, self.ahead, duration);
         std::mem::swap(&mut self.now, &mut self.ahead);
         self.swapped = !self.swapped;
         self.striker_displacement += striker_moved;
@@ -150,7 +150,7 @@ impl<V: Vector> Course<'_, '_, V> {
     /// Momentum p passes from striker to structure.
     #[inline]
     fn strike(&mut self, impulse: f64) {
-        self.passage.strike(impulse, self.now);
+        self.substep.strike(impulse, self.now);
         self.striker_velocity -= impulse / self.striker.mass;
         self.impulse += impulse;
     }
@@ -185,7 +185,7 @@ impl RestitutionContact {
     #[inline]
     pub(crate) fn pass<V: Vector>(
         &mut self,
-        passage: &mut Passage<V>,
+        substep: &mut Substep<V>,
         striker: &Striker,
         start: &Start,
         scratch: &mut Scratch<V>,
@@ -197,7 +197,7 @@ impl RestitutionContact {
             (start.striker_displacement - start.displacement).min(0.0)
         };
         let mut course = Course {
-            passage,
+            substep,
             striker: *striker,
             now: &mut *scratch.now,
             ahead: &mut *to,
@@ -286,7 +286,7 @@ impl RestitutionContact {
         let closing = course.striker_velocity - course.struck()[0];
         let collision = Collision::new(
             self.coefficient,
-            course.passage.struck_mass(),
+            course.substep.struck_mass(),
             mass,
             closing,
         );
@@ -302,7 +302,7 @@ impl RestitutionContact {
             let [velocity, acceleration] = course.struck();
             course.striker_velocity = velocity;
             // F = Ms(g − Ẍ) with Ẍ = Ẍ_free + F/m of the struck degree of freedom.
-            course.passage.press(
+            course.substep.press(
                 collision.reduced_mass * (gravity - acceleration),
                 course.now,
             );
@@ -331,7 +331,7 @@ impl RestitutionContact {
         course.overlap = 0.0;
         if parted {
             course
-                .passage
+                .substep
                 .press(mass * (acceleration - gravity), course.now);
             self.joined = false;
         }

@@ -103,8 +103,8 @@ impl ImpactInput {
 
     /// The striker and its contact.
     #[must_use]
-    pub const fn striking(&self) -> Striking {
-        Striking {
+    pub const fn setup(&self) -> ImpactSetup {
+        ImpactSetup {
             struck: 0,
             mass: self.striker_mass,
             velocity: self.striker_velocity,
@@ -156,9 +156,9 @@ pub struct ImpactState {
     pub contacts: u64,
 }
 
-/// A striker, its contact and the degree of freedom that it hits.
+/// The setup of an impact: a striker, its contact law and the struck degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Striking {
+pub struct ImpactSetup {
     /// The struck degree of freedom, from 0.
     pub struck: usize,
     /// Ms \[kg\]
@@ -178,7 +178,7 @@ pub enum ImpactError {
     #[error(transparent)]
     Structure(#[from] FrameError),
     #[error("degree of freedom {} is struck, but there are {order}", struck + 1)]
-    NoSuchPlace { struck: usize, order: usize },
+    NoSuchDegreeOfFreedom { struck: usize, order: usize },
     #[error(transparent)]
     Contact(#[from] NeedsTangent),
 }

@@ -3,7 +3,7 @@
 //! specimen to the targets and returns the readings.
 
 use super::energy::Energies;
-use super::{ImpactError, ImpactInput, ImpactState, Sink, Striking, Until};
+use super::{ImpactError, ImpactInput, ImpactSetup, ImpactState, Sink, Until};
 use crate::contact::state::StepState;
 use crate::contact::{Advance, AnyContact, Approaching, Decided, ImpulseContact, Start};
 use crate::integrator::Integrator;
@@ -11,7 +11,7 @@ use crate::integrator::input::SolverInput;
 use crate::integrator::solver::Solver;
 use crate::integrator::state::State;
 use crate::integrator::step_form::StepForm;
-use crate::integrator::substep::{Passage, Striker, Workspace};
+use crate::integrator::substep::{Striker, Substep, Workspace};
 use crate::integrator::tangents::Tangents;
 use crate::structure::matrix::{Factor, Matrix, Vector};
 
@@ -113,7 +113,7 @@ impl ImpactSolver {
             force_noise: input.force_noise,
             resolution: input.resolution,
         };
-        Self::on(&structure, &input.striking())
+        Self::on(&structure, &input.setup())
     }
 }
 
@@ -123,18 +123,18 @@ impl<V: Vector> ImpactSolver<V> {
     /// # Errors
     /// The structure is none that can be stepped, the struck degree of freedom is not in it, or law and integrator do not go
     /// together.
-    pub fn on(input: &SolverInput<V>, striking: &Striking) -> Result<Self, ImpactError> {
-        let Striking {
+    pub fn on(input: &SolverInput<V>, setup: &ImpactSetup) -> Result<Self, ImpactError> {
+        let ImpactSetup {
             struck,
             mass,
             velocity,
             gap,
             gravity,
             law,
-        } = *striking;
+        } = *setup;
         let order = input.matrices.mass.rows();
         if struck >= order {
-            return Err(ImpactError::NoSuchPlace { struck, order });
+            return Err(ImpactError::NoSuchDegreeOfFreedom { struck, order });
         }
         let mut structure = Solver::new(input)?;
         structure.form.strike(struck);
@@ -236,25 +236,25 @@ impl<V: Vector> ImpactSolver<V> {
             }
             AnyContact::Hertz(law) => {
                 structure.predict_by(unloaded.view(), |form, from, load_end, to| {
-                    let Some((mut passage, mut scratch)) =
-                        Passage::new(form, &from, load_end, workspace)
+                    let Some((mut substep, mut scratch)) =
+                        Substep::new(form, &from, load_end, workspace)
                     else {
                         return 0.0;
                     };
                     passed
-                        .insert(law.pass(&mut passage, striker, &start, &mut scratch, to))
+                        .insert(law.pass(&mut substep, striker, &start, &mut scratch, to))
                         .damping_work
                 })
             }
             AnyContact::Restitution(law) => {
                 structure.predict_by(unloaded.view(), |form, from, load_end, to| {
-                    let Some((mut passage, mut scratch)) =
-                        Passage::new(form, &from, load_end, workspace)
+                    let Some((mut substep, mut scratch)) =
+                        Substep::new(form, &from, load_end, workspace)
                     else {
                         return 0.0;
                     };
                     passed
-                        .insert(law.pass(&mut passage, striker, &start, &mut scratch, to))
+                        .insert(law.pass(&mut substep, striker, &start, &mut scratch, to))
                         .damping_work
                 })
             }

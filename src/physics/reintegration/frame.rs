@@ -9,7 +9,7 @@ use super::impact::{ImpactResults, Outcome};
 use crate::contact::state::{ContactLaw, StepState};
 use crate::impact::Until;
 use crate::impact::peaks::{Peak, PeakDisplacements, farther};
-use crate::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactState, Sink, Striking};
+use crate::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactSetup, ImpactState, Sink};
 use crate::integrator::Integrator;
 use crate::integrator::input::{FrameError, FrameInput};
 use crate::integrator::solver::FrameSolver;
@@ -178,13 +178,13 @@ impl FrameRun {
         } = *blow;
         body.time_step /= f64::from(readings.finer);
         let unloaded = vec![0.0; order];
-        let striking = Striking {
+        let setup = ImpactSetup {
             struck,
             law,
-            ..body.striking()
+            ..body.setup()
         };
         let mut solver =
-            FrameImpactSolver::on(&self.input(&retrace, &unloaded, body.time_step), &striking)?;
+            FrameImpactSolver::on(&self.input(&retrace, &unloaded, body.time_step), &setup)?;
         let start = ImpactState {
             measured_displacement: retrace.displacement()[struck],
             ..*solver.state()

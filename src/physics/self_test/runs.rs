@@ -2,7 +2,7 @@
 
 use crate::contact::state::ContactLaw;
 use crate::impact::summary::{ImpactSummary, SummaryBuilder};
-use crate::impact::{FrameImpactSolver, ImpactInput, ImpactSolver, Striking, Until, simulate};
+use crate::impact::{FrameImpactSolver, ImpactInput, ImpactSetup, ImpactSolver, Until, simulate};
 use crate::integrator::Integrator;
 use crate::integrator::input::FrameInput;
 use crate::integrator::solver::FrameSolver;
@@ -121,7 +121,7 @@ pub(super) fn struck_storey(
 ) -> (f64, f64) {
     let matrices = frame(1, 1.0, stiffness);
     let frame = at_rest(&matrices, integrator, time_step, [&[0.0], &[0.0]]);
-    let striking = Striking {
+    let setup = ImpactSetup {
         struck: 0,
         mass: 10.0,
         velocity: 1.0,
@@ -129,7 +129,7 @@ pub(super) fn struck_storey(
         gravity: 0.0,
         law,
     };
-    let Ok(mut solver) = FrameImpactSolver::on(&frame, &striking) else {
+    let Ok(mut solver) = FrameImpactSolver::on(&frame, &setup) else {
         return (f64::NAN, f64::NAN);
     };
     let (mut farthest, mut hardest) = (0.0_f64, 0.0_f64);

@@ -2,7 +2,7 @@
 
 use psd::physics::contact::NeedsTangent;
 use psd::physics::contact::state::ContactLaw;
-use psd::physics::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactState, Striking};
+use psd::physics::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactSetup, ImpactState};
 use psd::physics::integrator::input::FrameInput;
 use psd::physics::integrator::tangents::Tangents;
 use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
@@ -18,7 +18,7 @@ const LIMIT: ContactLaw = ContactLaw::Limit { force: 1500.0 };
 /// balance.
 fn strike(input: &Struck) -> (Vec<ImpactState>, FrameImpactSolver, f64) {
     let order = input.frame.matrices.order();
-    let mut solver = FrameImpactSolver::on(&input.frame, &input.striking).expect("an impact");
+    let mut solver = FrameImpactSolver::on(&input.frame, &input.setup).expect("an impact");
     let mut force = vec![0.0; order];
     let (mut states, mut worst) = (vec![*solver.state()], 0.0_f64);
     while !solver.finished() && solver.structure().time < 10.0 {
@@ -34,13 +34,13 @@ fn strike(input: &Struck) -> (Vec<ImpactState>, FrameImpactSolver, f64) {
 /// A frame and what strikes it.
 struct Struck<'a> {
     frame: FrameInput<'a>,
-    striking: Striking,
+    setup: ImpactSetup,
 }
 
 fn impact_on(frame: FrameInput, struck: usize, law: ContactLaw) -> Struck {
     Struck {
         frame,
-        striking: Striking {
+        setup: ImpactSetup {
             struck,
             mass: 10.0,
             velocity: 1.0,
@@ -111,10 +111,10 @@ fn one_floor_is_one_degree_of_freedom() {
                 law,
             );
             let (states, _, worst) = strike(&Struck {
-                striking: Striking {
+                setup: ImpactSetup {
                     gravity,
                     gap,
-                    ..input.striking
+                    ..input.setup
                 },
                 ..input
             });
@@ -140,7 +140,7 @@ fn a_blow_on_one_floor_meets_that_floor_s_mass() {
         (ContactLaw::Restitution { coefficient: 1.0 }, 1.0),
     ] {
         let input = impact_on(at(&frame, Integrator::Tangent, 1e-7, &[0.0; 5]), 2, law);
-        let mut solver = FrameImpactSolver::on(&input.frame, &input.striking).expect("an impact");
+        let mut solver = FrameImpactSolver::on(&input.frame, &input.setup).expect("an impact");
         for _ in 0..2 {
             let target = solver.predict().to_vec();
             let mut force = [0.0; 5];
@@ -217,7 +217,7 @@ fn what_is_no_impact_on_a_frame_is_refused() {
     let frame = uniform(2, 4.0, 3e4);
     let refused = |integrator, struck, law| {
         let input = impact_on(at(&frame, integrator, 1e-3, &[0.0; 2]), struck, law);
-        FrameImpactSolver::on(&input.frame, &input.striking).expect_err("no impact")
+        FrameImpactSolver::on(&input.frame, &input.setup).expect_err("no impact")
     };
     let hertz = ContactLaw::Hertz {
         stiffness: 1e8,
@@ -226,7 +226,7 @@ fn what_is_no_impact_on_a_frame_is_refused() {
     };
     assert_eq!(
         refused(Integrator::Tangent, 2, RIGID),
-        ImpactError::NoSuchPlace {
+        ImpactError::NoSuchDegreeOfFreedom {
             struck: 2,
             order: 2
         }

@@ -2,7 +2,7 @@
 //! momentum and energy.
 
 use psd::physics::contact::state::ContactLaw;
-use psd::physics::impact::{FrameImpactSolver, Striking};
+use psd::physics::impact::{FrameImpactSolver, ImpactSetup};
 use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::plan::Integrator;
 
@@ -32,7 +32,7 @@ fn solver(
     time_step: f64,
 ) -> FrameImpactSolver {
     let input = at(frame, integrator, time_step, &[0.0; 2]);
-    let striking = Striking {
+    let setup = ImpactSetup {
         struck,
         mass: STRIKER,
         velocity: SPEED,
@@ -40,7 +40,7 @@ fn solver(
         gravity: 0.0,
         law,
     };
-    FrameImpactSolver::on(&input, &striking).expect("an impact")
+    FrameImpactSolver::on(&input, &setup).expect("an impact")
 }
 
 /// One step on the linear frame of the matrices.
