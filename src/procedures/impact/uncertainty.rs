@@ -136,7 +136,8 @@ impl<'run> ImpactUncertainty<'run> {
                 input.resolution,
             );
         }
-        let velocities = predicted_velocities(input, self.plan.until, setting.steps().count, &readings);
+        let velocities =
+            predicted_velocities(input, self.plan.until, setting.steps().count, &readings);
         RecordedPath::continuous(
             readings,
             (&velocities, input.time_step),

@@ -3,10 +3,10 @@
 mod identification;
 mod stops;
 
-use crate::tests::testing::{elastic_plan, ramp, result_of};
 use crate::plan::formula::Formula;
 use crate::plan::{DampingSweep, Link, Plan, ProcedureKind, VirtualLink};
 use crate::record::{History, RampStep, SweepStep};
+use crate::tests::testing::{elastic_plan, ramp, result_of};
 
 pub(super) fn constant(value: f64) -> Formula {
     Formula::Constant(value)

@@ -1,11 +1,11 @@
 //! Runs that end early or pause: limits, a rig that does not settle, an operator.
 
-use super::{constant, sweep, ramp_then_sweep, link, ramp_steps, sweep_steps};
-use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
+use super::{constant, link, ramp_steps, ramp_then_sweep, sweep, sweep_steps};
 use crate::plan::{Interval, Move, ProcedureKind, StiffnessRamp, VirtualLink};
 use crate::record::{Event, EventKind, History, Outcome};
 use crate::rig::{LimitedQuantity, RigFault, VirtualRig};
 use crate::run::{Inspection, Next, Observer, StepReport, Unwatched, run};
+use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
 
 #[test]
 fn a_violated_limit_holds_the_rig_and_keeps_the_record() {

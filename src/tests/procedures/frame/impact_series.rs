@@ -3,7 +3,9 @@
 use super::{close, rest};
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
-use crate::plan::{Between, Comparison, Condition, Escalate, Impact, Plan, Procedure, ProcedureKind, Striker, Test};
+use crate::plan::{
+    Between, Comparison, Condition, Escalate, Impact, Plan, Procedure, ProcedureKind, Striker, Test,
+};
 use crate::record::{EscalateHistory, History, Outcome, Record};
 use crate::tests::testing::{as_of, list, number, run_unwatched, struck_frame};
 use crate::units::Dimension;
@@ -102,7 +104,10 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
         .collect();
     let written = (0..3).flat_map(|striker| {
         [
-            ProcedureKind::Impact(Impact { striker, ..impact() }),
+            ProcedureKind::Impact(Impact {
+                striker,
+                ..impact()
+            }),
             rest(None),
         ]
     });
@@ -198,14 +203,18 @@ fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
     let velocities = [0.2, 0.4, 0.6, 0.8];
     let all = run_unwatched(&within(&velocities, 10.0));
     assert!(
-        impacts(&all).blows.iter().all(|impact| impact.held == Some(true)),
+        impacts(&all)
+            .blows
+            .iter()
+            .all(|impact| impact.held == Some(true)),
         "each has its peak"
     );
     let peaks: Vec<f64> = impacts(&all)
         .blows
         .iter()
         .map(|impact| {
-            impact.list("max_drift")
+            impact
+                .list("max_drift")
                 .unwrap()
                 .iter()
                 .copied()

@@ -1,7 +1,7 @@
 //! Frames: unloading, and impact series on a storey.
 
-mod unloading;
 pub(crate) mod impact_series;
+mod unloading;
 
 use crate::plan::formula::Formula::Constant;
 use crate::plan::{Behaviour, Frame, FrameUnload, Plan, ProcedureKind, Storey};
@@ -52,7 +52,11 @@ pub(super) fn rest(within: Option<f64>) -> ProcedureKind {
 }
 
 /// The floors pushed to these drifts (m) one after the other, then unloaded.
-pub(super) fn unloaded(plan: &Plan, drifts: [f64; 3], within: Option<f64>) -> (Rest, Vec<UnloadStep>) {
+pub(super) fn unloaded(
+    plan: &Plan,
+    drifts: [f64; 3],
+    within: Option<f64>,
+) -> (Rest, Vec<UnloadStep>) {
     let mut rig = virtual_rig(plan);
     let mut watched = Unwatched;
     let mut session = Session::begin(plan, rig.as_mut(), &mut watched)

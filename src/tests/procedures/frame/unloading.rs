@@ -2,7 +2,9 @@
 
 use super::{close, rest, three, unloaded};
 use crate::plan::formula::Formula::Constant;
-use crate::plan::{Behaviour, Frame, Interval, Link, Procedure, ProcedureKind, Storey, Unload, VirtualLink};
+use crate::plan::{
+    Behaviour, Frame, Interval, Link, Procedure, ProcedureKind, Storey, Unload, VirtualLink,
+};
 use crate::procedures::unload::run::{of_frame, to_rest};
 use crate::record::{History, Outcome};
 use crate::rig::virtual_rig;

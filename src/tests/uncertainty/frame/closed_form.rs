@@ -1,8 +1,11 @@
 //! One storey compared with one degree of freedom, two elastic storeys with their modes.
 
-use super::{constant, storey, shaken, storeys, rebuilt, entry, from};
+use super::{constant, entry, from, rebuilt, shaken, storey, storeys};
 use crate::physics::reintegration::impact::OUTCOMES;
-use crate::plan::{Calibration, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Storey, Until, VirtualLink};
+use crate::plan::{
+    Calibration, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Storey, Until,
+    VirtualLink,
+};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
 use crate::uncertainty::{Contribution, Source, combined};
 

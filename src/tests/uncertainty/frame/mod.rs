@@ -4,7 +4,9 @@ mod closed_form;
 mod repeated_runs;
 
 use crate::plan::formula::{Formula, ResultValue};
-use crate::plan::{Behaviour, Frame, Ground, Plan, ProcedureKind, Shake, ShakeDamping, Stepping, Storey};
+use crate::plan::{
+    Behaviour, Frame, Ground, Plan, ProcedureKind, Shake, ShakeDamping, Stepping, Storey,
+};
 use crate::record::Record;
 use crate::tests::testing::{elastic_plan, every};
 use crate::uncertainty::{Contribution, Source};

@@ -1,7 +1,10 @@
 //! Uncertainty of frames, compared with the scatter of many virtual runs.
 
-use super::{constant, storey, shaken, storeys, rebuilt, shake, entry, from};
-use crate::plan::{Behaviour, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Stepping, Storey, VirtualLink};
+use super::{constant, entry, from, rebuilt, shake, shaken, storey, storeys};
+use crate::plan::{
+    Behaviour, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Stepping, Storey,
+    VirtualLink,
+};
 use crate::tests::testing::{Uniform, every, run_unwatched, scatter, struck_frame};
 use crate::uncertainty::{Source, combined};
 

@@ -1,6 +1,8 @@
 //! Contributions to the results of an impact, compared with its closed form.
 
-use super::{MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, from, plan, sticking};
+use super::{
+    MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, from, plan, sticking,
+};
 use crate::plan::formula::ProcedureId;
 use crate::plan::{Impact, Link, ProcedureKind, VirtualLink};
 use crate::tests::testing::{elastic_plan, impact, number, ramp, result_of, run_unwatched};

@@ -1,9 +1,14 @@
 //! Impacts whose uncertainty is shared, large or not determined.
 
-use super::{MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, from, plan, sticking, without_the_time_step};
+use super::{
+    MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, from, plan, sticking,
+    without_the_time_step,
+};
 use crate::physics::impact::summary::ImpactSummary;
 use crate::plan::formula::ProcedureId;
-use crate::plan::{Calibration, Contact, Impact, Integrator, Link, ProcedureKind, Stepping, Until, VirtualLink};
+use crate::plan::{
+    Calibration, Contact, Impact, Integrator, Link, ProcedureKind, Stepping, Until, VirtualLink,
+};
 use crate::tests::testing::{elastic_plan, every, impact, number, result_of, run_unwatched};
 use crate::uncertainty::combined;
 

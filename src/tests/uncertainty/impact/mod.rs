@@ -1,8 +1,8 @@
 //! Uncertainty of the results of an impact on one degree of freedom.
 
 mod closed_form;
-mod repeated_runs;
 mod limits;
+mod repeated_runs;
 
 use crate::plan::formula::Formula;
 use crate::plan::{Calibration, Contact, Impact, Plan, ProcedureKind};
@@ -33,7 +33,11 @@ pub(super) fn plan(impact: Impact) -> Plan {
     elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(impact)])
 }
 
-pub(super) fn contributions<'a>(record: &'a Record, procedure: usize, name: &str) -> &'a [Contribution] {
+pub(super) fn contributions<'a>(
+    record: &'a Record,
+    procedure: usize,
+    name: &str,
+) -> &'a [Contribution] {
     &record.procedures[procedure]
         .result(name)
         .unwrap_or_else(|| panic!("{name} is missing"))

@@ -1,9 +1,13 @@
 //! Uncertainty of an impact, compared with the scatter of many virtual runs.
 
-use super::{MASS, STIFFNESS, constant, contributions, from, plan, sticking, without_the_time_step};
+use super::{
+    MASS, STIFFNESS, constant, contributions, from, plan, sticking, without_the_time_step,
+};
 use crate::plan::formula::Formula;
 use crate::plan::{Behaviour, Impact, Link, ProcedureKind, VirtualLink};
-use crate::tests::testing::{Uniform, elastic_plan, number, ramp, result_of, run_unwatched, scatter};
+use crate::tests::testing::{
+    Uniform, elastic_plan, number, ramp, result_of, run_unwatched, scatter,
+};
 use crate::uncertainty::Source;
 
 /// The rig itself, run again with inputs as they may be, against what one recorded run foretells: a specimen that yields and
