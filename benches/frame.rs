@@ -5,11 +5,13 @@ use std::hint::black_box;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::physics::frame::{
-    FrameInput, FrameMatrices, FrameSolver, SymmetricBand, Tangents, drifts, floor_forces,
-    storey_stiffness,
-};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::solver::FrameSolver;
+use psd::physics::integrator::tangents::Tangents;
 use psd::physics::specimen::{Bilinear, Elastic, RestoringForce};
+use psd::physics::structure::{
+    FrameMatrices, SymmetricBand, drifts, floor_forces, storey_stiffness,
+};
 use psd::plan::Integrator;
 
 const STOREYS: [usize; 5] = [1, 2, 10, 100, 1000];

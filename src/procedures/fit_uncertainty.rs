@@ -4,7 +4,7 @@
 
 use crate::physics::identification::bilinear_fit::SHARED;
 use crate::physics::identification::multilinear_fit::{CurveShares, MultilinearFit};
-use crate::physics::perturbation::ReadingErrors;
+use crate::physics::reintegration::perturbation::ReadingErrors;
 use crate::plan::formula::{ProcedureId, ResultValue};
 use crate::plan::{Calibration, DeclaredNoise, Plan};
 use crate::record::{BilinearFit, LineFit, NamedResult};

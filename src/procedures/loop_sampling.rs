@@ -1,7 +1,7 @@
 //! The energy of a loop between its points: how much of it the readings leave open. In: the points of a loop. Out: energies \[J\].
 
 use crate::physics::identification::loop_sampling::left_open;
-use crate::physics::perturbation::ReadingErrors;
+use crate::physics::reintegration::perturbation::ReadingErrors;
 
 /// By how much these points of a loop of this stiffness \[N/m\], each the mean of so many samples, leave its energy open \[J\].
 pub(crate) fn left_open_by(

@@ -2,7 +2,7 @@
 //! of a run, SI. It computes no motion.
 
 use super::Modes;
-use crate::physics::frame::{drifts, shears};
+use crate::physics::structure::{drifts, shears};
 use crate::physics::tracking::monitor::Tracking;
 
 /// What the steps of every frame tell, an entry a floor from the ground up; empty where nothing was computed.

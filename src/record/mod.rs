@@ -17,7 +17,6 @@ mod zero_drift;
 use serde::{Deserialize, Serialize};
 
 pub use crate::physics::contact::state::StepState;
-pub use crate::physics::frame::{FrameEnergies, Modes};
 pub use crate::physics::identification::LineFit;
 pub use crate::physics::identification::bilinear_fit::BilinearFit;
 pub use crate::physics::identification::multilinear_fit::MultilinearFit;
@@ -26,6 +25,7 @@ use crate::physics::impact::summary::still_rising;
 pub use crate::physics::relaxation::hold::Hold;
 pub use crate::physics::relaxation::superposition::{LawFit, SuperpositionFit};
 pub use crate::physics::relaxation::time_constant::RelaxationFit;
+pub use crate::physics::structure::{FrameEnergies, Modes};
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::formula::{Estimate, ResultReference, ResultValue, Results};
 use crate::schema::block_of_words;

@@ -2,7 +2,10 @@
 
 use super::tests::{Element, LIMITS, served_on};
 use super::*;
-use crate::physics::frame::{FrameInput, FrameMatrices, FrameSolver, SymmetricBand, Tangents};
+use crate::physics::integrator::input::FrameInput;
+use crate::physics::integrator::solver::FrameSolver;
+use crate::physics::integrator::tangents::Tangents;
+use crate::physics::structure::{FrameMatrices, SymmetricBand};
 use crate::plan::{Behaviour, Frame, Integrator, Limits, Settle, Storey, VirtualLink};
 use crate::rig::VirtualRig;
 

@@ -1,4 +1,4 @@
-//! Plans built by hand for tests of what comes after `check`.
+//! Plans built without a text, for tests of the stages after `check`.
 
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{

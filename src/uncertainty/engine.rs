@@ -7,7 +7,7 @@ use super::instruments::InstrumentUncertainty;
 pub use super::instruments::Shifts;
 use super::threads::in_threads;
 use super::{Contribution, MOST_DRAWS, Source};
-use crate::physics::perturbation::{Perturbation, sign_of_input};
+use crate::physics::reintegration::perturbation::{Perturbation, sign_of_input};
 use crate::plan::formula::ProcedureId;
 
 /// A re-integrated run must lead to the recorded results, relatively.

@@ -3,7 +3,7 @@
 
 use super::Source;
 use crate::physics::identification::StatedVariance;
-use crate::physics::perturbation::{Instruments, Perturbation, ReadingErrors};
+use crate::physics::reintegration::perturbation::{Instruments, Perturbation, ReadingErrors};
 use crate::plan::DeclaredNoise;
 use crate::plan::{Calibration, Link, Plan, ReadingRules, VirtualLink};
 

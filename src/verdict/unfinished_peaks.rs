@@ -254,7 +254,7 @@ const PUSHED: [&str; 6] = [
 
 fn drift_rate(floor: &FloorStep) -> Vec<f64> {
     let mut rate = vec![0.0; floor.velocity.len()];
-    crate::physics::frame::drifts(&floor.velocity, &mut rate);
+    crate::physics::structure::drifts(&floor.velocity, &mut rate);
     rate
 }
 

@@ -182,8 +182,6 @@ const LONG: &[&str] = &[
     "emulator/firmware/native/mod.rs",
     "emulator/firmware/native/tests.rs",
     "emulator/script.rs",
-    "physics/integrator/solver.rs",
-    "physics/self_test.rs",
     "record/mod.rs",
     "rig/controllers/native/codec.rs",
     "rig/guard/mod.rs",
@@ -192,10 +190,6 @@ const LONG: &[&str] = &[
     "run/replay/resume_tests.rs",
     "run/replay/rig.rs",
     "run/replay/tests.rs",
-    "tests/procedures/frame_sequence.rs",
-    "tests/uncertainty/frame.rs",
-    "tests/uncertainty/impact.rs",
-    "tests/whole_runs.rs",
 ];
 
 #[test]

@@ -1,11 +1,11 @@
 //! What stands on a bench: a specimen of one degree of freedom, or a frame with a ram at every floor. In: where the rams
 //! stand, how they went there. Out: the restoring force of each. It knows no rig and no sensor.
 
-use crate::physics::frame::{drifts, floor_forces};
 use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use crate::physics::specimen::SpecimenModel;
-use crate::physics::structure::damping::CellDamping;
+use crate::physics::structure::cell_damping::CellDamping;
+use crate::physics::structure::{drifts, floor_forces};
 use crate::plan::{Behaviour, Frame, Storey};
 
 #[derive(Debug)]
@@ -148,7 +148,7 @@ impl Structure {
                 forces
                     .iter()
                     .zip(velocities)
-                    .map(|(force, v)| damping.felt(*force, *v) + relaxing)
+                    .map(|(force, v)| damping.measured_force(*force, *v) + relaxing)
                     .collect()
             }
             Self::Storeys {
@@ -163,7 +163,7 @@ impl Structure {
                 let relaxing = relaxing.iter().map(RelaxationState::force);
                 let storeys = dampers.iter_mut().zip(&*shear).zip(apart).zip(relaxing);
                 let beside = storeys.map(|(((damper, shear), v), relaxing)| {
-                    damper.felt(*shear, v) - shear + relaxing
+                    damper.measured_force(*shear, v) - shear + relaxing
                 });
                 let mut more = vec![0.0; velocities.len()];
                 floor_forces(&beside.collect::<Vec<f64>>(), &mut more);

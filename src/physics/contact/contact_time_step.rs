@@ -15,7 +15,7 @@ pub struct Approach {
 }
 
 impl Approach {
-    /// A striker of `mass` (kg) that starts with `velocity` (m/s) at the distance `gap` (m), under `gravity` (m/s²) along its way,
+    /// A striker of `mass` (kg) that starts with `velocity` (m/s) at the distance `gap` (m), under `gravity` (m/s²) along its path,
     /// where the gap is closed.
     #[must_use]
     pub fn after_gap(mass: f64, velocity: f64, gap: f64, gravity: f64, hertz: Option<f64>) -> Self {
@@ -27,8 +27,8 @@ impl Approach {
         }
     }
 
-    /// The contact's tangent at its deepest, `k_c = 1.5 k √δ` with δ of a blow between free masses, (5/4 μu²/k)^(2/5), N/m;
-    /// `struck` is the mass that the blow meets, kg. None of a contact that has no stiffness, or that never closes.
+    /// The contact's tangent at its deepest, `k_c = 1.5 k √δ` with δ of an impact between free masses, (5/4 μu²/k)^(2/5), N/m;
+    /// `struck` is the effective mass at the struck point \[kg\]. None of a contact that has no stiffness, or that never closes.
     #[must_use]
     pub fn contact_stiffness(&self, struck: f64) -> Option<f64> {
         let hertz = self.hertz.filter(|_| self.speed > 0.0)?;
@@ -39,7 +39,7 @@ impl Approach {
 
     /// Critical time step of one degree of freedom that is struck, s: a tenth of its period (Melo et al. 2006, eq. 7), under a
     /// contact of finite stiffness a tenth of the shorter period of mass (kg) and striker on the spring (N/m) and that of the
-    /// contact: with a = (K + `k_c`)/M + `k_c`/Ms, ω² = (a + √(a² − 4 K `k_c`/(M Ms)))/2. A longer step would not show the blow.
+    /// contact: with a = (K + `k_c`)/M + `k_c`/Ms, ω² = (a + √(a² − 4 K `k_c`/(M Ms)))/2. A longer step would not resolve the impact.
     #[must_use]
     pub fn critical_time_step(&self, mass: f64, stiffness: f64) -> f64 {
         let alone = critical_time_step(mass, stiffness);
@@ -56,7 +56,7 @@ impl Approach {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Damping;
+    use crate::structure::Damping;
     use crate::structure::frame::Frame;
     use crate::structure::frame_properties::FrameProperties;
 
@@ -82,7 +82,7 @@ mod tests {
         }
     }
 
-    /// The same question asked of a frame of one storey, whose modes are found another way.
+    /// A frame of one storey, whose modes are computed differently.
     #[test]
     fn of_one_degree_of_freedom_it_is_that_of_a_frame_of_one_storey() {
         for (mass, stiffness, approach) in [
@@ -120,7 +120,7 @@ mod tests {
         }
     }
 
-    /// A blow between free masses lasts 2.943 δ/u (Hertz), and `k_c` gives ω = √(15/8)·u/δ there: 2.943·√(15/8)·200/2π = 128.3 steps
+    /// An impact between free masses lasts 2.943 δ/u (Hertz), and `k_c` gives ω = √(15/8)·u/δ there: 2.943·√(15/8)·200/2π = 128.3 steps
     /// of a twentieth fall into it.
     #[test]
     fn a_step_shows_a_blow_on_a_free_mass() {

@@ -1,17 +1,17 @@
 //! Contact of finite stiffness: Hunt–Crossley's F = k δ^1.5 (1 + loss·δ̇), never pulling, with an optional limit force
-//! past which the surface is dented. A blow is much shorter than a step and is followed in parts of its own length.
+//! beyond which the surface is indented. An impact is much shorter than a step and is integrated in parts of its own duration.
 
 use super::{Advance, Approaching, Start};
 use crate::contact::state::StepState;
 use crate::integrator::step_form::Motion;
-use crate::integrator::substep::{Passage, Scratch, Striker};
-use crate::matrix::Vector;
+use crate::integrator::substep::{Scratch, Striker, Substep};
+use crate::structure::matrix::Vector;
 
-/// Parts of a blow. The peak force is then good to about 1e-4; fewer, and it shows in the fourth digit.
-const PARTS_OF_A_BLOW: f64 = 200.0;
-/// Parts of a step at most; a step of many blows' length is then resolved more coarsely.
+/// Parts of an impact. The relative error of the peak force is then about 1e-4; fewer parts change its fourth digit.
+const PARTS_OF_AN_IMPACT: f64 = 200.0;
+/// Parts of a step, at most; a step much longer than the impact is then resolved more coarsely.
 const MOST_PARTS: f64 = 1e6;
-/// Gauss–Legendre on [0, 1], three points: (place, weight).
+/// Gauss–Legendre on [0, 1], three points: (node, weight).
 const GAUSS: [(f64, f64); 3] = [
     (0.112_701_665_379_258_31, 5.0 / 18.0),
     (0.5, 8.0 / 18.0),
@@ -26,7 +26,7 @@ struct Closing {
 }
 
 impl Closing {
-    /// From an overlap, m.
+    /// From an overlap \[m\].
     const fn new(depth: f64) -> Self {
         Self {
             touching: depth > 0.0,
@@ -34,25 +34,25 @@ impl Closing {
         }
     }
 
-    /// Takes a part with its mean force (N) and the overlap at its end (m).
+    /// Adds a part with its mean force \[N\] and the overlap at its end \[m\].
     fn take(&mut self, force: f64, depth: f64) {
         let closed = force > 0.0 || depth > 0.0;
         self.contacts += u32::from(closed && !self.touching);
-        // One that opened again inside the part is over.
+        // A contact that opened again inside the part has ended.
         self.touching = depth > 0.0;
     }
 }
 
-/// A blow that takes time.
+/// A contact of finite stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HertzContact {
-    /// k, N/m^1.5
+    /// k \[N/m^1.5\]
     stiffness: f64,
-    /// s/m
+    /// λ \[s/m\]
     loss: f64,
-    /// N; infinite if none.
+    /// \[N\]; infinite if none.
     force_limit: f64,
-    /// Length of a part of a step, s.
+    /// Duration of a part of a step \[s\].
     part: f64,
 }
 
@@ -69,12 +69,12 @@ impl HertzContact {
         let reduced_mass = mass * striker_mass / (mass + striker_mass);
         let speed = velocity.abs();
         let deepest = (1.25 * reduced_mass * speed * speed / stiffness).powf(0.4);
-        let blow = if speed > 0.0 {
+        let duration_of_impact = if speed > 0.0 {
             2.943 * deepest / speed
         } else {
             time_step
         };
-        let part = (blow / PARTS_OF_A_BLOW).max(time_step / MOST_PARTS);
+        let part = (duration_of_impact / PARTS_OF_AN_IMPACT).max(time_step / MOST_PARTS);
         Self {
             stiffness,
             loss,
@@ -91,14 +91,14 @@ impl HertzContact {
         }
     }
 
-    /// Mean force over a way from one depth to another, and its slope against the second.
+    /// Mean force between two depths \[N\], and its derivative by the second \[N/m\].
     fn mean(&self, from: f64, to: f64, duration: f64) -> (f64, f64) {
         let (mut force, mut slope) = (0.0, 0.0);
-        for (place, weight) in GAUSS {
-            let depth = from + place * (to - from);
+        for (node, weight) in GAUSS {
+            let depth = from + node * (to - from);
             if depth > 0.0 {
                 force += weight * self.elastic(depth);
-                slope += weight * place * 1.5 * self.stiffness * depth.sqrt();
+                slope += weight * node * 1.5 * self.stiffness * depth.sqrt();
             }
         }
         let factor = 1.0 + self.loss * (to - from) / duration;
@@ -112,13 +112,13 @@ impl HertzContact {
         }
     }
 
-    /// Mean force of a part: `to = from + way − yielding·F` and F = mean(from, to), by Newton's method between bounds.
+    /// Mean force of a part: `to = from + travel − yielding·F` and F = mean(from, to), by Newton's method between bounds.
     /// Both sides are monotone, so that there is one answer.
-    fn solve(&self, from: f64, way: f64, yielding: f64, duration: f64) -> f64 {
-        let (mut low, mut high) = (0.0, self.mean(from, from + way, duration).0);
+    fn solve(&self, from: f64, travel: f64, yielding: f64, duration: f64) -> f64 {
+        let (mut low, mut high) = (0.0, self.mean(from, from + travel, duration).0);
         let mut force = high.min(self.elastic(from));
         for _ in 0..60 {
-            let (mean, slope) = self.mean(from, from + way - yielding * force, duration);
+            let (mean, slope) = self.mean(from, from + travel - yielding * force, duration);
             let residual = force - mean;
             if residual > 0.0 {
                 high = force;
@@ -140,14 +140,14 @@ impl HertzContact {
         force
     }
 
-    /// Parts of a step in which the blow is followed.
+    /// Number of parts of a step.
     fn parts(&self, time_step: f64) -> f64 {
         (time_step / self.part).ceil().max(1.0)
     }
 
-    /// Mean force of a part (as `solve` has it), N, and whether it is the limit that bounds it.
-    fn force(&self, from: f64, way: f64, yielding: f64, duration: f64) -> (f64, bool) {
-        let force = self.solve(from, way, yielding, duration);
+    /// Mean force of a part (see `solve`) \[N\], and whether the limit bounds it.
+    fn force(&self, from: f64, travel: f64, yielding: f64, duration: f64) -> (f64, bool) {
+        let force = self.solve(from, travel, yielding, duration);
         if force > self.force_limit {
             (self.force_limit, true)
         } else {
@@ -155,41 +155,41 @@ impl HertzContact {
         }
     }
 
-    /// The dent that the limit force leaves of an overlap, m: what the surface cannot hold elastically.
+    /// Permanent indentation by the limit force at an overlap \[m\]: the inelastic part of the overlap.
     fn dent(&self, overlap: f64) -> f64 {
         overlap - (self.force_limit / self.stiffness).powf(2.0 / 3.0)
     }
 
-    /// Force of an instant, N.
+    /// Force at an instant \[N\].
     fn instant(&self, depth: f64, rate: f64) -> f64 {
         (self.elastic(depth) * (1.0 + self.loss * rate)).clamp(0.0, self.force_limit)
     }
 
-    /// A mean of forces up to the limit is not above it by a rounding either, N.
+    /// Bounds the mean of forces up to the limit, which rounding may exceed \[N\].
     const fn bounded(&self, mean: f64) -> f64 {
         mean.min(self.force_limit)
     }
 
-    /// The step in tangent form from where `scratch` stands, whose end goes into `to`.
+    /// The step in tangent form from the state in `scratch`; its end is written to `to`.
     #[inline]
     pub(crate) fn pass<V: Vector>(
         &self,
-        passage: &mut Passage<V>,
+        substep: &mut Substep<V>,
         striker: &Striker,
         start: &Start,
         scratch: &mut Scratch<V>,
         to: &mut Motion<V>,
     ) -> Advance {
-        match apart(passage, striker, start, scratch, to) {
+        match apart(substep, striker, start, scratch, to) {
             Some(advance) => advance,
-            None => self.follow(passage, striker, start, scratch, to),
+            None => self.follow(substep, striker, start, scratch, to),
         }
     }
 
     /// The midpoint rule over parts of the step: it keeps the energy balance to rounding whatever the force is.
     fn follow<V: Vector>(
         &self,
-        passage: &mut Passage<V>,
+        substep: &mut Substep<V>,
         striker: &Striker,
         start: &Start,
         scratch: &mut Scratch<V>,
@@ -210,21 +210,21 @@ impl HertzContact {
         let parts = self.parts(time_step);
         let duration = time_step / parts;
         let half = 0.5 * duration;
-        passage.prepare(duration, 0.0);
+        substep.prepare(duration, 0.0);
         // M̂⁻¹ e_s: how the structure yields to a force on the struck degree of freedom.
         response.update([], |_, []| 0.0);
         response.as_mut_slice()[struck] = 1.0;
-        passage.solve(response);
+        substep.solve(response);
         let yielding = duration * half * (1.0 / mass + response.as_slice()[struck]);
         let (mut xs, mut vs) = (start.striker_displacement, start.striker_velocity);
         let mut indentation = start.indentation;
         let (mut impulse, mut contact_loss, mut damping_work, mut limited) = (0.0, 0.0, 0.0, false);
         let mut done = 0.0;
-        let mut closing = Closing::new(xs - passage.of_struck(&now).0 - indentation);
+        let mut closing = Closing::new(xs - substep.of_struck(&now).0 - indentation);
         while done < parts {
-            let depth = xs - passage.of_struck(&now).0 - indentation;
-            passage.momentum(&now, half, (done + 0.5) / parts, &mut mean_velocity);
-            passage.solve(&mut mean_velocity);
+            let depth = xs - substep.of_struck(&now).0 - indentation;
+            substep.momentum(&now, half, (done + 0.5) / parts, &mut mean_velocity);
+            substep.solve(&mut mean_velocity);
             done += 1.0;
             let falling = vs + half * gravity;
             let approach = duration * (falling - mean_velocity.as_slice()[struck]);
@@ -233,22 +233,22 @@ impl HertzContact {
             let mean_striker = falling - half * force / mass;
             let pushed = half * force;
             mean_velocity.update([response], |mean, [response]| mean + pushed * response);
-            passage.drift(&mut now, &mean_velocity, duration);
+            substep.drift(&mut now, &mean_velocity, duration);
             let striker_moved = duration * mean_striker;
             xs += striker_moved;
             vs = 2.0 * mean_striker - vs;
             impulse += force * duration;
             contact_loss += force * (striker_moved - duration * mean_velocity.as_slice()[struck]);
-            damping_work += passage.damped(&mean_velocity, duration);
-            let overlap = xs - passage.of_struck(&now).0;
+            damping_work += substep.damped(&mean_velocity, duration);
+            let overlap = xs - substep.of_struck(&now).0;
             if over {
                 indentation = indentation.max(self.dent(overlap));
             }
             closing.take(force, overlap - indentation);
         }
-        let (displacement, velocity) = passage.of_struck(&now);
+        let (displacement, velocity) = substep.of_struck(&now);
         let force = self.instant(xs - displacement - indentation, vs - velocity);
-        passage.settle(force, &mut now);
+        substep.settle(force, &mut now);
         (**at_start, **mean) = (std::mem::replace(to, now), mean_velocity);
         let state = match (limited, impulse > 0.0) {
             (true, _) => StepState::Limit,
@@ -273,10 +273,10 @@ impl HertzContact {
     }
 }
 
-/// Eq. (5), if the surfaces stay apart.
+/// Eq. (5), if the surfaces remain apart.
 #[inline]
 fn apart<V: Vector>(
-    passage: &mut Passage<V>,
+    substep: &mut Substep<V>,
     striker: &Striker,
     start: &Start,
     scratch: &Scratch<V>,
@@ -288,11 +288,11 @@ fn apart<V: Vector>(
     if start.displacement + start.indentation - start.striker_displacement < 0.0 {
         return None;
     }
-    passage.follow(scratch.now, [time_step, 1.0], None, to);
+    substep.follow(scratch.now, [time_step, 1.0], None, to);
     let striker_velocity = start.striker_velocity + gravity * time_step;
     let striker_displacement =
         start.striker_displacement + 0.5 * time_step * (start.striker_velocity + striker_velocity);
-    if passage.of_struck(to).0 + start.indentation - striker_displacement < 0.0 {
+    if substep.of_struck(to).0 + start.indentation - striker_displacement < 0.0 {
         return None;
     }
     Some(Advance {
@@ -302,7 +302,7 @@ fn apart<V: Vector>(
         contact_force: 0.0,
         indentation: start.indentation,
         contact_loss: 0.0,
-        damping_work: passage.damped_between(scratch.now, to, time_step),
+        damping_work: substep.damped_between(scratch.now, to, time_step),
         indentation_work: 0.0,
         contacts: 0,
     })

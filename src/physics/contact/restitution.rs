@@ -6,8 +6,8 @@
 use super::{Advance, Start};
 use crate::contact::state::StepState;
 use crate::integrator::step_form::Motion;
-use crate::integrator::substep::{Passage, Scratch, Striker};
-use crate::matrix::Vector;
+use crate::integrator::substep::{Scratch, Striker, Substep};
+use crate::structure::matrix::Vector;
 
 /// Flights shorter than this part of Δt are not followed: the bodies stay together. Larger, and bouncing ends too
 /// early; smaller, and a step near e = 1 takes more bounces than it is worth. Its error shrinks with Δt.
@@ -15,7 +15,7 @@ const SHORTEST_FLIGHT: f64 = 1e-3;
 /// Halvings of an interval of time: past the resolution of a double.
 const HALVINGS: u32 = 60;
 /// Impacts of one step that bounce. `SHORTEST_FLIGHT` lets no more into a step whose structure slows down steadily; past
-/// them the next impact is taken as the one with which the bounces die out.
+/// them the next impact is treated as the last of the series.
 const MOST_BOUNCES: u32 = 2000;
 
 /// Separation speed = `coefficient` × closing speed.
@@ -37,7 +37,7 @@ impl RestitutionContact {
     }
 }
 
-/// Two bodies meet: what passes between them, whatever else moves.
+/// A collision of two bodies: the impulse between them.
 struct Collision {
     coefficient: f64,
     /// M Ms/(M + Ms), kg.
@@ -79,7 +79,7 @@ impl Collision {
         2.0 * self.separation() <= deceleration * SHORTEST_FLIGHT * time_step
     }
 
-    /// The impulse (N·s) that takes their separation back, and what it loses (J): from then on they move as one.
+    /// The impulse \[N·s\] that cancels their separation velocity, and its energy loss \[J\]: from then on they move as one.
     const fn joining(&self) -> (f64, f64) {
         let separation = self.separation();
         (
@@ -89,13 +89,13 @@ impl Collision {
     }
 }
 
-/// Structure and striker while a step is under way; the motion looked at is `ahead`.
+/// Structure and striker inside a step; `ahead` is the motion under examination.
 struct Course<'a, 'b, V: Vector> {
-    passage: &'a mut Passage<'b, V>,
+    substep: &'a mut Substep<'b, V>,
     striker: Striker,
     now: &'a mut Motion<V>,
     ahead: &'a mut Motion<V>,
-    /// Whether `now` and `ahead` stand for each other's memory.
+    /// Whether `now` and `ahead` have exchanged their memory.
     swapped: bool,
     striker_displacement: f64,
     striker_velocity: f64,
@@ -123,7 +123,7 @@ impl<V: Vector> Course<'_, '_, V> {
             1.0 - (self.left - duration) / time_step
         };
         let joined = joined.then_some([mass, mass * gravity]);
-        self.passage
+        self.substep
             .follow(self.now, [duration, part], joined, self.ahead);
         [
             &self.ahead.displacement,
@@ -136,9 +136,9 @@ impl<V: Vector> Course<'_, '_, V> {
     /// Goes on for `duration` to where it looked.
     #[inline]
     fn go(&mut self, striker_velocity: f64, duration: f64) {
-        let moved = self.passage.of_struck(self.ahead).0 - self.passage.of_struck(self.now).0;
+        let moved = self.substep.of_struck(self.ahead).0 - self.substep.of_struck(self.now).0;
         let striker_moved = 0.5 * duration * (self.striker_velocity + striker_velocity);
-        self.damping_work += self.passage.damped_between(self.now, self.ahead, duration);
+        self.damping_work += self.substep.damped_between(self.now, self.ahead, duration);
         std::mem::swap(&mut self.now, &mut self.ahead);
         self.swapped = !self.swapped;
         self.striker_displacement += striker_moved;
@@ -150,7 +150,7 @@ impl<V: Vector> Course<'_, '_, V> {
     /// Momentum p passes from striker to structure.
     #[inline]
     fn strike(&mut self, impulse: f64) {
-        self.passage.strike(impulse, self.now);
+        self.substep.strike(impulse, self.now);
         self.striker_velocity -= impulse / self.striker.mass;
         self.impulse += impulse;
     }
@@ -181,11 +181,11 @@ fn locate(end: f64, mut reached: impl FnMut(f64) -> bool) -> f64 {
 }
 
 impl RestitutionContact {
-    /// The step in tangent form from where `scratch` stands, whose end goes into `to`.
+    /// The step in tangent form from the state in `scratch`; its end is written to `to`.
     #[inline]
     pub(crate) fn pass<V: Vector>(
         &mut self,
-        passage: &mut Passage<V>,
+        substep: &mut Substep<V>,
         striker: &Striker,
         start: &Start,
         scratch: &mut Scratch<V>,
@@ -197,7 +197,7 @@ impl RestitutionContact {
             (start.striker_displacement - start.displacement).min(0.0)
         };
         let mut course = Course {
-            passage,
+            substep,
             striker: *striker,
             now: &mut *scratch.now,
             ahead: &mut *to,
@@ -275,7 +275,7 @@ impl RestitutionContact {
         true
     }
 
-    /// An impact: the bodies part with what restitution leaves them, or go on as one.
+    /// An impact: the bodies separate by the coefficient of restitution, or continue as one.
     fn collide<V: Vector>(&mut self, course: &mut Course<V>, may_bounce: bool) {
         let Striker {
             mass,
@@ -286,7 +286,7 @@ impl RestitutionContact {
         let closing = course.striker_velocity - course.struck()[0];
         let collision = Collision::new(
             self.coefficient,
-            course.passage.struck_mass(),
+            course.substep.struck_mass(),
             mass,
             closing,
         );
@@ -302,7 +302,7 @@ impl RestitutionContact {
             let [velocity, acceleration] = course.struck();
             course.striker_velocity = velocity;
             // F = Ms(g − Ẍ) with Ẍ = Ẍ_free + F/m of the struck degree of freedom.
-            course.passage.press(
+            course.substep.press(
                 collision.reduced_mass * (gravity - acceleration),
                 course.now,
             );
@@ -331,7 +331,7 @@ impl RestitutionContact {
         course.overlap = 0.0;
         if parted {
             course
-                .passage
+                .substep
                 .press(mass * (acceleration - gravity), course.now);
             self.joined = false;
         }

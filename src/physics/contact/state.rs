@@ -9,7 +9,7 @@ pub enum StepState {
 }
 
 impl StepState {
-    /// Its word in tables and figures.
+    /// Its name in tables and figures.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -47,8 +47,7 @@ impl ContactLaw {
         }
     }
 
-    /// Whether a largest contact force (N) is that of a blow without a duration, an impulse over one step: it grows as 1/Δt, and is no
-    /// property of the blow.
+    /// Whether a peak contact force \[N\] is that of an impulse over one step: it grows as 1/Δt and is not a property of the impact.
     #[must_use]
     pub fn force_follows_the_step(&self, largest: f64) -> bool {
         match self {

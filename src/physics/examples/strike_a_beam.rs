@@ -1,5 +1,5 @@
 //! A beam of 1 kg and 300 N/m is struck by 10 kg at 1 m/s. The loop is that of a pseudo-dynamic test: the solver predicts a
-//! displacement, the specimen resists there, and the solver ends the step with that force. Here the specimen is a spring.
+//! displacement, the specimen is moved there, and the solver ends the step with the force that is read. Here the specimen is a spring.
 //!
 //! ```text
 //! cargo run -p psd-physics --example strike_a_beam

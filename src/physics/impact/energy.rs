@@ -1,9 +1,9 @@
 //! The energy balance of an impact (physics: every dynamic run, every step).
 
-/// Share of the energy put in that a scheme may make or lose before a reader is told: an unstable run is off by far more.
+/// Fraction of the input energy that an integrator may create or lose before it is reported: an unstable run exceeds it by far.
 pub const UNBALANCED: f64 = 0.1;
 
-/// Share beyond which a run says more of its scheme than of its specimen: nothing is decided by it.
+/// Fraction beyond which the integration error dominates the results: no requirement is decided by them.
 pub const WORTHLESS: f64 = 0.5;
 
 /// Energies at the end of a step, all in J. They add up:
@@ -22,7 +22,7 @@ pub struct Energies {
     pub contact_loss: f64,
     /// `F_lim` Δδp, cumulated: an indicator, not a part of the sum.
     pub indentation: f64,
-    /// Work of the striker's weight, Ms g (Xs − Xs₀): put in, where it falls.
+    /// Work of the striker's weight, Ms g (Xs − Xs₀), an input where it falls \[J\].
     pub weight: f64,
     /// What remains of the input: the integration error.
     pub error: f64,

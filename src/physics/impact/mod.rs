@@ -1,42 +1,44 @@
 //! The inputs of an impact, its state at the end of a step, and an impact on an ideal rig from start to end. In: masses,
-//! stiffnesses, a striker, a contact law. Out: numbers. The steps are those of `impact_solver`.
+//! stiffnesses, a striker, a contact law. Out: numbers. The steps are those of [`ImpactSolver`].
 
 pub mod energy;
 pub mod peaks;
+mod solver;
 pub mod summary;
 mod until;
 
+pub use solver::{FrameImpactSolver, ImpactSolver};
 pub use until::Until;
 
 use thiserror::Error;
 
-use super::contact::NeedsTangent;
-use super::contact::state::{ContactLaw, StepState};
-use super::impact::energy::Energies;
-pub use super::impact_solver::{FrameImpactSolver, ImpactSolver};
-use super::integrator::solver::{FrameError, State};
-use super::integrator::step_form::Matrices;
-use super::specimen::RestoringForce;
+use crate::contact::NeedsTangent;
+use crate::contact::state::{ContactLaw, StepState};
 use crate::integrator::Integrator;
+use crate::integrator::input::FrameError;
+use crate::integrator::state::State;
+use crate::specimen::RestoringForce;
+use crate::structure::Matrices;
+use energy::Energies;
 
-/// All that an impact on one degree of freedom starts from.
+/// Initial state and parameters of an impact on one degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactInput {
-    /// M, kg
+    /// M \[kg\]
     pub mass: f64,
-    /// C, N·s/m
+    /// C \[N·s/m\]
     pub damping: f64,
-    /// K0, N/m
+    /// K0 \[N/m\]
     pub stiffness: f64,
-    /// Ms, kg
+    /// Ms \[kg\]
     pub striker_mass: f64,
-    /// V0, m/s
+    /// V0 \[m/s\]
     pub striker_velocity: f64,
-    /// m, at least 0
+    /// Initial distance \[m\], at least 0.
     pub gap: f64,
-    /// Acceleration of the striker along its way, m/s²: gn of a weight that falls.
+    /// Acceleration of the striker along its path \[m/s²\]: gn of a falling weight.
     pub gravity: f64,
-    /// Δt, s
+    /// Δt \[s\]
     pub time_step: f64,
     /// c of `K_t within [0, c·K0]`
     pub max_tangent_ratio: f64,
@@ -54,7 +56,7 @@ pub struct ImpactInput {
 }
 
 impl ImpactInput {
-    /// A rigid blow on an undamped structure at rest, by the tangent form: `mass` (kg) and `stiffness` (N/m) of the structure,
+    /// A rigid impact on an undamped structure at rest, by the tangent form: `mass` (kg) and `stiffness` (N/m) of the structure,
     /// `striker_mass` (kg) and `striker_velocity` (m/s) of a striker that touches it at the start, steps of `time_step` (s).
     #[must_use]
     pub const fn rigid(
@@ -101,8 +103,8 @@ impl ImpactInput {
 
     /// The striker and its contact.
     #[must_use]
-    pub const fn striking(&self) -> Striking {
-        Striking {
+    pub const fn setup(&self) -> ImpactSetup {
+        ImpactSetup {
             struck: 0,
             mass: self.striker_mass,
             velocity: self.striker_velocity,
@@ -117,11 +119,11 @@ impl ImpactInput {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactState {
     pub step: u64,
-    /// s
+    /// \[s\]
     pub time: f64,
-    /// Computed X, m.
+    /// Computed X \[m\].
     pub displacement: f64,
-    /// Imposed on the specimen, m: X itself, but under α-OS the place it was foretold at.
+    /// Imposed on the specimen \[m\]: X itself, under α-OS the predicted displacement d̃.
     pub target: f64,
     /// m
     pub measured_displacement: f64,
@@ -129,59 +131,59 @@ pub struct ImpactState {
     pub velocity: f64,
     /// m/s²
     pub acceleration: f64,
-    /// Measured, N.
+    /// Measured R \[N\].
     pub restoring_force: f64,
-    /// What the recursion takes for the force at X, N: the reading, but for what the I-modification and α-OS correct.
+    /// Force of the recursion at X \[N\]: the reading, as corrected by the I-modification and α-OS.
     pub force_at_computed: f64,
-    /// Mean over the step, N.
+    /// F, mean over the step \[N\].
     pub contact_force: f64,
     /// m
     pub striker_displacement: f64,
     /// m/s
     pub striker_velocity: f64,
-    /// N/m, for the step to come.
+    /// K_t for the next step \[N/m\].
     pub tangent_stiffness: f64,
-    /// Permanent, m.
+    /// δp, permanent \[m\].
     pub indentation: f64,
     pub state: StepState,
     /// Those of the whole structure. Under `hertz` the contact loss holds also the energy stored in the contact, given back as it
     /// opens.
     pub energies: Energies,
-    /// Energy put into the test so far, J: what errors are shares of. At the start ½ Ms V0², and of a structure that carries a load
-    /// already what it gives back elastically, ½RᵀK⁻¹R; a weight that falls adds its work.
+    /// Input energy so far \[J\], the reference of relative errors. At the start ½ Ms V0², and for a loaded structure its elastic energy
+    /// ½RᵀK⁻¹R; a falling weight adds its work.
     pub input: f64,
     /// Contacts that began so far.
     pub contacts: u64,
 }
 
-/// A striker, its contact and the degree of freedom that it hits.
+/// The setup of an impact: a striker, its contact law and the struck degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Striking {
+pub struct ImpactSetup {
     /// The struck degree of freedom, from 0.
     pub struck: usize,
-    /// Ms, kg
+    /// Ms \[kg\]
     pub mass: f64,
-    /// V0, m/s
+    /// V0 \[m/s\]
     pub velocity: f64,
-    /// m, at least 0
+    /// Initial distance \[m\], at least 0.
     pub gap: f64,
-    /// Acceleration of the striker along its path, m/s²: gn of a weight that falls.
+    /// Acceleration of the striker along its path \[m/s²\]: gn of a falling weight.
     pub gravity: f64,
     pub law: ContactLaw,
 }
 
-/// Why there is no impact to follow.
+/// Why an impact cannot be integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ImpactError {
     #[error(transparent)]
     Structure(#[from] FrameError),
     #[error("degree of freedom {} is struck, but there are {order}", struck + 1)]
-    NoSuchPlace { struck: usize, order: usize },
+    NoSuchDegreeOfFreedom { struck: usize, order: usize },
     #[error(transparent)]
     Contact(#[from] NeedsTangent),
 }
 
-/// Takes the steps of an impact that is integrated to its end.
+/// Receives the steps of an impact that is integrated to its end.
 pub trait Sink<V = f64> {
     /// The end of a step; `over` where the run ends with it before its duration.
     fn push(&mut self, structure: &State<V>, state: &ImpactState, over: bool);
@@ -192,7 +194,7 @@ impl<V> Sink<V> for () {
     fn push(&mut self, _: &State<V>, _: &ImpactState, _: bool) {}
 }
 
-/// Columns to fill again and again: memory once touched costs a quarter.
+/// Columns that are reused: memory that was touched before costs a quarter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
     pub time: Vec<f64>,
@@ -219,7 +221,7 @@ impl Columns {
         ]
     }
 
-    /// Empty, with room for so many steps: filling them then takes no memory.
+    /// Empty, with capacity for `steps`, so that pushing allocates no memory.
     pub fn prepare(&mut self, steps: usize) {
         for column in self.all() {
             column.clear();
@@ -312,8 +314,7 @@ mod tests {
         }
     }
 
-    /// Every number of every step to the last bit, under every law with every integrator that it takes; a pair that means nothing
-    /// is refused.
+    /// Every number of every step is bit-identical, for every valid pair of contact law and integrator; an invalid pair is refused.
     #[test]
     fn an_impact_in_one_go_is_the_impact_step_by_step() {
         for integrator in INTEGRATORS {

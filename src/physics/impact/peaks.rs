@@ -1,17 +1,17 @@
-//! Largest sizes of what moves, told between the ends of steps, so that they follow the inputs of a run smoothly. In: places
+//! Peak absolute values, interpolated between the ends of steps, so that they are smooth functions of the inputs. In: displacements
 //! and velocities, or a force alone, at the ends of steps. Out: the largest by size.
 
-/// Largest |x| of several places, each with its velocity: inside a step the velocity goes evenly from one end to the other,
+/// Peak |x| of several displacements, each with its velocity: inside a step the velocity is linear from one end to the other,
 /// the trapezoidal rule.
 #[derive(Clone, Debug)]
-pub struct Extremes {
+pub struct PeakDisplacements {
     time_step: f64,
     largest: Vec<f64>,
     last: Vec<(f64, f64)>,
 }
 
-impl Extremes {
-    /// Of so many places; `time_step` in s.
+impl PeakDisplacements {
+    /// For `count` displacements; `time_step` in \[s\].
     #[must_use]
     pub fn new(count: usize, time_step: f64) -> Self {
         Self {
@@ -21,9 +21,9 @@ impl Extremes {
         }
     }
 
-    /// Takes the ends of a step: each place (m) with its velocity (m/s).
+    /// Adds the end of a step: each displacement \[m\] with its velocity \[m/s\].
     pub fn take(&mut self, ends: impl Iterator<Item = (f64, f64)>) {
-        for ((largest, last), (place, velocity)) in
+        for ((largest, last), (displacement, velocity)) in
             self.largest.iter_mut().zip(&mut self.last).zip(ends)
         {
             let (before, speed) = *last;
@@ -31,12 +31,12 @@ impl Extremes {
                 let turned = before + 0.5 * speed * speed / (speed - velocity) * self.time_step;
                 *largest = largest.max(turned.abs());
             }
-            *largest = largest.max(place.abs());
-            *last = (place, velocity);
+            *largest = largest.max(displacement.abs());
+            *last = (displacement, velocity);
         }
     }
 
-    /// Largest size of each place so far, m.
+    /// Peak absolute value of each displacement so far \[m\].
     #[must_use]
     pub fn largest(&self) -> &[f64] {
         &self.largest
@@ -64,20 +64,20 @@ impl Peak {
         self.last = [self.last[1], Some(now)];
     }
 
-    /// Largest size so far, in the unit of what was taken.
+    /// Peak absolute value so far, in the unit of the values.
     #[must_use]
     pub const fn largest(&self) -> f64 {
         self.largest
     }
 }
 
-/// The farther of the farthest place so far and another, m; once one was none, that.
+/// The larger absolute value of a peak so far and another displacement \[m\]; NaN after any NaN.
 #[must_use]
-pub fn farther(most: f64, place: f64) -> f64 {
-    if most.is_nan() || place.abs() <= most {
+pub fn farther(most: f64, displacement: f64) -> f64 {
+    if most.is_nan() || displacement.abs() <= most {
         most
     } else {
-        place.abs()
+        displacement.abs()
     }
 }
 
@@ -90,16 +90,16 @@ mod tests {
     fn tops_are_found_between_the_ends_of_steps() {
         let step = std::f64::consts::TAU / 30.0;
         for phase in (0..20).map(|phase| 0.01 * f64::from(phase)) {
-            let (mut place, mut peak) = (Extremes::new(1, step), Peak::default());
+            let (mut displacement, mut peak) = (PeakDisplacements::new(1, step), Peak::default());
             for at in (0..60).map(|at| step * f64::from(at) + phase - 0.3) {
                 // Eq. (2d) is exact of a velocity that is even between the ends: place and velocity agree to its order.
-                place.take([(-2.0 * at.sin(), -2.0 * at.cos())].into_iter());
+                displacement.take([(-2.0 * at.sin(), -2.0 * at.cos())].into_iter());
                 peak.take(-2.0 * at.sin());
             }
             assert!(
-                (place.largest()[0] / 2.0 - 1.0).abs() < 6e-4,
+                (displacement.largest()[0] / 2.0 - 1.0).abs() < 6e-4,
                 "{}",
-                place.largest()[0]
+                displacement.largest()[0]
             );
             // A parabola misses a cubic's top by its third derivative, sin(step/2) at most, times step³/(9√3).
             let within = (0.5 * step).sin() * step.powi(3) / (9.0 * 3.0_f64.sqrt());

@@ -1,8 +1,8 @@
-//! What an impact comes to: peaks, times, impulse, energies, from its steps as they end.
+//! Results of an impact: peaks, times, impulse, energies. In: the ends of its steps.
 
 use super::{ImpactInput, ImpactState, Sink};
 use crate::contact::state::{ContactLaw, StepState};
-use crate::integrator::solver::State;
+use crate::integrator::state::State;
 
 /// Results of an impact. Peaks are over step ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct ImpactSummary {
     pub impulse: f64,
     /// Blows: contacts that began ([`crate::contact::Advance::contacts`]).
     pub contacts: u64,
-    /// Separation over closing speed of the first blow; none before it has ended.
+    /// Coefficient of restitution of the first contact, separation over closing speed; none before it has ended.
     pub restitution: Option<f64>,
     /// m
     pub indentation: f64,
@@ -35,20 +35,20 @@ pub struct ImpactSummary {
     pub striker_energy: f64,
     /// Over the energy put into the test ([`ImpactState::input`]).
     pub energy_error: f64,
-    /// The structure was still on its way where X was largest: not a peak.
+    /// The structure was still moving outwards where X was largest: not a peak.
     pub still_rising: bool,
     /// The striker has stopped, and the run ended with a contact force.
     pub last_blow_cut: bool,
 }
 
-/// The first blow as it goes by.
+/// The first contact in progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FirstBlow {
     /// Closing speed at the last step end apart, m/s.
     ToCome {
         closing: f64,
     },
-    UnderWay {
+    ContinuousReadings {
         closing: f64,
     },
     Over {
@@ -126,26 +126,26 @@ impl SummaryBuilder {
         self.last_contact_force = state.contact_force;
     }
 
-    /// A blow is over at the end of the free step that follows it: the tensile step, taken again as a free one.
+    /// A contact has ended at the end of the free step that follows it: the tensile step, repeated as a free one.
     fn follow_first_blow(&mut self, state: &ImpactState, touching: bool) {
         let closing_now = state.striker_velocity - state.velocity;
         self.first_blow = match self.first_blow {
-            FirstBlow::ToCome { closing } if touching => FirstBlow::UnderWay { closing },
+            FirstBlow::ToCome { closing } if touching => FirstBlow::ContinuousReadings { closing },
             FirstBlow::ToCome { .. } => FirstBlow::ToCome {
                 closing: closing_now,
             },
-            FirstBlow::UnderWay { closing } if !touching => FirstBlow::Over {
+            FirstBlow::ContinuousReadings { closing } if !touching => FirstBlow::Over {
                 restitution: (closing > 0.0).then(|| -closing_now / closing),
             },
             unchanged => unchanged,
         };
     }
 
-    /// What the steps taken come to.
+    /// The results of all steps so far.
     #[must_use]
     pub fn finish(mut self) -> ImpactSummary {
         self.summary.restitution = match (self.input.law, self.first_blow) {
-            // Located inside a step: the law's own number, which a step's ends only show with what came after.
+            // Located inside a step: the coefficient of the law, because the ends of the step include later contacts.
             (ContactLaw::Restitution { coefficient }, _) => {
                 (self.summary.contacts > 0).then_some(coefficient)
             }

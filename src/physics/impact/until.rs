@@ -12,7 +12,7 @@ pub enum Until {
 }
 
 impl Until {
-    /// Whether a run is over whose striker has stopped, or is apart for good, as these say.
+    /// Whether a run has ended, by whether its striker has stopped or has rebounded for good.
     pub fn reached(self, stopped: impl FnOnce() -> bool, apart: impl FnOnce() -> bool) -> bool {
         match self {
             Self::StrikerStop => stopped(),

@@ -1,6 +1,6 @@
 //! Coefficients of the integrators, for one degree of freedom and for many. In: an integrator by name. Out: numbers. It integrates nothing.
 //!
-//! All three are members of one family. With `d̃` the place that is imposed on the specimen and r̃ the force read there,
+//! All three are members of one family. With the displacement `d̃` imposed on the specimen and the force r̃ read there,
 //!
 //! ```text
 //! d̃₁ = d + Δt·v + Δt²(½ − β)a        ṽ₁ = v + Δt(1 − γ)a
@@ -8,16 +8,16 @@
 //! d₁ = d̃₁ + βΔt²a₁                   v₁ = ṽ₁ + γΔt·a₁
 //! ```
 //!
-//! (that of HHT-α, by Hilber, Hughes and Taylor). They differ in what stands for r₁: explicit Newmark has β = 0, so that it is read
-//! where the step ends; α-OS reads r̃₁ at d̃₁ and takes r₁ = r̃₁ + K_I(d₁ − d̃₁);
-//! the tangent form foretells it before the step, r₁ = r₀ + `K_t`(d₁ − d₀), and imposes d₁.
+//! (that of HHT-α, by Hilber, Hughes and Taylor). They differ in r₁: explicit Newmark has β = 0, so that it is read at the end of the step;
+//! α-OS reads r̃₁ at d̃₁ and corrects it, r₁ = r̃₁ + K_I(d₁ − d̃₁); the tangent form predicts it before the step,
+//! r₁ = r₀ + `K_t`(d₁ − d₀), and imposes d₁.
 //!
-//! **Sign of α.** It is 0 or negative, as in HHT-α: −⅓ ≤ α ≤ 0, the more negative the more numerical damping of what the
-//! step does not resolve. Programs that weigh the new instant by `α` itself (`OpenSees`: ⅔ ≤ `α` ≤ 1) mean our 1 + α.
+//! **Sign of α.** It is 0 or negative, as in HHT-α: −⅓ ≤ α ≤ 0, the more negative the more numerical damping of the modes
+//! that the step does not resolve. Programs that weight the new instant by `α` itself (`OpenSees`: ⅔ ≤ `α` ≤ 1) mean our 1 + α.
 
 use crate::integrator::Integrator;
 
-/// Of the family above.
+/// Coefficients of a member of this family.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     pub alpha: f64,

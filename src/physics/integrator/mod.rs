@@ -3,16 +3,18 @@
 //! no contact law.
 
 pub mod coefficients;
+pub mod input;
 pub mod newmark;
 pub mod solver;
 pub mod stability;
+pub mod state;
 pub mod step_form;
 pub(crate) mod substep;
 pub mod tangent;
 pub mod tangents;
 pub(crate) mod tridiagonal;
 
-/// How a run goes from one step to the next.
+/// A time-integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrator {
     /// Newmark's constant average acceleration with the measured tangent stiffness (Melo et al. 2006, eqs. 2 to 6).
@@ -24,7 +26,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// The word of the language.
+    /// Its name.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,110 +1,29 @@
-//! A structure on a rig, step by step: targets out, readings in. In: matrices, an integrator, loads. Out: the motion and its
-//! energy. It commands no rig: whoever does asks for the next targets and gives back what was measured there.
+//! A structure on a rig, step by step. In: matrices, an integrator, loads, readings. Out: targets, the motion and its energy. It commands no
+//! rig: the caller moves the specimen to the targets and returns the readings.
 
-use thiserror::Error;
-
-use super::step_form::{Matrices, Moment, Motion, StepForm};
+use super::input::{FrameError, SolverInput};
+use super::state::State;
+use super::step_form::{Moment, Motion, StepForm};
 use super::tangents::{FollowedTangents as _, Following, Tangents};
-use crate::frame::NotPositiveDefinite;
 use crate::integrator::Integrator;
-use crate::matrix::{Factor as _, Matrix, Vector};
 use crate::structure::energies::{Ends, FrameEnergies};
+use crate::structure::matrix::{Factor as _, Matrix, Vector};
 
-/// All a run starts from; the structure is at rest.
-#[derive(Clone, Copy, Debug)]
-pub struct SolverInput<'a, V: Vector> {
-    pub matrices: &'a Matrices<V>,
-    /// `K_I` of α-OS and of the I-modification, N/m: the initial stiffness, or one above it.
-    pub operator_stiffness: &'a V::Matrix,
-    pub integrator: Integrator,
-    /// Whether the recursion takes r* = `r_m` − `K_I`(`d_m` − d̃) in place of the reading.
-    pub i_modification: bool,
-    pub tangents: Tangents,
-    /// Δt, s
-    pub time_step: f64,
-    /// m
-    pub initial_displacement: V::View<'a>,
-    /// Read once before the first step, N.
-    pub initial_restoring_force: V::View<'a>,
-    /// F(0), N
-    pub initial_load: V::View<'a>,
-    /// Standard deviation of a load cell, N.
-    pub force_noise: f64,
-    /// Of a displacement reading, m.
-    pub resolution: f64,
-}
-
-/// That of a frame.
-pub type FrameInput<'a> = SolverInput<'a, Vec<f64>>;
-
-/// Why a structure cannot be stepped.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum FrameError {
-    #[error("a frame has at least one degree of freedom")]
-    Empty,
-    #[error("{what} is of order {found}, not {expected}")]
-    Order {
-        what: &'static str,
-        found: usize,
-        expected: usize,
-    },
-    #[error("the mass matrix is {0}")]
-    Mass(NotPositiveDefinite),
-    #[error("mass, damping and stiffness over a step are {0}")]
-    Step(NotPositiveDefinite),
-    #[error(
-        "storeys are followed by their own tangents only where the stiffness is that of a shear building"
-    )]
-    NoStoreys,
-    #[error("a step of {0} s is none")]
-    TimeStep(f64),
-}
-
-/// The end of a step; step 0 is the start.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State<V> {
-    pub step: u64,
-    /// s
-    pub time: f64,
-    /// Computed X, m.
-    pub displacement: V,
-    /// Imposed on the specimen, m: X itself, but under α-OS the position predicted for it.
-    pub target: V,
-    /// m
-    pub measured_displacement: V,
-    /// m/s
-    pub velocity: V,
-    /// m/s²
-    pub acceleration: V,
-    /// Measured, N.
-    pub restoring_force: V,
-    /// What the recursion takes for the force at X, N: the reading, but for what the I-modification and α-OS correct.
-    pub force_at_computed: V,
-    /// F at the end of the step, N.
-    pub load: V,
-    /// `k_t` of each storey for the step to come, N/m; nothing of a frame whose storeys are not followed.
-    pub storey_stiffness: V,
-    pub energies: FrameEnergies,
-}
-
-/// That of a frame, one entry a degree of freedom.
-pub type FrameState = State<Vec<f64>>;
-
-/// The run on a rig: `predict`, command, read, `complete`.
+/// A pseudo-dynamic test: `predict`, command, read, `complete`.
 #[derive(Clone, Debug)]
 pub struct Solver<V: Vector> {
     pub(crate) form: StepForm<V>,
     tangents: Option<V::Tangents>,
     modification: Option<V::Matrix>,
     state: State<V>,
-    /// The step under way; it becomes the state.
+    /// The end of the step in progress; it becomes the state.
     next: Motion<V>,
     load_end: V,
     predicted: bool,
-    /// The force that the recursion takes at the target, N, and how far the specimen is from there, m.
-    taken: V,
-    away: V,
-    /// Of dampers in a step whose velocity jumps, J.
+    /// Effective force r* of the recursion at the target \[N\], and the tracking error \[m\].
+    effective_force: V,
+    tracking_error: V,
+    /// Work of the dampers in a step whose velocity jumps \[J\].
     damping_work: Option<f64>,
 }
 
@@ -119,15 +38,18 @@ impl<V: Vector> Solver<V> {
     pub fn new(input: &SolverInput<V>) -> Result<Self, FrameError> {
         let matrices = input.matrices;
         let order = matrices.mass.rows();
-        check(input, order)?;
+        input.check(order)?;
         let zero = || V::zero(order);
-        let of = |view: V::View<'_>| {
+        let copied = |view: V::View<'_>| {
             let mut vector = zero();
             vector.set(view);
             vector
         };
-        let displacement = of(input.initial_displacement);
-        let (force, load) = (of(input.initial_restoring_force), of(input.initial_load));
+        let displacement = copied(input.initial_displacement);
+        let (force, load) = (
+            copied(input.initial_restoring_force),
+            copied(input.initial_load),
+        );
         let tangent_form = input.integrator == Integrator::Tangent;
         let tangents = match input.tangents {
             Tangents::Storeys { largest_ratio } => {
@@ -179,25 +101,25 @@ impl<V: Vector> Solver<V> {
             next: Motion::at_rest(order),
             load_end: zero(),
             predicted: false,
-            taken: zero(),
-            away: zero(),
+            effective_force: zero(),
+            tracking_error: zero(),
             damping_work: None,
         })
     }
 
-    /// Before the first step: where the structure was measured, m.
+    /// Measured displacement before the first step \[m\].
     pub fn measured_at_start(&mut self, measured_displacement: V::View<'_>) {
         self.state.measured_displacement.set(measured_displacement);
     }
 
-    /// Displacements to command in this step, m, under the loads at its end (N). Asked again before `complete`, they are
-    /// the same whatever the loads.
+    /// Displacements to command in this step \[m\], under the loads at its end \[N\]. Called again before `complete`, it returns the
+    /// same, whatever the loads.
     pub fn predict(&mut self, load_end: V::View<'_>) -> V::View<'_> {
         self.predict_with(load_end, |_, _| 0.0)
     }
 
-    /// Velocities that the step is predicted to end with, m/s: exact under `tangent`, with the acceleration kept under the
-    /// others. The step is the one predicted last.
+    /// Predicted velocities at the end of the step predicted last \[m/s\]: exact in the tangent form, at constant acceleration under the
+    /// other integrators.
     pub fn predicted_velocity(&self, velocity: &mut [f64]) {
         if self.form.integrator == Integrator::Tangent {
             velocity.copy_from_slice(self.next.velocity.as_slice());
@@ -214,7 +136,7 @@ impl<V: Vector> Solver<V> {
         }
     }
 
-    /// [`Self::predict`] with a contact force, as `decide` has it from `v_free` (m/s) and w (m/s/N).
+    /// [`Self::predict`] with the contact force that `decide` returns for `v_free` \[m/s\] and w \[m/(N·s)\].
     #[inline]
     pub(crate) fn predict_with(
         &mut self,
@@ -241,8 +163,7 @@ impl<V: Vector> Solver<V> {
         self.next.displacement.view()
     }
 
-    /// The same in tangent form, with a contact law that follows its own path through the step and gives the work of the dampers
-    /// on it, J.
+    /// The same in tangent form, with a contact law that divides the step and returns the work of the dampers \[J\].
     #[inline]
     pub(crate) fn predict_by(
         &mut self,
@@ -262,12 +183,12 @@ impl<V: Vector> Solver<V> {
         self.next.displacement.view()
     }
 
-    /// Whether the step under way has its targets.
+    /// Whether the step in progress has its targets.
     pub(crate) const fn is_predicted(&self) -> bool {
         self.predicted
     }
 
-    /// Ends the step with what was measured at the targets. Without a prediction before it, under the loads of its start.
+    /// Ends the step with the readings at the targets. Without a prediction before it, the loads are those of its start.
     pub fn complete(
         &mut self,
         measured_displacement: V::View<'_>,
@@ -295,38 +216,38 @@ impl<V: Vector> Solver<V> {
             state,
             next,
             load_end,
-            taken,
-            away,
+            effective_force,
+            tracking_error,
             ..
         } = self;
         state.measured_displacement.set(measured_displacement);
         state.restoring_force.set(restoring_force);
         state.target.set(next.displacement.view());
-        let taken = match modification {
+        let effective_force = match modification {
             Some(operator) => {
                 correct(
                     operator,
                     &state.target,
                     &state.measured_displacement,
                     &state.restoring_force,
-                    away,
-                    taken,
+                    tracking_error,
+                    effective_force,
                 );
-                &*taken
+                &*effective_force
             }
             None => &state.restoring_force,
         };
         if form.integrator == Integrator::Tangent {
-            next.force.set(taken.view());
+            next.force.set(effective_force.view());
         } else {
-            form.correct(&state.moment(), load_end, taken, next, decide);
+            form.correct(&state.moment(), load_end, effective_force, next, decide);
         }
         if let Some(tangents) = tangents
             && tangents.take(&state.measured_displacement, &state.restoring_force)
         {
             if form.integrator == Integrator::Tangent {
-                // A storey's tangent is not negative, so that M̂ has a factor as M has; if rounding ever denied it, the last
-                // one serves on.
+                // No storey tangent is negative, so that M̂ has a factor because M has one; after a failure by rounding the last factor
+                // remains.
                 let _ = form.take_tangents(tangents);
             }
             state.storey_stiffness.set(tangents.stiffness().view());
@@ -335,9 +256,14 @@ impl<V: Vector> Solver<V> {
         &self.state
     }
 
-    /// What the recursion takes for the forces at these targets (m) where this is measured, m and N.
+    /// Effective forces r* \[N\] at these targets for these readings \[m\], \[N\].
     #[must_use]
-    pub fn taken_at(&self, target: V::View<'_>, measured: V::View<'_>, force: V::View<'_>) -> V {
+    pub fn effective_force_at(
+        &self,
+        target: V::View<'_>,
+        measured: V::View<'_>,
+        force: V::View<'_>,
+    ) -> V {
         let copy = |view: V::View<'_>| {
             let mut vector = V::default();
             vector.set(view);
@@ -347,23 +273,24 @@ impl<V: Vector> Solver<V> {
         let Some(operator) = &self.modification else {
             return force;
         };
-        let (mut away, mut taken) = (self.away.clone(), self.taken.clone());
+        let (mut tracking_error, mut effective_force) =
+            (self.tracking_error.clone(), self.effective_force.clone());
         correct(
             operator,
             &copy(target),
             &copy(measured),
             &force,
-            &mut away,
-            &mut taken,
+            &mut tracking_error,
+            &mut effective_force,
         );
-        taken
+        effective_force
     }
 
-    /// What the recursion took for the forces at the targets of the last step, N.
+    /// Effective forces r* at the targets of the last step \[N\].
     #[must_use]
-    pub fn taken(&self) -> V::View<'_> {
+    pub fn effective_force(&self) -> V::View<'_> {
         if self.modification.is_some() {
-            self.taken.view()
+            self.effective_force.view()
         } else {
             self.state.restoring_force.view()
         }
@@ -416,68 +343,25 @@ fn correct<V: Vector>(
     target: &V,
     measured: &V,
     force: &V,
-    away: &mut V,
-    taken: &mut V,
+    tracking_error: &mut V,
+    effective_force: &mut V,
 ) {
-    taken.set(force.view());
-    away.update([measured, target], |_, [measured, target]| {
+    effective_force.set(force.view());
+    tracking_error.update([measured, target], |_, [measured, target]| {
         measured - target
     });
-    operator.mul_add(-1.0, away, taken);
-}
-
-impl<V> State<V> {
-    #[inline]
-    pub(crate) const fn moment(&self) -> Moment<'_, V> {
-        Moment {
-            displacement: &self.displacement,
-            velocity: &self.velocity,
-            acceleration: &self.acceleration,
-            force: &self.force_at_computed,
-            load: &self.load,
-        }
-    }
-}
-
-fn check<V: Vector>(input: &SolverInput<V>, order: usize) -> Result<(), FrameError> {
-    if order == 0 {
-        return Err(FrameError::Empty);
-    }
-    if !(input.time_step > 0.0 && input.time_step.is_finite()) {
-        return Err(FrameError::TimeStep(input.time_step));
-    }
-    let orders = [
-        ("damping", input.matrices.damping.rows()),
-        ("stiffness", input.matrices.stiffness.rows()),
-        ("the operator's stiffness", input.operator_stiffness.rows()),
-        (
-            "the initial displacement",
-            V::order_of(input.initial_displacement),
-        ),
-        (
-            "the initial restoring force",
-            V::order_of(input.initial_restoring_force),
-        ),
-        ("the initial load", V::order_of(input.initial_load)),
-    ];
-    let other = orders.into_iter().find(|(_, found)| *found != order);
-    other.map_or(Ok(()), |(what, found)| {
-        Err(FrameError::Order {
-            what,
-            found,
-            expected: order,
-        })
-    })
+    operator.mul_add(-1.0, tracking_error, effective_force);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::structure::Matrices;
 
     const MASS: f64 = 1.0;
     const STIFFNESS: f64 = 400.0;
 
-    /// A mass on a spring that is let go at 1 m, `steps` steps in tangent form on.
+    /// A mass on a spring, released at 1 m, after `steps` steps in tangent form.
     fn vibration(damping: f64, time_step: f64, steps: u32) -> State<f64> {
         let matrices = Matrices {
             mass: MASS,
@@ -524,9 +408,9 @@ mod tests {
         }
     }
 
-    /// Constant average acceleration neither feeds nor drains a linear vibration, at any step.
+    /// Constant average acceleration conserves the energy of a linear vibration at any step.
     #[test]
-    fn undamped_energy_stays() {
+    fn undamped_energy_is_conserved() {
         for time_step in [1e-3, 0.1] {
             let end = vibration(0.0, time_step, 1000);
             let energy = MASS * end.velocity.powi(2) + STIFFNESS * end.displacement.powi(2);

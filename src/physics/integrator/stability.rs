@@ -205,7 +205,7 @@ mod tests {
         );
     }
 
-    /// Beyond s = ((1+α)/(1−α))² a vibration gains from every step: what is damped pays for it up to a limit, which falls with s.
+    /// Beyond s = ((1+α)/(1−α))² a vibration gains energy in every step; damping compensates it up to a limit that falls with s.
     #[test]
     fn where_a_vibration_gains_the_limit_is_what_damping_pays_for() {
         for (alpha, share) in [(-0.2, 0.5), (-0.3, 0.5), (-1.0_f64 / 3.0, 0.75)] {

@@ -1,4 +1,4 @@
-//! One step of a structure under each integrator (`method` has their coefficients), for one degree of freedom and for many.
+//! One step of a structure under each integrator (coefficients in [`super::coefficients`]), for one degree of freedom and for many.
 //! In: the state at a step's start, loads, the force read. Out: the position to impose, the end of the step. It keeps no
 //! history.
 //!
@@ -11,7 +11,7 @@
 //!
 //! Explicit Newmark and α-operator splitting keep the contact's acceleration c = M⁻¹ e_s F apart from the structure's own,
 //! s = Ẍ − c. The contact part is an impulse and is always integrated by the trapezoidal rule, as in the paper; only s is
-//! weighed with α, β, γ:
+//! weighted with α, β, γ:
 //!
 //! ```text
 //! d̃₁ = d + Δt·v + Δt²((½−β)s + (½−β_c)c)      ṽ₁ = v + Δt((1−γ)s + ½c)       (impose d̃₁, read r̃₁)
@@ -21,51 +21,17 @@
 //! ```
 //!
 //! with β_c = ¼ under α-OS and 0 under explicit Newmark. Without contact this is each of them as published: r₀ and v₀ with
-//! their corrections are what the published start values r̃₀ = r₀ − βΔt²K_I a₀ and ṽ₀ = v₀ − γΔt·a₀ make of them. With
+//! their corrections equal those by the published start values r̃₀ = r₀ − βΔt²K_I a₀ and ṽ₀ = v₀ − γΔt·a₀. With
 //! α = 0 and `K_I` = `K_t` it is the tangent form. Whatever α is, the rigid contact tends to the paper's collision with
-//! e = Ms/(Ms + 2M) as Δt → 0. Weighing F with α too would make it a collision with
+//! e = Ms/(Ms + 2M) as Δt → 0. Weighting F with α too would make it a collision with
 //! e = Ms(1 − (1+α)γ)/(M + (1+α)γMs), 0.767 and not 0.833 for α = −0.05 in the paper's first example: numerical damping
-//! acts most on what is fastest, and nothing is faster than an impact.
+//! acts most on the fastest motion, which is the impact.
 
 use super::coefficients::Coefficients;
 use super::tangents::FollowedTangents;
-use crate::frame::{NotPositiveDefinite, SymmetricBand};
 use crate::integrator::Integrator;
-use crate::matrix::{Factor, Matrix, SetOut, Vector};
-
-/// M, C and K of a structure, of one order: kg, N·s/m, N/m.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Matrices<V: Vector> {
-    pub mass: V::Matrix,
-    pub damping: V::Matrix,
-    /// The initial one.
-    pub stiffness: V::Matrix,
-}
-
-/// Those of a frame.
-pub type FrameMatrices = Matrices<Vec<f64>>;
-
-impl FrameMatrices {
-    /// Degrees of freedom.
-    #[must_use]
-    pub const fn order(&self) -> usize {
-        self.mass.order()
-    }
-
-    /// −M ι `ü_g`, N: what a ground acceleration (m/s²) is to displacements against the ground.
-    pub fn ground_load(&self, acceleration: f64, load: &mut [f64]) {
-        if self.mass.half_bandwidth() == 0 {
-            for (load, mass) in load.iter_mut().zip(self.mass.band(0)) {
-                *load = mass * -acceleration;
-            }
-            return;
-        }
-        SymmetricBand::row_sums(&self.mass, load);
-        for load in load {
-            *load *= -acceleration;
-        }
-    }
-}
+use crate::structure::matrix::{Factor, Matrix, SetOut, Vector};
+use crate::structure::{Matrices, NotPositiveDefinite};
 
 /// A structure and how it is integrated.
 #[derive(Clone, Debug)]
@@ -105,9 +71,9 @@ struct Struck<V> {
     index: usize,
     /// M⁻¹ e_s, 1/kg
     push: V,
-    /// M̂⁻¹ e_s in tangent form, 1/kg; under the others M̂⁻¹ (1+α)(β_cΔt²K_I + ½ΔtC) M⁻¹ e_s, what the structure takes back.
+    /// M̂⁻¹ e_s in tangent form, 1/kg; under the others M̂⁻¹ (1+α)(β_cΔt²K_I + ½ΔtC) M⁻¹ e_s, the reaction of the structure.
     response: V,
-    /// F of the step under way or, before it is decided, of the last one, N.
+    /// F of the step in progress or, before it is decided, of the last one \[N\].
     force: f64,
 }
 

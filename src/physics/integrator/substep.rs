@@ -2,22 +2,22 @@
 //! state at the step's start. Out: the motion after any part of the step. It knows no contact law.
 
 use super::step_form::{Moment, Motion, StepForm};
-use crate::matrix::{Factor, Matrix, Vector};
+use crate::structure::matrix::{Factor, Matrix, Vector};
 
 /// The striker, and where it hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Striker {
     /// The struck degree of freedom, from 0.
     pub struck: usize,
-    /// Ms, kg
+    /// Ms \[kg\]
     pub mass: f64,
-    /// g of Ms Ẍs = Ms g − F, m/s²; 0 of a striker that does not fall.
+    /// g of Ms Ẍs = Ms g − F, \[m/s²\]; 0 for a striker that does not fall.
     pub gravity: f64,
-    /// Δt, s
+    /// Δt \[s\]
     pub time_step: f64,
 }
 
-/// Memory of a passage, used again in every step.
+/// Memory of a divided step, reused in every step.
 #[derive(Clone, Debug)]
 pub(crate) struct Workspace<V: Vector> {
     pub now: Motion<V>,
@@ -46,7 +46,7 @@ impl<V: Vector> Workspace<V> {
 }
 
 /// A structure between two instants of a step.
-pub(crate) struct Passage<'a, V: Vector> {
+pub(crate) struct Substep<'a, V: Vector> {
     pub form: &'a StepForm<V>,
     /// The struck degree of freedom, and M⁻¹ e_s, 1/kg.
     pub struck: usize,
@@ -58,7 +58,7 @@ pub(crate) struct Passage<'a, V: Vector> {
     factor: &'a mut <V::Matrix as Matrix>::Factor,
 }
 
-impl<'a, V: Vector> Passage<'a, V> {
+impl<'a, V: Vector> Substep<'a, V> {
     /// From a step's start; loads go straight from that there to that at the end. Motion, mean velocity and response of the workspace
     /// are for the contact law. None where nothing can be struck.
     #[inline]
@@ -79,7 +79,7 @@ impl<'a, V: Vector> Passage<'a, V> {
             factor,
         } = workspace;
         now.set(from);
-        let passage = Self {
+        let substep = Self {
             form,
             struck,
             push,
@@ -90,7 +90,7 @@ impl<'a, V: Vector> Passage<'a, V> {
             factor,
         };
         Some((
-            passage,
+            substep,
             Scratch {
                 now,
                 mean,
@@ -108,7 +108,7 @@ impl<'a, V: Vector> Passage<'a, V> {
         )
     }
 
-    /// Effective mass of the struck degree of freedom, kg: what an impact of no duration meets.
+    /// Effective mass of the struck degree of freedom, \[kg\]: the mass that an impulse meets.
     #[inline]
     pub fn struck_mass(&self) -> f64 {
         1.0 / self.push.as_slice()[self.struck]

@@ -1,18 +1,18 @@
-//! The tangent stiffness by what was measured (Melo et al. 2006, eq. 6). In: pairs of displacement and force, one a step.
+//! The tangent stiffness from the readings (Melo et al. 2006, eq. 6). In: pairs of displacement and force, one a step.
 //! Out: a stiffness inside its bounds. Noise must never become a stiffness, nor keep the stiffness of long ago.
 //!
-//! A step whose change of displacement stands out of the noise gives the secant of eq. (6). One that does not is too short
-//! to tell alone: then the last readings together do, by least squares over the fewest of them whose displacements span as
+//! A step whose change of displacement exceeds the noise gives the secant of eq. (6). A shorter step does not determine a slope
+//! alone: then the last readings do together, by least squares over the fewest of them whose displacements span as
 //! much as one step would have had to. With σ the noise of one reading and n readings spread evenly over the span S, the
 //! slope has a standard deviation of about √(12/n)·σ/S, less than the secant's √2·σ/S for n > 6 and never more than it for
-//! two. As long as no span stands out, the last stiffness is kept.
+//! two. Until a span exceeds the noise, the last stiffness is kept.
 
 use std::collections::VecDeque;
 
 /// A tangent stiffness needs a change of force this many times the load cell's noise. Smaller, and noise becomes a
 /// stiffness (at 10 a secant errs by 14 %, one standard deviation); larger, and it follows the specimen late. A ratio of forces.
 pub const NOISE_MULTIPLE: f64 = 10.0;
-/// Readings of a window at most: what more of them do not tell, they tell too late.
+/// Readings of a window, at most: a longer window would lag too far behind.
 const MOST_READINGS: usize = 4096;
 
 /// `K_t` as it is followed.
@@ -23,7 +23,7 @@ pub struct TangentStiffness {
     largest: f64,
     value: f64,
     last: (f64, f64),
-    /// Readings since a span of them last told: newest last. Empty where readings are exact.
+    /// Readings since a span last determined the stiffness, newest last. Empty where readings are exact.
     window: VecDeque<(f64, f64)>,
 }
 
@@ -72,10 +72,10 @@ impl TangentStiffness {
         self.last = (displacement, force);
     }
 
-    /// Keeps the fewest of the last readings that span enough; where the step alone did not, they tell together.
-    fn widen(&mut self, displacement: f64, force: f64, told: bool) {
+    /// Keeps the fewest of the last readings that span enough; where the step alone did not, they determine the stiffness together.
+    fn widen(&mut self, displacement: f64, force: f64, determined: bool) {
         self.window.push_back((displacement, force));
-        if told {
+        if determined {
             self.window.drain(..self.window.len().saturating_sub(2));
             return;
         }
@@ -83,8 +83,8 @@ impl TangentStiffness {
             self.window.pop_front();
         }
         let (mut low, mut high) = (displacement, displacement);
-        let needed = self.window.iter().rev().position(|(place, _)| {
-            (low, high) = (low.min(*place), high.max(*place));
+        let needed = self.window.iter().rev().position(|(displacement, _)| {
+            (low, high) = (low.min(*displacement), high.max(*displacement));
             high - low > self.least_change
         });
         if let Some(needed) = needed {
@@ -149,12 +149,12 @@ mod tests {
         assert_eq!(followed(1.0, line(9)), INITIAL);
         assert!((followed(1.0, line(11)) - 400.0).abs() < 1e-9);
         // A corner at 20 mm is behind the window 11 steps after it.
-        let corner = |steps: u32| {
+        let kink = |steps: u32| {
             line(20).chain((1..=steps).map(|step| (0.02 + f64::from(step) * 1e-3, 8.0)))
         };
-        let half_way = followed(1.0, corner(5));
+        let half_way = followed(1.0, kink(5));
         assert!(half_way > 50.0 && half_way < 350.0, "{half_way}");
-        assert!(followed(1.0, corner(12)).abs() < 1e-9);
+        assert!(followed(1.0, kink(12)).abs() < 1e-9);
     }
 
     /// A long step tells alone; what lay before it does no more, but it helps the short ones after it.

@@ -4,10 +4,10 @@
 use std::fmt::Debug;
 
 use super::tangent::TangentStiffness;
-use crate::frame::{SymmetricBand, set_storeys, storeys_of};
-use crate::matrix::{Matrix, Vector};
+use crate::structure::matrix::{Matrix, Vector};
+use crate::structure::{SymmetricBand, set_storeys, storeys_of};
 
-/// What the tangent form takes for `K_t`.
+/// `K_t` of the tangent form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tangents {
     /// K0 throughout: for a frame whose matrix has no storeys.
@@ -105,7 +105,7 @@ impl Storey {
         Self { followed, last }
     }
 
-    /// Takes the next reading of a storey that stands alone: every secant counts, for its factor costs one division.
+    /// Adds the next reading of a single storey: every secant is used, because its factor costs one division.
     #[inline]
     fn take_alone(&mut self, displacement: f64, force: f64, stiffness: &mut f64) -> bool {
         self.followed.take(displacement, force);
@@ -261,7 +261,7 @@ impl FollowedTangents for StoreyTangents {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{floor_forces, storey_stiffness};
+    use crate::structure::{floor_forces, storey_stiffness};
 
     const INITIAL: [f64; 3] = [3000.0, 2000.0, 1000.0];
 

@@ -4,8 +4,8 @@
 //! check in the loop. A step of few floors waits longest for what it has just written; a tridiagonal frame is therefore set
 //! out in one loop, whose neighbours are still at hand.
 
-use crate::frame::SymmetricBand;
-use crate::matrix::SetOut;
+use crate::structure::SymmetricBand;
+use crate::structure::matrix::SetOut;
 
 /// F₁ − R − C(Ẋ + ½ΔtẌ) − `K_t`(ΔtẊ + ¼Δt²Ẍ), both matrices tridiagonal.
 #[inline(never)]
@@ -168,7 +168,7 @@ pub(crate) fn trapezoid(x: [&[f64]; 2], y: [&[f64]; 2], join: impl Fn(f64, f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::matrix::{Vector as _, set_out_by_products};
+    use crate::structure::matrix::{Vector as _, set_out_by_products};
 
     /// Both loops give the same numbers to the last bit, from two floors to more than one vector register holds.
     #[test]

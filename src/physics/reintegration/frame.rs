@@ -4,17 +4,19 @@
 
 use std::cell::Cell;
 
-use super::frame_path::{FrameAgain, FramePath};
-use super::impact::{Outcome, Telling};
+use super::frame_path::{FramePath, FrameRetrace};
+use super::impact::{ImpactResults, Outcome};
 use crate::contact::state::{ContactLaw, StepState};
-use crate::frame::{
-    FrameError, FrameInput, FrameMatrices, FrameSolver, FrameState, Tangents, drifts, shears,
-};
 use crate::impact::Until;
-use crate::impact::peaks::{Extremes, Peak, farther};
-use crate::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactState, Sink, Striking};
+use crate::impact::peaks::{Peak, PeakDisplacements, farther};
+use crate::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactSetup, ImpactState, Sink};
 use crate::integrator::Integrator;
-use crate::perturbation::Perturbation;
+use crate::integrator::input::{FrameError, FrameInput};
+use crate::integrator::solver::FrameSolver;
+use crate::integrator::state::FrameState;
+use crate::integrator::tangents::Tangents;
+use crate::reintegration::perturbation::Perturbation;
+use crate::structure::{FrameMatrices, drifts, shears};
 
 /// How a frame is integrated.
 #[derive(Clone, Debug)]
@@ -56,7 +58,7 @@ pub struct Floors {
 }
 
 impl Floors {
-    /// The largest displacement of all floors, m; NaN where one is none.
+    /// Peak |X| of all floors \[m\]; NaN where one is NaN.
     #[must_use]
     pub fn farthest(&self) -> f64 {
         self.max_displacement
@@ -65,43 +67,42 @@ impl Floors {
     }
 }
 
-/// What a run comes to: as the run itself tells it, at the ends of steps, and as it is between them.
+/// Results of a run: at the ends of steps, as the run itself reports them, and interpolated between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorsOutcome {
     pub ends: Floors,
     pub between: Floors,
-    /// The latter as they were where the run departed from the record.
+    /// The latter at the departure of the run from the record.
     pub before_departure: Option<Floors>,
-    /// With which velocities the floors of a run without stops were foretold to pass their targets, m/s: told where the way that it
-    /// was taken along does not know them.
+    /// Velocities predicted for the floors at the targets of a continuous motion \[m/s\]; given where the path does not know them.
     pub velocities: Vec<Vec<f64>>,
 }
 
-/// What a blow on one floor comes to.
+/// Results of an impact on one floor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlowOutcome {
     pub blow: Outcome,
     pub floors: FloorsOutcome,
     pub striker: StrikerOutcome,
-    /// The latter as it was where the run departed from the record.
+    /// The latter at the departure of the run from the record.
     pub before_departure: Option<StrikerOutcome>,
 }
 
-/// What a blow on one floor comes to beside the impact and the floors.
+/// Results of an impact on one floor beside those of the impact and of the floors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrikerOutcome {
-    /// ∫ shear d(drift) of each storey, J.
+    /// ∫ shear d(drift) of each storey \[J\].
     pub storey_energy: Vec<f64>,
     /// Steps in contact from the first touch on.
     pub first_blow: u64,
-    /// Of the striker at the end, m/s.
+    /// Final velocity of the striker \[m/s\].
     pub striker_velocity: f64,
 }
 
 impl FrameRun {
     fn input<'a>(
         &'a self,
-        again: &'a FrameAgain,
+        retrace: &'a FrameRetrace,
         load: &'a [f64],
         time_step: f64,
     ) -> FrameInput<'a> {
@@ -112,15 +113,15 @@ impl FrameRun {
             i_modification: self.i_modification,
             tangents: self.tangents,
             time_step,
-            initial_displacement: again.start(),
-            initial_restoring_force: again.force(),
+            initial_displacement: retrace.start(),
+            initial_restoring_force: retrace.force(),
             initial_load: load,
             force_noise: self.force_noise,
             resolution: self.resolution,
         }
     }
 
-    /// Re-integrates a shake, the ground's accelerations (m/s²) at the ends of the finer steps from 0 on.
+    /// Re-integrates a ground-motion test; ground accelerations \[m/s²\] at the ends of the finer steps from 0 on.
     ///
     /// # Errors
     /// The frame, with what was moved, cannot be stepped.
@@ -130,12 +131,12 @@ impl FrameRun {
         path: &FramePath,
         readings: &Perturbation,
     ) -> Result<FloorsOutcome, FrameError> {
-        let mut again = path.again(readings);
+        let mut retrace = path.retrace(readings);
         let mut load = vec![0.0; self.matrices.order()];
         let at = |step: usize| ground.get(step).copied().unwrap_or(0.0);
         self.matrices.ground_load(at(0), &mut load);
         let time_step = self.time_step / f64::from(readings.finer);
-        let mut solver = FrameSolver::new(&self.input(&again, &load, time_step))?;
+        let mut solver = FrameSolver::new(&self.input(&retrace, &load, time_step))?;
         let mut told = Peaks::new(self.matrices.order(), time_step);
         told.take(solver.state(), 1.0);
         let mut passing = Passing::new(self, path);
@@ -144,12 +145,15 @@ impl FrameRun {
         {
             self.matrices.ground_load(at(step), &mut load);
             solver.predict(&load);
-            let velocities = passing.foretold(&mut |to| solver.predicted_velocity(to));
-            again.move_to(solver.predict(&load), velocities);
-            if again.departed() {
+            let velocities = passing.predicted_velocities(&mut |to| solver.predicted_velocity(to));
+            retrace.move_to(solver.predict(&load), velocities);
+            if retrace.departed() {
                 told.departs();
             }
-            told.take(solver.complete(again.displacement(), again.force()), 1.0);
+            told.take(
+                solver.complete(retrace.displacement(), retrace.force()),
+                1.0,
+            );
         }
         Ok(told.finish(passing))
     }
@@ -164,7 +168,7 @@ impl FrameRun {
         path: &FramePath,
         readings: &Perturbation,
     ) -> Result<BlowOutcome, ImpactError> {
-        let mut again = path.again(readings);
+        let mut retrace = path.retrace(readings);
         let order = self.matrices.order();
         let Blow {
             struck,
@@ -174,20 +178,20 @@ impl FrameRun {
         } = *blow;
         body.time_step /= f64::from(readings.finer);
         let unloaded = vec![0.0; order];
-        let striking = Striking {
+        let setup = ImpactSetup {
             struck,
             law,
-            ..body.striking()
+            ..body.setup()
         };
         let mut solver =
-            FrameImpactSolver::on(&self.input(&again, &unloaded, body.time_step), &striking)?;
+            FrameImpactSolver::on(&self.input(&retrace, &unloaded, body.time_step), &setup)?;
         let start = ImpactState {
-            measured_displacement: again.displacement()[struck],
+            measured_displacement: retrace.displacement()[struck],
             ..*solver.state()
         };
         let departed = Cell::new(false);
         let mut found = StruckFloors {
-            impact: Telling::new(&body, until, &start),
+            impact: ImpactResults::new(&body, until, &start),
             peaks: Peaks::new(order, body.time_step),
             energy: StoreyWork::new(solver.structure()),
             first_blow: 0,
@@ -199,12 +203,12 @@ impl FrameRun {
         found.peaks.take(solver.structure(), 1.0);
         let mut passing = Passing::new(self, path);
         let read = |solver: &mut FrameImpactSolver| {
-            let velocities = passing.foretold(&mut |to| {
+            let velocities = passing.predicted_velocities(&mut |to| {
                 solver.predicted_velocity(to);
             });
-            again.move_to(solver.predict(), velocities);
-            departed.set(again.departed());
-            [again.displacement().to_vec(), again.force().to_vec()]
+            retrace.move_to(solver.predict(), velocities);
+            departed.set(retrace.departed());
+            [retrace.displacement().to_vec(), retrace.force().to_vec()]
         };
         let steps = self.steps * u64::from(readings.finer);
         solver.run(Some(until), steps, read, &mut found);
@@ -219,7 +223,7 @@ impl FrameRun {
 
 /// An impact on one floor, collected from the ends of its steps.
 struct StruckFloors<'a> {
-    impact: Telling,
+    impact: ImpactResults,
     peaks: Peaks,
     energy: StoreyWork,
     first_blow: u64,
@@ -274,7 +278,7 @@ impl Passing {
         }
     }
 
-    fn foretold(&mut self, tell: &mut dyn FnMut(&mut [f64])) -> &[f64] {
+    fn predicted_velocities(&mut self, tell: &mut dyn FnMut(&mut [f64])) -> &[f64] {
         if !self.now.is_empty() {
             tell(&mut self.now);
         }
@@ -288,8 +292,8 @@ impl Passing {
 /// Peaks of all floors and storeys, step by step.
 struct Peaks {
     ends: Floors,
-    displacement: Extremes,
-    drift: Extremes,
+    displacement: PeakDisplacements,
+    drift: PeakDisplacements,
     base_shear: Peak,
     time_step: f64,
     velocity: Vec<f64>,
@@ -311,8 +315,8 @@ impl Peaks {
         };
         Self {
             ends,
-            displacement: Extremes::new(floors, time_step),
-            drift: Extremes::new(floors, time_step),
+            displacement: PeakDisplacements::new(floors, time_step),
+            drift: PeakDisplacements::new(floors, time_step),
             base_shear: Peak::default(),
             time_step,
             velocity: nothing(),

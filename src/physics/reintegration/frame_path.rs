@@ -7,9 +7,9 @@
 //! was at the same step and, off its recorded place, for as stiff as it was at first: exact where it is elastic. At the recorded targets
 //! the recorded readings come back as they were, to the bit.
 
-use super::hysteresis_replay::{Again, Reading, RecordedPath, lag, nearest};
-use crate::frame::{SymmetricBand, drifts, shears, storeys_of};
-use crate::perturbation::Perturbation;
+use super::hysteresis_replay::{Reading, RecordedPath, Retrace, lag, nearest};
+use crate::reintegration::perturbation::Perturbation;
+use crate::structure::{SymmetricBand, drifts, shears, storeys_of};
 
 /// One step of the record, an entry a floor.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,26 +22,26 @@ pub struct FrameReading {
     pub force: Vec<f64>,
 }
 
-/// Readings of all floors along the way.
+/// Readings of all floors along the path.
 #[derive(Clone, Debug)]
 pub struct FramePath {
     readings: Vec<FrameReading>,
-    /// With which each target was passed, m/s, an entry a floor; of readings made at rest, none.
+    /// Velocity at each target \[m/s\], one entry per floor; empty for readings at rest.
     velocities: Vec<Vec<f64>>,
     bends: Bends,
 }
 
 #[derive(Clone, Debug)]
 enum Bends {
-    /// From the ground up: shear over drift.
+    /// From the ground up: shear over storey drift.
     Storeys(Vec<RecordedPath>),
-    /// K at no displacement, N/m; how long each floor is behind its target, s.
+    /// Initial K \[N/m\]; lag of each floor behind its target \[s\].
     Together(SymmetricBand, Vec<f64>),
 }
 
 impl FramePath {
-    /// `velocities` are those foretold for the targets (m/s), of readings made under way each `time_step` (s); `stiffness` is K at no displacement;
-    /// `force_noise` (N) and `resolution` (m) are those of one floor's readings. None of no reading.
+    /// `velocities` are those predicted for the targets \[m/s\] of a continuous motion with a reading each `time_step` \[s\]; `stiffness` is the
+    /// initial K; `force_noise` \[N\] and `resolution` \[m\] are those of one floor. None without readings.
     #[must_use]
     pub fn new(
         readings: Vec<FrameReading>,
@@ -105,7 +105,7 @@ impl FramePath {
                         return RecordedPath::new(readings, stiffness, noise, quantum);
                     }
                     let passed: Vec<f64> = passed.iter().map(|storeys| storeys[storey]).collect();
-                    RecordedPath::under_way(
+                    RecordedPath::continuous(
                         readings,
                         (&passed, time_step),
                         stiffness,
@@ -143,11 +143,11 @@ impl FramePath {
 
     /// Takes the way again from its beginning.
     #[must_use]
-    pub fn again<'a>(&'a self, readings: &'a Perturbation) -> FrameAgain<'a> {
+    pub fn retrace<'a>(&'a self, readings: &'a Perturbation) -> FrameRetrace<'a> {
         let walks = match &self.bends {
             Bends::Storeys(paths) => paths
                 .iter()
-                .map(|path| (path, path.again(readings.finer)))
+                .map(|path| (path, path.retrace(readings.finer)))
                 .collect(),
             Bends::Together(..) => Vec::new(),
         };
@@ -156,21 +156,21 @@ impl FramePath {
             .target
             .iter()
             .zip(&readings.axes)
-            .map(|(place, axis)| place * axis.displacement_scale);
-        let mut again = FrameAgain {
+            .map(|(position, axis)| position * axis.displacement_scale);
+        let mut retrace = FrameRetrace {
             path: self,
             readings,
             storeys: walks,
             own_step: 0,
             step: 0,
             target: target.collect(),
-            place: first.target.clone(),
+            position: first.target.clone(),
             velocity: vec![0.0; first.target.len()],
             displacement: first.displacement.clone(),
             force: first.force.clone(),
         };
-        again.read();
-        again
+        retrace.read();
+        retrace
     }
 }
 
@@ -183,10 +183,10 @@ fn to(to_storeys: fn(&[f64], &mut [f64]), floors: &[f64]) -> Vec<f64> {
 
 /// The way as it is taken again.
 #[derive(Clone, Debug)]
-pub struct FrameAgain<'a> {
+pub struct FrameRetrace<'a> {
     path: &'a FramePath,
     readings: &'a Perturbation,
-    storeys: Vec<(&'a RecordedPath, Again<'a>)>,
+    storeys: Vec<(&'a RecordedPath, Retrace<'a>)>,
     /// Of its own steps.
     own_step: usize,
     /// The step of the record that is nearest.
@@ -194,14 +194,14 @@ pub struct FrameAgain<'a> {
     /// Where it begins, m.
     target: Vec<f64>,
     /// The last targets, in metres of the record.
-    place: Vec<f64>,
+    position: Vec<f64>,
     /// With which they were passed, m/s, in metres of the record.
     velocity: Vec<f64>,
     displacement: Vec<f64>,
     force: Vec<f64>,
 }
 
-impl FrameAgain<'_> {
+impl FrameRetrace<'_> {
     /// Where it begins, m.
     #[must_use]
     pub fn start(&self) -> &[f64] {
@@ -223,7 +223,7 @@ impl FrameAgain<'_> {
     /// Whether a storey has departed from the record.
     #[must_use]
     pub fn departed(&self) -> bool {
-        self.storeys.iter().any(|(_, again)| again.departed())
+        self.storeys.iter().any(|(_, retrace)| retrace.departed())
     }
 
     /// Goes to the targets of the next step, m, passing them with these velocities (m/s) if it does not stop there, and reads.
@@ -235,7 +235,7 @@ impl FrameAgain<'_> {
                 *to = self.readings.recorded(axis, *from);
             }
         };
-        of_record(&mut self.place, targets);
+        of_record(&mut self.position, targets);
         of_record(&mut self.velocity, velocities);
         let recorded = &self.path.readings[self.step.min(self.path.readings.len() - 1)];
         self.displacement.copy_from_slice(&recorded.displacement);
@@ -244,10 +244,10 @@ impl FrameAgain<'_> {
             Bends::Storeys(_) => self.bend_storeys(),
             Bends::Together(stiffness, lags) => {
                 let mut off: Vec<f64> = self
-                    .place
+                    .position
                     .iter()
                     .zip(&recorded.target)
-                    .map(|(place, target)| place - target)
+                    .map(|(position, target)| position - target)
                     .collect();
                 if let Some(passed_with) = self.path.velocities.get(self.step) {
                     let faster = self
@@ -272,11 +272,11 @@ impl FrameAgain<'_> {
     fn bend_storeys(&mut self) {
         let (mut below, mut slower, mut off) = (0.0, 0.0, 0.0);
         for storey in 0..self.storeys.len() {
-            let drift = self.place[storey] - below;
+            let drift = self.position[storey] - below;
             let velocity = self.velocity[storey] - slower;
-            (below, slower) = (self.place[storey], self.velocity[storey]);
-            let (path, again) = &mut self.storeys[storey];
-            let (displacement, shear) = again.pass(drift, velocity);
+            (below, slower) = (self.position[storey], self.velocity[storey]);
+            let (path, retrace) = &mut self.storeys[storey];
+            let (displacement, shear) = retrace.pass(drift, velocity);
             let recorded = *path.recorded(self.step);
             off += displacement - recorded.displacement;
             self.displacement[storey] += off;
@@ -300,7 +300,7 @@ impl FrameAgain<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::storey_stiffness;
+    use crate::structure::storey_stiffness;
 
     const STIFFNESSES: [f64; 3] = [3000.0, 2000.0, 1000.0];
 
@@ -309,7 +309,7 @@ mod tests {
         storey_stiffness(&STIFFNESSES).mul_into(target, &mut force);
         FrameReading {
             target: target.to_vec(),
-            displacement: target.iter().map(|place| place + 1e-5).collect(),
+            displacement: target.iter().map(|position| position + 1e-5).collect(),
             force,
         }
     }
@@ -345,12 +345,12 @@ mod tests {
         for stiffness in [storey_stiffness(&STIFFNESSES), coupled] {
             let path = path(&stiffness);
             let none = Perturbation::none(3);
-            let mut again = path.again(&none);
-            assert_eq!(again.start(), targets()[0]);
+            let mut retrace = path.retrace(&none);
+            assert_eq!(retrace.start(), targets()[0]);
             for reading in path.readings.iter().skip(1) {
-                again.move_to(&reading.target, &[0.0; 3]);
+                retrace.move_to(&reading.target, &[0.0; 3]);
                 assert_eq!(
-                    (again.displacement(), again.force()),
+                    (retrace.displacement(), retrace.force()),
                     (reading.displacement.as_slice(), reading.force.as_slice())
                 );
             }
@@ -374,15 +374,15 @@ mod tests {
                 instruments.displacement_scale = [1.05, 0.95, 1.0][axis];
                 instruments.zero_offset = [1.0, 2.0, -3.0][axis];
             }
-            let mut again = path.again(&readings);
+            let mut retrace = path.retrace(&readings);
             for (step, target) in targets()
                 .iter()
                 .chain(&[[0.03, 0.01, -0.04]; 3])
                 .enumerate()
                 .skip(1)
             {
-                let off: Vec<f64> = target.iter().map(|place| place + 1e-3).collect();
-                again.move_to(&off, &[0.0; 3]);
+                let off: Vec<f64> = target.iter().map(|position| position + 1e-3).collect();
+                retrace.move_to(&off, &[0.0; 3]);
                 let places: Vec<f64> = off
                     .iter()
                     .enumerate()
@@ -395,7 +395,7 @@ mod tests {
                     // The other frame is 0.5 N/m stiffer off its way, of at most 50 mm.
                     let within = if storeys { 1e-9 } else { 0.5 * 0.05 * 1.2 };
                     assert!(
-                        (again.force()[axis] - expected).abs() < within,
+                        (retrace.force()[axis] - expected).abs() < within,
                         "step {step}, axis {axis}"
                     );
                 }

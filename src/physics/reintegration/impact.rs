@@ -9,19 +9,19 @@ use std::cell::Cell;
 
 use crate::impact::Until;
 use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink};
-use crate::integrator::solver::State;
-use crate::perturbation::Perturbation;
+use crate::integrator::state::State;
+use crate::reintegration::perturbation::Perturbation;
 
-/// What an impact comes to, SI; NaN where it does not exist.
+/// Results of an impact, SI; NaN where a result does not exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// As the run itself tells them, at the ends of steps.
+    /// As the run itself reports them, at the ends of steps.
     pub summary: ImpactSummary,
-    /// As they are between them.
+    /// Interpolated between them.
     pub values: [f64; OUTCOMES.len()],
-    /// The values as they were where it departed from the record.
+    /// The values at the departure from the record.
     pub before_departure: Option<[f64; OUTCOMES.len()]>,
-    /// The farthest from its zero that it was at the end of a step, m.
+    /// Peak |X| at the ends of steps \[m\].
     pub farthest: f64,
 }
 
@@ -59,8 +59,8 @@ pub fn rerun(
         time_step: input.time_step / f64::from(finer),
         ..*input
     };
-    let mut again = path.again(finer);
-    let (place, displacement, force) = again.start();
+    let mut retrace = path.retrace(finer);
+    let (place, displacement, force) = retrace.start();
     let start = readings.read(0, 0, 1, (displacement, force));
     let place = place * readings.axes[0].displacement_scale;
     let mut reading = 0;
@@ -71,21 +71,26 @@ pub fn rerun(
         (place, start.0, start.1),
         |target, velocity| {
             reading += 1;
-            let read = again.pass(readings.recorded(0, target), readings.recorded(0, velocity));
-            (readings.read(reading, 0, 1, read), again.departed())
+            let read = retrace.pass(readings.recorded(0, target), readings.recorded(0, velocity));
+            (readings.read(reading, 0, 1, read), retrace.departed())
         },
     )
 }
 
-/// The velocities foretold for the targets of a run that did not stop at them, m/s: `readings` are all of its own.
+/// Predicted velocities at the targets of a run with continuous motion \[m/s\]; `readings` are all of its own.
 #[must_use]
-pub fn foretold(input: &ImpactInput, until: Until, steps: u64, readings: &[Reading]) -> Vec<f64> {
+pub fn predicted_velocities(
+    input: &ImpactInput,
+    until: Until,
+    steps: u64,
+    readings: &[Reading],
+) -> Vec<f64> {
     let mut velocities = vec![0.0];
     let Some(first) = readings.first() else {
         return velocities;
     };
     let start = (first.target, first.displacement, first.force);
-    // Nothing is foretold of a structure that cannot be stepped.
+    // No velocity is predicted for a structure that cannot be integrated.
     let _ = integrate(input, until, steps, start, |_, velocity| {
         let reading = readings[velocities.len().min(readings.len() - 1)];
         velocities.push(velocity);
@@ -126,7 +131,7 @@ fn run(
     };
     let departed = Cell::new(false);
     let mut results = Departing {
-        results: Telling::new(input, until, &start),
+        results: ImpactResults::new(input, until, &start),
         departed: &departed,
     };
     let measure = |solver: &mut ImpactSolver| {
@@ -140,8 +145,8 @@ fn run(
     Ok(results.results.finish())
 }
 
-/// What an impact comes to, collected from the ends of its steps.
-pub struct Telling {
+/// Results of an impact, collected from the ends of its steps.
+pub struct ImpactResults {
     summary: SummaryBuilder,
     between: Between,
     end: Ending,
@@ -155,8 +160,8 @@ pub struct Telling {
 
 /// Keeps the results as they were before the path departed from its record.
 struct Departing<'a> {
-    results: Telling,
-    /// Whether the reading of the step under way departed.
+    results: ImpactResults,
+    /// Whether the reading of the step in progress departed.
     departed: &'a Cell<bool>,
 }
 
@@ -169,13 +174,13 @@ impl<V> Sink<V> for Departing<'_> {
     }
 }
 
-impl<V> Sink<V> for Telling {
+impl<V> Sink<V> for ImpactResults {
     fn push(&mut self, _: &State<V>, now: &ImpactState, over: bool) {
         self.take(now, over);
     }
 }
 
-impl Telling {
+impl ImpactResults {
     /// Before the first step, which begins at `start`.
     #[must_use]
     pub fn new(input: &ImpactInput, until: Until, start: &ImpactState) -> Self {
@@ -200,7 +205,7 @@ impl Telling {
         }
     }
 
-    /// Takes the end of a step; `over` where the run ends with it.
+    /// Adds the end of a step; `over` where the run ends with it.
     pub fn take(&mut self, now: &ImpactState, over: bool) {
         let before = std::mem::replace(&mut self.before, *now);
         self.summary.push(now);
@@ -265,7 +270,7 @@ impl Telling {
     }
 }
 
-/// Share of a step at which a velocity that falls evenly from `before` to `now` is none; None where it does not get there.
+/// Fraction of a step at which a velocity that falls linearly from `before` to `now` is zero; None where it does not reach zero.
 fn crossing(before: f64, now: f64) -> Option<f64> {
     (before > 0.0 && now <= 0.0).then(|| before / (before - now))
 }
@@ -292,7 +297,7 @@ impl Between {
         }
     }
 
-    /// Inside a step the velocity goes evenly from one end to the other: the trapezoidal rule, eq. (2d).
+    /// Inside a step the velocity is linear: the trapezoidal rule, eq. (2d).
     fn take(&mut self, before: &ImpactState, now: &ImpactState, time_step: f64) {
         let [displacement, time, absorbed] = match crossing(before.velocity, now.velocity) {
             Some(share) => {
@@ -316,7 +321,7 @@ impl Between {
     }
 }
 
-/// The end of the run, inside its last step where that ends it by a velocity that comes to nothing.
+/// The end of the run, inside its last step where the run ends by a velocity of zero.
 struct Ending {
     /// Of the last step.
     share: f64,

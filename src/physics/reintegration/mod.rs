@@ -6,3 +6,4 @@ pub mod frame;
 pub mod frame_path;
 pub mod hysteresis_replay;
 pub mod impact;
+pub mod perturbation;

@@ -1,25 +1,25 @@
 //! The parameters of every specimen model: restoring force against displacement. In: numbers in SI. Out: data that
-//! [`SpecimenModel::new`](super::SpecimenModel::new) makes a model of, and what follows from them alone: stiffnesses, capacity. It bends nothing itself.
+//! [`SpecimenModel::new`](super::SpecimenModel::new) takes, and their stiffnesses and capacity. It has no state.
 
 use super::{Bolted, Breaks, Deterioration, Pinching, Table};
 use crate::relaxation::logarithmic::lost_after_long;
 use crate::structure::beam::{self, Beam};
 use crate::structure::portal::Portal;
-use crate::structure::portal_mass::{self, EquivalentMasses};
+use crate::structure::portal::mass::{self, EquivalentMasses};
 
 /// Restoring force of a virtual specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Behaviour {
-    /// R = K X; K in N/m.
+    /// R = K X, K \[N/m\].
     Elastic { stiffness: f64 },
-    /// Elastic–plastic with kinematic hardening; `hardening` is the stiffness past yield over the initial one.
+    /// Elastic–plastic with kinematic hardening; `hardening` is the post-yield stiffness ratio.
     Bilinear {
         stiffness: f64,
         yield_force: f64,
         hardening: f64,
     },
-    /// The same, wearing with the energy it has taken.
-    WearingBilinear {
+    /// The same, with cyclic deterioration by absorbed energy.
+    DeterioratingBilinear {
         stiffness: f64,
         yield_force: f64,
         hardening: f64,
@@ -27,8 +27,8 @@ pub enum Behaviour {
     },
     /// A beam by geometry.
     Beam(Beam),
-    /// Piecewise linear, with kinematic hardening: corners of the first loading, displacement (m) and force (N), both rising,
-    /// each stretch softer than the one before; the last one goes on.
+    /// Piecewise linear, with kinematic hardening: backbone points, displacement \[m\] and force \[N\], both rising, each segment softer than
+    /// the one before; the last one continues.
     Multilinear { corners: Vec<[f64; 2]> },
     /// Smooth hysteresis after Bouc and Wen. `sharpness` is n; γ = 1 − `beta`.
     BoucWen {
@@ -40,8 +40,7 @@ pub enum Behaviour {
     },
     /// Pinched hysteresis, peak-oriented, after Ibarra, Medina & Krawinkler.
     Pinching(Pinching),
-    /// R = K(x) X with K(x) = K (r + (1 − r)/(1 + x/h)), x the largest displacement so far (either way), h where half of what
-    /// can be lost is lost.
+    /// R = K(x) X with K(x) = K (r + (1 − r)/(1 + x/h)), x the peak displacement so far; half of the loss occurs at h.
     Degrading {
         stiffness: f64,
         half_displacement: f64,
@@ -51,25 +50,25 @@ pub enum Behaviour {
     Bolted(Bolted),
     /// Measured points.
     Table(Table),
-    /// Whole until it breaks, no force after.
+    /// Intact until fracture, zero force after.
     Fracture { of: Box<Behaviour>, at: Breaks },
     /// One force, displacements add.
     Series(Vec<Behaviour>),
     /// One displacement, forces add.
     Parallel(Vec<Behaviour>),
-    /// What the load cell reads while the actuator moves at v: R (1 + (|v|/`reference_velocity`)^`exponent`).
+    /// Rate-dependent: the load cell measures R (1 + (|v|/`reference_velocity`)^`exponent`) at the velocity v.
     Rate {
         of: Box<Behaviour>,
         reference_velocity: f64,
         exponent: f64,
     },
-    /// A spring and a dashpot one behind the other, beside the rest: its force relaxes. `stiffness` N/m, `time_constant` s.
+    /// A Maxwell branch (spring and dashpot in series) in parallel with the rest. `stiffness` \[N/m\], `time_constant` \[s\].
     Maxwell {
         of: Box<Behaviour>,
         stiffness: f64,
         time_constant: f64,
     },
-    /// What is reached relaxes with the logarithm of time: of every newton `share`·ln(1 + t/`reference_time`) is lost, until `longest` (s).
+    /// The force relaxes with the logarithm of time: every newton loses `share`·ln(1 + t/`reference_time`), until `longest` \[s\].
     Logarithmic {
         of: Box<Behaviour>,
         share: f64,
@@ -81,14 +80,13 @@ pub enum Behaviour {
 }
 
 impl Behaviour {
-    /// Stiffness at no displacement, N/m, before anything relaxed; where there is none (a joint with clearance and no friction), that in
-    /// bearing.
+    /// Initial stiffness without relaxation \[N/m\]; for a joint with clearance and no friction, that in bearing.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {
         match self {
             Self::Elastic { stiffness }
             | Self::Bilinear { stiffness, .. }
-            | Self::WearingBilinear { stiffness, .. }
+            | Self::DeterioratingBilinear { stiffness, .. }
             | Self::BoucWen { stiffness, .. }
             | Self::Degrading { stiffness, .. } => *stiffness,
             Self::Beam(beam) => beam.stiffness,
@@ -109,9 +107,9 @@ impl Behaviour {
         }
     }
 
-    /// Largest slope dR/dX on any way, N/m: what stability is judged by. Most behaviours are stiffest at first; a joint that
-    /// bears while its faces still hold is twice as stiff, a Bouc–Wen spring unloads at up to 2β of its hysteretic part, and
-    /// measured points are as steep as their steepest stretch.
+    /// Largest slope dR/dX on any path \[N/m\], which determines stability. Most behaviours are stiffest at first; a joint that bears before
+    /// its faces slip is twice as stiff, a Bouc–Wen spring unloads at up to 2β of its hysteretic part, and measured points have the slope of
+    /// their steepest segment.
     #[must_use]
     pub fn largest_stiffness(&self) -> f64 {
         match self {
@@ -131,7 +129,7 @@ impl Behaviour {
             | Self::Parallel(_) => self.stiffness_of_parts(Self::largest_stiffness),
             Self::Elastic { .. }
             | Self::Bilinear { .. }
-            | Self::WearingBilinear { .. }
+            | Self::DeterioratingBilinear { .. }
             | Self::Beam(_)
             | Self::Multilinear { .. }
             | Self::Pinching(_)
@@ -141,8 +139,8 @@ impl Behaviour {
         }
     }
 
-    /// A stiffness of what is made of others, N/m, `of` each of them: behind each other the flexibilities add up, else the
-    /// stiffnesses, with that of a Maxwell spring beside them.
+    /// Stiffness of a combination \[N/m\], from `of` each part: in series the flexibilities add, in parallel the stiffnesses, with that of a
+    /// Maxwell branch.
     fn stiffness_of_parts(&self, of: fn(&Self) -> f64) -> f64 {
         let parts = self.parts().iter().map(of);
         match self {
@@ -152,7 +150,7 @@ impl Behaviour {
         }
     }
 
-    /// Stiffness at no displacement when all that relaxes has, N/m: what a slow test measures.
+    /// Initial stiffness after complete relaxation \[N/m\], as measured by a slow test.
     #[must_use]
     pub fn relaxed_stiffness(&self) -> f64 {
         match self {
@@ -169,7 +167,7 @@ impl Behaviour {
         }
     }
 
-    /// The behaviours it is made of.
+    /// The behaviours that it combines.
     #[must_use]
     pub fn parts(&self) -> &[Behaviour] {
         match self {
@@ -182,7 +180,7 @@ impl Behaviour {
         }
     }
 
-    /// Largest force it carries, N; infinite where nothing bounds it, None where its file alone knows.
+    /// Capacity, the largest force \[N\]; infinite where unbounded, None where only its file determines it.
     #[must_use]
     pub fn capacity(&self) -> f64 {
         let hardens = |hardening: f64, force: f64| {
@@ -200,7 +198,7 @@ impl Behaviour {
                 hardening,
                 ..
             }
-            | Self::WearingBilinear {
+            | Self::DeterioratingBilinear {
                 yield_force,
                 hardening,
                 ..
@@ -259,12 +257,12 @@ impl Behaviour {
         }
     }
 
-    /// Equivalent masses that its geometry gives; what stands around a beam or portal goes the same way.
+    /// Equivalent masses by its geometry; the parts around a beam or portal have its displacement.
     #[must_use]
     pub fn equivalent_masses(&self) -> Option<EquivalentMasses> {
         match self {
             Self::Beam(beam) => beam::equivalent_masses(beam),
-            Self::Portal(portal) => portal_mass::equivalent_masses(portal),
+            Self::Portal(portal) => mass::equivalent_masses(portal),
             Self::Fracture { of, .. }
             | Self::Rate { of, .. }
             | Self::Maxwell { of, .. }
@@ -273,7 +271,7 @@ impl Behaviour {
         }
     }
 
-    /// The portal that it is, also inside of what goes the same way.
+    /// The portal, also inside of parts with the same displacement.
     #[must_use]
     pub fn portal(&self) -> Option<&Portal> {
         match self {
@@ -286,7 +284,7 @@ impl Behaviour {
         }
     }
 
-    /// The same with every force times `factor`: it yields and breaks at the same displacements.
+    /// The same with every force times `factor`: it yields and fractures at the same displacements.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let all = |parts: &[Self]| parts.iter().map(|part| part.scaled(factor)).collect();
@@ -298,7 +296,7 @@ impl Behaviour {
                 yield_force,
                 ..
             }
-            | Self::WearingBilinear {
+            | Self::DeterioratingBilinear {
                 stiffness,
                 yield_force,
                 ..
@@ -357,7 +355,7 @@ impl Behaviour {
         same
     }
 
-    /// Whether its force never falls while its displacement grows: what may stand in series.
+    /// Whether its force never falls while its displacement grows, as a part in series must.
     #[must_use]
     pub fn never_falls(&self) -> bool {
         match self {

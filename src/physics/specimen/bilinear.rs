@@ -2,7 +2,7 @@
 
 use super::RestoringForce;
 
-/// Elastic–plastic with kinematic hardening: the force runs with stiffness K between two parallel lines of slope `K_p`,
+/// Elastic–plastic with kinematic hardening: the force has the stiffness K between two parallel lines of slope `K_p`,
 /// `R = K_p X ± (1 − K_p/K) F_y`, and along the line it meets. The elastic trial cut to the band is the exact return map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bilinear {
@@ -14,7 +14,7 @@ pub struct Bilinear {
 }
 
 impl Bilinear {
-    /// `stiffness` K (N/m), `yield_force` (N), `hardening` `K_p/K`, 0 to 1.
+    /// `stiffness` K \[N/m\], `yield_force` \[N\], post-yield stiffness ratio `hardening` `K_p/K`, 0 to 1.
     #[must_use]
     pub fn new(stiffness: f64, yield_force: f64, hardening: f64) -> Self {
         Self {
@@ -71,7 +71,7 @@ mod tests {
         assert_eq!(model.initial_stiffness(), 1000.0);
     }
 
-    /// The path is exact: a corner reached in one move or in many.
+    /// The path is exact: a yield point is reached in one move or in many.
     #[test]
     fn bilinear_does_not_depend_on_the_size_of_its_moves() {
         let (mut once, mut often) = (

@@ -3,28 +3,28 @@
 
 use super::{Bilinear, RestoringForce};
 
-/// Numbers of a bolted joint.
+/// Parameters of a bolted joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bolted {
-    /// In bearing, and of the friction before it slips, N/m.
+    /// In bearing, and of the friction before slip \[N/m\].
     pub stiffness: f64,
-    /// Force at which a hole yields and grows, N.
+    /// Force at which a hole yields and grows \[N\].
     pub bearing_force: f64,
-    /// Way from the middle to bearing, m.
+    /// Clearance from the middle to bearing \[m\].
     pub clearance: f64,
-    /// Friction of the clamped faces, N.
+    /// Friction of the clamped faces \[N\].
     pub slip_force: f64,
 }
 
 /// Friction and two edges in parallel. Friction: stiffness K up to the slip force, perfectly plastic beyond. Each edge:
-/// nothing before its gap g is closed, then K (x − g), at most the bearing force: there the hole grows, g ← x − F_b/K, and
-/// stays so (the elastic–plastic gap with damage of OpenSees, `ElasticPPGap`). The edges wear apart, so that after some
-/// cycles the joint is loose: force is low around the middle, which is the pinched loop of bolted supports.
+/// zero force before its gap g is closed, then K (x − g), at most the bearing force: there the hole grows permanently, g ← x − F_b/K
+/// (the elastic–plastic gap with damage of OpenSees, `ElasticPPGap`). After some cycles the joint is loose: the force is small around
+/// the middle, which is the pinched loop of bolted supports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoltedJoint {
     stiffness: f64,
     bearing_force: f64,
-    /// Way to bearing forwards and backwards, m, both counted positive.
+    /// Clearance to bearing forwards and backwards, both positive \[m\].
     gaps: [f64; 2],
     friction: Option<Bilinear>,
 }
@@ -44,7 +44,7 @@ impl BoltedJoint {
         }
     }
 
-    /// Way from bearing one way to bearing the other way, m.
+    /// Clearance from bearing in one direction to bearing in the other \[m\].
     #[must_use]
     pub fn play(&self) -> f64 {
         self.gaps[0] + self.gaps[1]
@@ -76,7 +76,7 @@ impl RestoringForce for BoltedJoint {
                 .map_or(0.0, |friction| friction.move_to(displacement))
     }
 
-    /// In bearing, where nothing holds the joint before.
+    /// In bearing, for a joint without friction.
     fn initial_stiffness(&self) -> f64 {
         if self.gaps == [0.0; 2] && self.friction.is_some() {
             2.0 * self.stiffness
@@ -127,7 +127,7 @@ mod tests {
         assert!((joint.play() - 0.0025).abs() < 1e-15);
     }
 
-    /// Slip takes 4 F_s (A − x_s) a cycle, x_s = F_s/K; the first cycle takes besides what the holes grew by, times F_b.
+    /// Slip dissipates 4 F_s (A − x_s) per cycle, x_s = F_s/K; the first cycle dissipates besides F_b times the growth of the holes.
     #[test]
     fn energy_of_friction_and_of_growing_holes() {
         let (clearance, slip, amplitude) = (0.0005, 300.0, 0.004);

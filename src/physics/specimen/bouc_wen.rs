@@ -1,15 +1,15 @@
 //! Smooth hysteresis after Bouc and Wen, independent of rate. In: a displacement. Out: the force there, integrated over the
-//! displacement to a stated error, however large the move.
+//! displacement to a stated error, for a move of any length.
 
 use super::RestoringForce;
 
 /// R = α K X + (1 − α) F_y z, dz/dX = (K/F_y) [1 − |z|ⁿ (γ + β sign(z dX))], the form that goes by the names of Bouc and Wen, normalised to γ = 1 − β, so
-/// that z tends to ±1. What it takes beyond the store ½z² F_y/K of its spring is z dX − (F_y/K) z dz = |z|ⁿ⁺¹ |dX| (β + γ sign(z dX)), which is
-/// negative on no path where β ≥ |γ|, that is β ≥ ½.
+/// that z tends to ±1. Its dissipation beyond the elastic energy ½z² F_y/K is z dX − (F_y/K) z dz = |z|ⁿ⁺¹ |dX| (β + γ sign(z dX)), which is
+/// not negative on any path where β ≥ |γ|, that is β ≥ ½.
 ///
 /// With y = |ΔX| K/F_y and u = z counted along the move, du/dy = 1 − uⁿ loading (u ≥ 0) and 1 + (2β − 1)|u|ⁿ unloading (u < 0).
-/// Unloading ends at u = 0, where the right-hand side loses derivatives: the way there is integrated first, so that no step
-/// crosses it, and steps beside it are as short as |u|/4. Steps of fourth order of at most 1/(32 n) of y: |Δz| < 1e-7 against the
+/// Unloading ends at u = 0, where the right-hand side loses derivatives: the part up to it is integrated first, so that no step
+/// crosses it, and steps near it are as short as |u|/4. Steps of fourth order of at most 1/(32 n) of y: |Δz| < 1e-7 against the
 /// exact solution for n up to 20, and as much between one move and many (the tests measure both).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoucWen {
@@ -25,11 +25,11 @@ pub struct BoucWen {
 
 /// Steps of a yield displacement for n = 1.
 const STEPS: f64 = 32.0;
-/// Shortest step beside u = 0: |u|ⁿ with n ≥ 1 spoils such a step by its square at most.
+/// Shortest step near u = 0: the error of such a step by |u|ⁿ with n ≥ 1 is its square, at most.
 const SHORTEST: f64 = 1e-4;
 
 impl BoucWen {
-    /// `stiffness` K (N/m), `yield_force` F_y (N), `hardening` α, `sharpness` n ≥ 1, `beta` β, ½ to 1.
+    /// `stiffness` K \[N/m\], `yield_force` F_y \[N\], `hardening` α, `sharpness` n ≥ 1, `beta` β, ½ to 1.
     #[must_use]
     pub const fn new(
         stiffness: f64,
@@ -76,20 +76,20 @@ impl BoucWen {
         sum / (3.0 * intervals)
     }
 
-    /// u after `way` of y on one side of 0, by the classical Runge–Kutta method.
-    fn integrate(&self, mut along: f64, mut way: f64) -> f64 {
-        while way > 0.0 && self.rate(along) > f64::EPSILON {
+    /// u after `length` of y on one side of 0, by the classical Runge–Kutta method.
+    fn integrate(&self, mut along: f64, mut length: f64) -> f64 {
+        while length > 0.0 && self.rate(along) > f64::EPSILON {
             let longest = (0.25 * along.abs())
                 .max(SHORTEST)
                 .min(1.0 / (STEPS * self.sharpness));
             // An even share of what is left, so that no last step is a sliver.
-            let step = if way <= longest {
-                way
+            let step = if length <= longest {
+                length
             } else {
-                way / (way / longest).ceil()
+                length / (length / longest).ceil()
             };
             along = self.runge_kutta(along, step);
-            way = if step == way { 0.0 } else { way - step };
+            length = if step == length { 0.0 } else { length - step };
         }
         along
     }
@@ -115,25 +115,25 @@ impl RestoringForce for BoucWen {
     fn move_to(&mut self, displacement: f64) -> f64 {
         let moved = displacement - self.displacement;
         if moved != 0.0 {
-            let mut way = moved.abs() * self.stiffness / self.yield_force;
+            let mut length = moved.abs() * self.stiffness / self.yield_force;
             let mut along = self.plastic * moved.signum();
             if along < 0.0 {
                 // du/dy is largest here, so that no shorter way leads to 0.
-                let to_zero = if way * self.rate(along) < -along {
+                let to_zero = if length * self.rate(along) < -along {
                     f64::INFINITY
                 } else {
                     self.way_to_zero(along)
                 };
-                if way < to_zero {
-                    along = self.integrate(along, way);
-                    way = 0.0;
+                if length < to_zero {
+                    along = self.integrate(along, length);
+                    length = 0.0;
                 } else {
                     along = 0.0;
-                    way -= to_zero;
+                    length -= to_zero;
                 }
             }
-            if way > 0.0 {
-                along = self.integrate(along, way);
+            if length > 0.0 {
+                along = self.integrate(along, length);
             }
             self.plastic = along * moved.signum();
             self.displacement = displacement;
@@ -188,28 +188,28 @@ mod tests {
     /// with the model.
     fn independent(sharpness: f64, beta: f64, path: &[f64]) -> f64 {
         let (mut place, mut z) = (0.0_f64, 0.0_f64);
-        let rate = |z: f64, way: f64| {
-            let sign = if z * way > 0.0 {
+        let rate = |z: f64, length: f64| {
+            let sign = if z * length > 0.0 {
                 1.0
-            } else if z * way < 0.0 {
+            } else if z * length < 0.0 {
                 -1.0
             } else {
                 0.0
             };
-            way * (1.0 - z.abs().powf(sharpness) * (1.0 - beta + beta * sign))
+            length * (1.0 - z.abs().powf(sharpness) * (1.0 - beta + beta * sign))
         };
         for to in path {
             let pieces = 4000;
             let h = (to - place).abs() / f64::from(pieces);
-            let way = (to - place).signum();
+            let length = (to - place).signum();
             for _ in 0..pieces {
                 let midpoint = |n: i32| {
                     let step = h / f64::from(n);
-                    let (mut before, mut now) = (z, z + step * rate(z, way));
+                    let (mut before, mut now) = (z, z + step * rate(z, length));
                     for _ in 1..n {
-                        (before, now) = (now, before + 2.0 * step * rate(now, way));
+                        (before, now) = (now, before + 2.0 * step * rate(now, length));
                     }
-                    0.5 * (now + before + step * rate(now, way))
+                    0.5 * (now + before + step * rate(now, length))
                 };
                 let (two, four) = (midpoint(2), midpoint(4));
                 z = four + (four - two) / 3.0;
@@ -267,7 +267,7 @@ mod tests {
         }
     }
 
-    /// The order of the method is what the bound on the step rests on: half the step, a sixteenth of the error.
+    /// The bound of the step depends on the order of the method: half the step, a sixteenth of the error.
     #[test]
     fn the_error_falls_with_the_fourth_power_of_the_step() {
         let error = |count: u32| {

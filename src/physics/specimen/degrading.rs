@@ -1,11 +1,10 @@
-//! Stiffness that falls with the largest displacement so far. In: a displacement. Out: the force there, exact however large
-//! the move.
+//! Stiffness that falls with the peak displacement. In: a displacement. Out: the force there, exact for a move of any length.
 
 use super::RestoringForce;
 
-/// R = K(x_m) X, x_m the largest |X| so far, K(x) = K (r + (1 − r)/(1 + x/h)): half of what can be lost is lost at x = h.
-/// Without a residual the first loading is the hyperbola R = K X/(1 + X/h), which never exceeds K h. It
-/// unloads to the origin: a crack closes, nothing flows. Energy lost on the way to x_m:
+/// R = K(x_m) X with the peak displacement x_m so far, K(x) = K (r + (1 − r)/(1 + x/h)): half of the loss occurs at x = h. Without a
+/// residual the backbone is the hyperbola R = K X/(1 + X/h), which never exceeds K h. It unloads to the origin: a crack closes, without
+/// plastic deformation. Energy dissipated up to x_m:
 /// ∫R dX − ½ K(x_m) x_m² = (1 − r) K h² [s − ln(1 + s) − ½ s²/(1 + s)], s = x_m/h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Degrading {

@@ -1,164 +1,169 @@
-//! Two slopes that wear. In: a displacement. Out: the force there, exact however large the move; without wear, bit for bit that of the
-//! bilinear spring.
+//! A bilinear spring with cyclic deterioration. In: a displacement. Out: the force there, exact for a move of any length; without
+//! deterioration bit-identical to the bilinear spring.
 
 use super::RestoringForce;
-use super::deterioration::Wear;
+use super::deterioration::Degradation;
 use crate::specimen::Deterioration;
 
 /// The bilinear spring (`Bilinear`: K between two lines of slope k, R = kX ± Y, Y = (1 − h)F_y, k = hK) with two of the modes of deterioration of
 /// Ibarra, Medina & Krawinkler (Earthquake Engng Struct. Dyn. 34 (2005) 1489–1511), in the order of `IMKBilin` of OpenSees:
-/// - where the force is gone and the way goes on to a side, Y of that side, and k with it, by the share that is lost (`Wear`). The slope is one for both
-///   sides: two lines of different slopes would cross, and a spring that is held between them would give back what it never took;
-/// - where a loaded excursion turns, the stiffness between the lines. The store of what is between them, ½(R − kX)²/(K − k), grows with
-///   that; never by more than has been lost to flow since the last time.
+/// - at zero force, where the next excursion begins, Y of that side and k lose the fraction of `Degradation`. The slope is one for both
+///   sides: two lines of different slopes would cross, and a spring between them would release energy that it never absorbed;
+/// - at the reversal of a loaded excursion, the stiffness between the lines. The energy stored between them, ½(R − kX)²/(K − k), grows
+///   with that, never by more than the plastic work since the last time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WearingBilinear {
-    /// The first K, N/m.
+pub struct DeterioratingBilinear {
+    /// The initial K \[N/m\].
     stiffness: f64,
-    /// The first Y, N.
+    /// The initial Y \[N\].
     half_band: f64,
-    /// k, N/m
-    hardened: f64,
+    /// k \[N/m\]
+    post_yield: f64,
     displacement: f64,
     force: f64,
-    pub(super) wear: Wear,
-    /// The way of the present excursion, from no force to none; 0 before the first.
+    pub(super) degradation: Degradation,
+    /// Direction of the present excursion, from zero force to zero force; 0 before the first.
     excursion: f64,
-    /// Whether it has turned and not flowed since.
+    /// Whether it has reversed and not yielded since.
     turned: bool,
-    /// Lost to flow since the stiffness last fell, J.
-    flowed: f64,
+    /// Plastic work since the stiffness was last reduced \[J\].
+    plastic_work: f64,
 }
 
-impl WearingBilinear {
-    /// `stiffness` K (N/m), `yield_force` (N), `hardening` h, 0 to 1.
+impl DeterioratingBilinear {
+    /// `stiffness` K \[N/m\], `yield_force` \[N\], post-yield stiffness ratio `hardening` h, 0 to 1.
     #[must_use]
     pub fn new(stiffness: f64, yield_force: f64, hardening: f64, rule: Deterioration) -> Self {
         Self {
             stiffness,
             half_band: (1.0 - hardening) * yield_force,
-            hardened: hardening * stiffness,
+            post_yield: hardening * stiffness,
             displacement: 0.0,
             force: 0.0,
-            wear: Wear::new(Some(rule), yield_force, stiffness),
+            degradation: Degradation::new(Some(rule), yield_force, stiffness),
             excursion: 0.0,
             turned: false,
-            flowed: 0.0,
+            plastic_work: 0.0,
         }
     }
 
-    /// Between the lines, N/m.
+    /// Stiffness between the lines \[N/m\].
     fn elastic(&self) -> f64 {
-        self.wear.unloading * self.stiffness
+        self.degradation.unloading * self.stiffness
     }
 
-    /// Y of the side that lies this way, N.
-    fn band(&self, way: f64) -> f64 {
-        self.wear.strength[usize::from(way < 0.0)] * self.half_band
+    /// Y of the side in this direction \[N\].
+    fn band(&self, direction: f64) -> f64 {
+        self.degradation.strength[usize::from(direction < 0.0)] * self.half_band
     }
 
-    /// Where the way from `from` (displacement and force, both counted along it) meets the line ahead, m.
-    fn meets(&self, way: f64, [place, force]: [f64; 2]) -> f64 {
-        let steeper = self.elastic() - self.hardened;
+    /// Displacement at which the elastic line from `from` (displacement and force, along `direction`) meets the yield line \[m\].
+    fn meets(&self, direction: f64, [displacement, force]: [f64; 2]) -> f64 {
+        let steeper = self.elastic() - self.post_yield;
         if steeper <= 0.0 {
             return f64::INFINITY;
         }
-        ((self.band(way) - force + self.elastic() * place) / steeper).max(place)
+        ((self.band(direction) - force + self.elastic() * displacement) / steeper).max(displacement)
     }
 
-    /// Where a force against the way is gone: between the lines, or beyond, where the spring yields under it already.
-    fn no_force(&self, way: f64, from: [f64; 2]) -> f64 {
-        let [place, force] = from;
-        let elastic = place - force / self.elastic();
-        if elastic <= self.meets(way, from) {
+    /// Displacement at which a force against the direction is zero: between the lines, or beyond, where the spring already yields \[m\].
+    fn unloaded(&self, direction: f64, from: [f64; 2]) -> f64 {
+        let [displacement, force] = from;
+        let elastic = displacement - force / self.elastic();
+        if elastic <= self.meets(direction, from) {
             elastic
         } else {
-            -self.band(way) / self.hardened
+            -self.band(direction) / self.post_yield
         }
     }
 
-    /// Counts the work of going on to `to`, and what of it is lost to flow.
-    fn count(&mut self, way: f64, from: [f64; 2], to: f64) {
-        let [place, force] = from;
-        let yields = self.meets(way, from).min(to);
-        let there = force + self.elastic() * (yields - place);
-        self.wear.work(0.5 * (force + there) * (yields - place));
+    /// Adds the work of the move to `to`, and its plastic part.
+    fn count(&mut self, direction: f64, from: [f64; 2], to: f64) {
+        let [displacement, force] = from;
+        let yields = self.meets(direction, from).min(to);
+        let there = force + self.elastic() * (yields - displacement);
+        self.degradation
+            .work(0.5 * (force + there) * (yields - displacement));
         if yields < to {
-            let end = there + self.hardened * (to - yields);
-            self.wear.work(0.5 * (there + end) * (to - yields));
-            self.flowed += self.band(way) * (to - yields);
+            let end = there + self.post_yield * (to - yields);
+            self.degradation.work(0.5 * (there + end) * (to - yields));
+            self.plastic_work += self.band(direction) * (to - yields);
             self.turned &= end <= 0.0;
         }
     }
 
-    /// A loaded excursion turns.
+    /// The reversal of a loaded excursion.
     fn turn(&mut self) {
         self.turned = true;
         let (before, within) = (
-            self.wear.unloading,
-            self.force - self.hardened * self.displacement,
+            self.degradation.unloading,
+            self.force - self.post_yield * self.displacement,
         );
-        self.wear
+        self.degradation
             .turned(0.5 * self.force * self.force / self.elastic());
-        if self.wear.unloading < before && within != 0.0 {
+        if self.degradation.unloading < before && within != 0.0 {
             let store = 0.5 * within * within;
-            let least = self.hardened
-                + store / (store / (before * self.stiffness - self.hardened) + self.flowed);
-            self.wear.unloading = self.wear.unloading.max(least / self.stiffness).min(before);
-            self.flowed = 0.0;
+            let least = self.post_yield
+                + store / (store / (before * self.stiffness - self.post_yield) + self.plastic_work);
+            self.degradation.unloading = self
+                .degradation
+                .unloading
+                .max(least / self.stiffness)
+                .min(before);
+            self.plastic_work = 0.0;
         } else {
-            self.wear.unloading = before;
+            self.degradation.unloading = before;
         }
     }
 
-    /// The force is gone, and the way goes on. Out: whether anything was lost.
-    fn ended(&mut self, way: f64) -> bool {
-        let side = usize::from(way < 0.0);
-        let before = self.wear.strength[side];
-        self.wear.ended(side);
-        self.hardened *= self.wear.strength[side] / before;
-        (self.excursion, self.turned) = (way, false);
-        self.wear.strength[side] < before
+    /// Zero force, and the move continues. Returns whether strength was lost.
+    fn ended(&mut self, direction: f64) -> bool {
+        let side = usize::from(direction < 0.0);
+        let before = self.degradation.strength[side];
+        self.degradation.ended(side);
+        self.post_yield *= self.degradation.strength[side] / before;
+        (self.excursion, self.turned) = (direction, false);
+        self.degradation.strength[side] < before
     }
 
-    fn go(&mut self, way: f64, to: f64) {
-        if self.force * way < 0.0 && !self.turned {
+    fn go(&mut self, direction: f64, to: f64) {
+        if self.force * direction < 0.0 && !self.turned {
             self.turn();
         }
-        let mut from = [self.displacement * way, self.force * way];
+        let mut from = [self.displacement * direction, self.force * direction];
         let mut origin = from;
-        if self.excursion * way < 0.0 {
-            let gone = if from[1] < 0.0 {
-                self.no_force(way, from)
+        if self.excursion * direction < 0.0 {
+            let unloaded_at = if from[1] < 0.0 {
+                self.unloaded(direction, from)
             } else {
                 from[0]
             };
-            if to >= gone {
-                self.count(way, from, gone);
-                from = [gone, 0.0];
-                if self.ended(way) {
+            if to >= unloaded_at {
+                self.count(direction, from, unloaded_at);
+                from = [unloaded_at, 0.0];
+                if self.ended(direction) {
                     origin = from;
                 }
             }
         } else {
-            self.excursion = way;
+            self.excursion = direction;
         }
-        self.count(way, from, to);
+        self.count(direction, from, to);
         let (middle, trial) = (
-            self.hardened * to,
+            self.post_yield * to,
             origin[1] + self.elastic() * (to - origin[0]),
         );
-        self.displacement = way * to;
-        // Without a sign where it is gone.
-        self.force = way
+        self.displacement = direction * to;
+        // Positive zero where it is zero.
+        self.force = direction
             * trial
-                .max(middle - self.band(-way))
-                .min(middle + self.band(way))
+                .max(middle - self.band(-direction))
+                .min(middle + self.band(direction))
             + 0.0;
     }
 }
 
-impl RestoringForce for WearingBilinear {
+impl RestoringForce for DeterioratingBilinear {
     fn move_to(&mut self, displacement: f64) -> f64 {
         let moved = displacement - self.displacement;
         if moved != 0.0 {
@@ -189,8 +194,8 @@ mod tests {
     };
 
     /// 1000 N/mm to 1 kN; γ `F_y` `x_y` = 40 J of a γ of 40.
-    fn spring(hardening: f64, rule: Deterioration) -> WearingBilinear {
-        WearingBilinear::new(1e6, 1000.0, hardening, rule)
+    fn spring(hardening: f64, rule: Deterioration) -> DeterioratingBilinear {
+        DeterioratingBilinear::new(1e6, 1000.0, hardening, rule)
     }
 
     /// Turns of all kinds: elastic, yielding, under a force that is not gone, on either side, tiny.
@@ -208,15 +213,15 @@ mod tests {
     #[test]
     fn without_wear_it_is_the_bilinear_spring() {
         for hardening in [0.0, 0.03, 0.1, 0.6, 1.0] {
-            let (mut plain, mut worn) = (
+            let (mut plain, mut degraded) = (
                 Bilinear::new(1e6, 1000.0, hardening),
                 spring(hardening, NO_WEAR),
             );
-            for way in ways() {
+            for direction in ways() {
                 assert_eq!(
-                    plain.move_to(way).to_bits(),
-                    worn.move_to(way).to_bits(),
-                    "hardening {hardening}, {way} m"
+                    plain.move_to(direction).to_bits(),
+                    degraded.move_to(direction).to_bits(),
+                    "hardening {hardening}, {direction} m"
                 );
             }
         }
@@ -262,11 +267,11 @@ mod tests {
         assert!((model.move_to(0.005) - 1400.0).abs() < 1e-9);
         let taken = 0.5 * 1.0 + 0.5 * (1.0 + 1.4) * 4.0 - 0.5 * 1.4 * 1.4;
         let left = 1.0 - taken / (40.0 - taken);
-        for place in [-0.004, -0.009] {
-            let found = model.move_to(place);
+        for displacement in [-0.004, -0.009] {
+            let found = model.move_to(displacement);
             assert!(
-                (found - left * (-900.0 + 1e5 * place)).abs() < 1e-9,
-                "{place} m: {found} N"
+                (found - left * (-900.0 + 1e5 * displacement)).abs() < 1e-9,
+                "{displacement} m: {found} N"
             );
         }
     }
@@ -310,10 +315,13 @@ mod tests {
                     ..NO_WEAR
                 },
             );
-            for place in [0.0009, -0.0009, 0.0009, -0.0009, 0.0] {
-                model.move_to(place);
+            for displacement in [0.0009, -0.0009, 0.0009, -0.0009, 0.0] {
+                model.move_to(displacement);
             }
-            assert_eq!((model.wear.strength, model.wear.unloading), ([1.0; 2], 1.0));
+            assert_eq!(
+                (model.degradation.strength, model.degradation.unloading),
+                ([1.0; 2], 1.0)
+            );
             let (mut work, mut least): (f64, f64) = (0.0, 0.0);
             for cycle in 1..=40 {
                 let amplitude = 1e-3 * (1.5 + 0.2 * f64::from(cycle));
@@ -330,18 +338,18 @@ mod tests {
                 }
             }
             assert!(least >= -1e-9, "{hardening}: {least} J");
-            let worn_out = model.wear.strength == [0.1; 2];
+            let exhausted = model.degradation.strength == [0.1; 2];
             assert!(
-                worn_out || (unloading.is_finite() && model.wear.energy[0] < 60.0),
+                exhausted || (unloading.is_finite() && model.degradation.energy[0] < 60.0),
                 "{hardening}: {:?}",
-                model.wear
+                model.degradation
             );
             assert!(
-                unloading.is_infinite() || model.wear.unloading < 0.3,
+                unloading.is_infinite() || model.degradation.unloading < 0.3,
                 "{hardening}: {:?}",
-                model.wear
+                model.degradation
             );
-            let counted = model.wear.energy[0] + model.wear.energy[1];
+            let counted = model.degradation.energy[0] + model.degradation.energy[1];
             assert!(
                 (counted / work - 1.0).abs() < 2e-3,
                 "{hardening}: {counted} J are counted, {work} J were done"

@@ -1,14 +1,16 @@
-//! Wear of a hysteresis by the energy it takes. In: work, reversals, excursions that end. Out: what is left of its strengths and of its
-//! unloading stiffness, and how much farther it reloads. It knows no path.
+//! Cyclic deterioration of a hysteresis by the energy it absorbs. In: work, reversals, ends of excursions. Out: the remaining strengths and
+//! unloading stiffness, and the extension of the reloading target. It knows no path.
 //!
 //! After Ibarra, Medina & Krawinkler (*Hysteretic models that incorporate strength and stiffness deterioration*, Earthquake Engng Struct.
-//! Dyn. 34 (2005) 1489–1511), in the order of `IMKPinching` of OpenSees: each mode has its own γ, and takes the share
-//! β = (`E_i`/(γ F_y x_y − ΣE_j))^c, `E_i` what the excursion took, ΣE_j all with it; all of it where less is left than was taken.
-//! - Where the force is gone and the way goes on to a side: that side's strength, yield force and hardening alike, times 1 − `β_s`, down to
-//!   the residual; its post-capping line, by the force where it meets no displacement, times 1 − `β_c`; its peak times 1 + `β_a`.
-//! - Where a loaded excursion turns: the unloading stiffness of both sides times 1 − `β_k`, `E_i` and ΣE_j without what it gives back.
+//! Dyn. 34 (2005) 1489–1511), in the order of `IMKPinching` of OpenSees: each mode has its own γ and loses the fraction
+//! β = (`E_i`/(γ F_y x_y − ΣE_j))^c, with the energy `E_i` of the excursion and ΣE_j of all with it; β = 1 where less is left than `E_i`.
+//! - At zero force, where the next excursion begins in a direction: the strength of that side, yield force and post-yield stiffness alike,
+//!   times 1 − `β_s`, down to the residual; its post-capping line, by its force at zero displacement, times 1 − `β_c`; its peak times
+//!   1 + `β_a`.
+//! - At the reversal of a loaded excursion: the unloading stiffness of both sides times 1 − `β_k`, with `E_i` and ΣE_j less the elastic
+//!   energy that is released.
 
-/// Cyclic deterioration by energy: of each mode γ, the energy that it can take in all, over `F_y` `x_y`; infinite where the mode is off.
+/// Parameters of cyclic deterioration: for each mode the energy capacity γ over `F_y` `x_y`, infinite where the mode is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deterioration {
     pub strength: f64,
@@ -21,30 +23,30 @@ pub struct Deterioration {
     pub residual: f64,
 }
 
-/// How far a hysteresis has worn; nothing does where no capacity is stated.
+/// Deterioration of a hysteresis so far; none where no capacity is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wear {
+pub struct Degradation {
     rule: Option<Deterioration>,
-    /// `F_y`, N, and K, N/m
+    /// `F_y` \[N\] and K \[N/m\]
     yield_force: f64,
     stiffness: f64,
     /// Strength over the first one, forwards and backwards.
     pub strength: [f64; 2],
-    /// Force of the post-capping line at no displacement, over the first one.
+    /// Force of the post-capping line at zero displacement, over the first one.
     pub capping: [f64; 2],
     /// Unloading stiffness over the first one.
     pub unloading: f64,
-    /// Taken in all excursions that ended, and in the one that has not, J.
+    /// Energy of all completed excursions, and of the present one \[J\].
     pub energy: [f64; 2],
-    /// What of that one has softened the unloading already, J.
+    /// The part of the present one that has already reduced the unloading stiffness \[J\].
     charged: f64,
 }
 
 /// Energy below this share of `F_y` `x_y` is rounding.
 const ROUNDING: f64 = 1e-12;
 
-impl Wear {
-    /// As built: of `F_y` (N) and K (N/m).
+impl Degradation {
+    /// Undamaged: `F_y` \[N\] and K \[N/m\].
     #[must_use]
     pub const fn new(rule: Option<Deterioration>, yield_force: f64, stiffness: f64) -> Self {
         Self {
@@ -59,9 +61,9 @@ impl Wear {
         }
     }
 
-    /// Whether anything wears.
+    /// Whether any mode deteriorates.
     #[must_use]
-    pub fn wears(&self) -> bool {
+    pub fn degrades(&self) -> bool {
         self.rule.is_some_and(|rule| {
             [rule.strength, rule.capping, rule.unloading, rule.reloading]
                 .into_iter()
@@ -69,39 +71,39 @@ impl Wear {
         })
     }
 
-    /// Takes the work of a move, J.
+    /// Adds the work of a move \[J\].
     pub fn work(&mut self, done: f64) {
         self.energy[1] += done;
     }
 
-    /// β of `taken` (J) where `all` of it has been taken so far, for a capacity γ.
-    fn share(&self, capacity: f64, exponent: f64, taken: f64, all: f64) -> f64 {
+    /// β for the energy `absorbed` \[J\] of `all` so far \[J\], for a capacity γ.
+    fn share(&self, capacity: f64, exponent: f64, absorbed: f64, all: f64) -> f64 {
         let left = capacity * self.yield_force * self.yield_force / self.stiffness - all;
-        if left > taken {
-            (taken / left).powf(exponent)
+        if left > absorbed {
+            (absorbed / left).powf(exponent)
         } else {
             1.0
         }
     }
 
-    /// A loaded excursion turns, with so much (J) still to give back.
+    /// The reversal of a loaded excursion, with the elastic energy `stored` \[J\].
     pub fn turned(&mut self, stored: f64) {
         let Some(rule) = self.rule else { return };
-        let taken = self.energy[1] - stored - self.charged;
-        if taken > ROUNDING * self.yield_force * self.yield_force / self.stiffness {
+        let absorbed = self.energy[1] - stored - self.charged;
+        if absorbed > ROUNDING * self.yield_force * self.yield_force / self.stiffness {
             let all = self.energy[0] + self.energy[1] - stored;
-            self.unloading *= 1.0 - self.share(rule.unloading, rule.exponent, taken, all);
-            self.charged += taken;
+            self.unloading *= 1.0 - self.share(rule.unloading, rule.exponent, absorbed, all);
+            self.charged += absorbed;
         }
     }
 
-    /// The force is gone, and the next excursion goes to this `side` (0 forwards, 1 backwards). Out: how much farther its peak is.
+    /// Zero force, where the next excursion begins to this `side` (0 forwards, 1 backwards). Returns the factor of its peak displacement.
     pub fn ended(&mut self, side: usize) -> f64 {
         let Some(rule) = self.rule else { return 1.0 };
-        let taken = self.energy[1].max(0.0);
-        let all = self.energy[0] + taken;
+        let absorbed = self.energy[1].max(0.0);
+        let all = self.energy[0] + absorbed;
         (self.energy, self.charged) = ([all, 0.0], 0.0);
-        let share = |capacity| self.share(capacity, rule.exponent, taken, all);
+        let share = |capacity| self.share(capacity, rule.exponent, absorbed, all);
         let [strength, capping, reloading] =
             [rule.strength, rule.capping, rule.reloading].map(share);
         self.strength[side] = (self.strength[side] * (1.0 - strength)).max(rule.residual);

@@ -1,19 +1,19 @@
-//! A specimen that breaks once and for all. In: a displacement. Out: the force of what it is made of, then none.
+//! A specimen that fractures. In: a displacement. Out: the force of the intact specimen, then zero.
 
 use super::{RestoringForce, SpecimenModel};
 
-/// What a specimen breaks at.
+/// Criterion of fracture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Breaks {
-    /// m, either way
+    /// |X| \[m\]
     Displacement(f64),
-    /// N, either way
+    /// |R| \[N\]
     Force(f64),
 }
 
-/// Breaks at the first place where |X| or |R| is at least what it bears. The force is looked at along a move, and not where it
-/// ends alone: at most a share `STRETCH` of the bound apart by the initial stiffness, so that a force that rises past the bound and
-/// falls back within one move is seen.
+/// Fractures at the first displacement where |X| or |R| reaches its bound. The force is evaluated along a move, not at its end alone: at
+/// intervals of a fraction `INTERVAL` of the bound by the initial stiffness, so that a force that exceeds the bound and falls below it
+/// within one move is detected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fracture {
     of: SpecimenModel,
@@ -22,13 +22,13 @@ pub struct Fracture {
     displacement: f64,
 }
 
-/// How far apart the force is looked at, as a share of the bound it is held to: x = share · F / K.
-const STRETCH: f64 = 0.01;
-/// Looks in one move, at most: a longer move is looked at as often, further apart.
+/// Interval of evaluation as a fraction of the bound: x = fraction · F / K.
+const INTERVAL: f64 = 0.01;
+/// Evaluations of one move, at most: the intervals of a longer move are larger.
 const MOST_LOOKS: f64 = 10_000.0;
 
 impl Fracture {
-    /// Whole so far.
+    /// Intact so far.
     #[must_use]
     pub const fn new(of: SpecimenModel, at: Breaks) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl RestoringForce for Fracture {
         let from = std::mem::replace(&mut self.displacement, displacement);
         if let Breaks::Force(bound) = self.at {
             let looks = ((displacement - from).abs() * self.of.initial_stiffness()
-                / (STRETCH * bound))
+                / (INTERVAL * bound))
                 .ceil()
                 .min(MOST_LOOKS);
             let mut look = 1.0;
@@ -105,7 +105,7 @@ mod tests {
         assert_eq!(spring(Breaks::Force(1.0)).initial_stiffness(), 1000.0);
     }
 
-    /// It rises to 30 N at 30 mm and falls to 5 N at 60 mm: however it goes there, 25 N is passed.
+    /// It rises to 30 N at 30 mm and falls to 5 N at 60 mm: every move to there passes 25 N.
     #[test]
     fn a_peak_within_one_move_breaks_it_however_large_the_move() {
         let points = vec![[0.0, 0.0], [0.03, 30.0], [0.06, 5.0]];

@@ -24,7 +24,7 @@ pub use bilinear::Bilinear;
 pub use bolted::{Bolted, BoltedJoint};
 pub use bouc_wen::BoucWen;
 pub use degrading::Degrading;
-pub use deteriorating_bilinear::WearingBilinear;
+pub use deteriorating_bilinear::DeterioratingBilinear;
 pub use deterioration::Deterioration;
 pub use fracture::{Breaks, Fracture};
 pub use multilinear::Multilinear;
@@ -32,11 +32,11 @@ pub use pinching::{Capping, PinchedHysteresis, Pinching};
 pub use series::Series;
 pub use table::{AlongTheCurve, PlasticCurve, Table, Unloading};
 
-/// What a virtual rig bends.
+/// A restoring-force (hysteretic) model.
 pub trait RestoringForce {
-    /// Moves on to `displacement` (m) and gives the force there, N.
+    /// Moves to `displacement` \[m\] and returns the force there \[N\].
     fn move_to(&mut self, displacement: f64) -> f64;
-    /// Stiffness before anything has happened, N/m.
+    /// Initial stiffness \[N/m\].
     fn initial_stiffness(&self) -> f64;
 }
 
@@ -56,12 +56,12 @@ impl RestoringForce for Elastic {
     }
 }
 
-/// Any specimen a plan can declare. The two of every day stand in it; the others, which carry more, stand beside.
+/// Any model. The two smallest are stored inline, the larger ones boxed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpecimenModel {
     Elastic(Elastic),
     Bilinear(Bilinear),
-    WearingBilinear(Box<WearingBilinear>),
+    DeterioratingBilinear(Box<DeterioratingBilinear>),
     Multilinear(Multilinear),
     BoucWen(Box<BoucWen>),
     Pinched(Box<PinchedHysteresis>),
@@ -75,7 +75,7 @@ pub enum SpecimenModel {
 }
 
 impl SpecimenModel {
-    /// A model of `behaviour`, at no displacement and untouched. What acts on the load cell by its speed or in time is the rig's.
+    /// A model of `behaviour`, undamaged at zero displacement. Rate dependence and relaxation are not part of it.
     #[must_use]
     pub fn new(behaviour: &Behaviour) -> Self {
         match behaviour {
@@ -90,12 +90,12 @@ impl SpecimenModel {
                 yield_force,
                 hardening,
             } => Self::Bilinear(Bilinear::new(*stiffness, *yield_force, *hardening)),
-            Behaviour::WearingBilinear {
+            Behaviour::DeterioratingBilinear {
                 stiffness,
                 yield_force,
                 hardening,
                 deterioration,
-            } => Self::WearingBilinear(Box::new(WearingBilinear::new(
+            } => Self::DeterioratingBilinear(Box::new(DeterioratingBilinear::new(
                 *stiffness,
                 *yield_force,
                 *hardening,
@@ -149,7 +149,7 @@ impl RestoringForce for SpecimenModel {
         match self {
             Self::Elastic(model) => model.move_to(displacement),
             Self::Bilinear(model) => model.move_to(displacement),
-            Self::WearingBilinear(model) => model.move_to(displacement),
+            Self::DeterioratingBilinear(model) => model.move_to(displacement),
             Self::Multilinear(model) => model.move_to(displacement),
             Self::BoucWen(model) => model.move_to(displacement),
             Self::Pinched(model) => model.move_to(displacement),
@@ -170,7 +170,7 @@ impl RestoringForce for SpecimenModel {
         match self {
             Self::Elastic(model) => model.initial_stiffness(),
             Self::Bilinear(model) => model.initial_stiffness(),
-            Self::WearingBilinear(model) => model.initial_stiffness(),
+            Self::DeterioratingBilinear(model) => model.initial_stiffness(),
             Self::Multilinear(model) => model.initial_stiffness(),
             Self::BoucWen(model) => model.initial_stiffness(),
             Self::Pinched(model) => model.initial_stiffness(),

@@ -1,15 +1,15 @@
-//! Piecewise linear with kinematic hardening: elastic–plastic elements side by side. In: a displacement. Out: the force
-//! there, exact however large the move.
+//! Piecewise linear with kinematic hardening: elastic–plastic elements in parallel. In: a displacement. Out: the force there, exact for a
+//! move of any length.
 
 use super::RestoringForce;
 
-/// Elastic–plastic elements in parallel (Iwan's model): with slopes k₁ > k₂ > … of the
-/// first loading between the corners x₁ < x₂ < …, element i has the stiffness kᵢ − kᵢ₊₁ and yields at xᵢ; what is left, the
-/// last slope, is elastic. Unloading and reloading follow Masing: the first loading, twice as large.
+/// Elastic–plastic elements in parallel (Iwan's model): with slopes k₁ > k₂ > … of the backbone between its points x₁ < x₂ < …,
+/// element i has the stiffness kᵢ − kᵢ₊₁ and yields at xᵢ; the last slope is elastic. Unloading and reloading follow Masing's rule: the
+/// backbone, twice as large.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Multilinear {
     elements: Vec<Element>,
-    /// Slope after the last corner but one, N/m.
+    /// Slope after the last backbone point but one \[N/m\].
     last_slope: f64,
     displacement: f64,
 }
@@ -23,30 +23,26 @@ struct Element {
 }
 
 impl Multilinear {
-    /// From the corners of the first loading, displacement (m) and force (N): at least one, both rising, each slope
-    /// smaller than the one before.
+    /// From the backbone points, displacement \[m\] and force \[N\]: at least one, both rising, each slope smaller than the one before.
     #[must_use]
-    pub fn new(corners: &[[f64; 2]]) -> Self {
+    pub fn new(points: &[[f64; 2]]) -> Self {
         let mut before = [0.0, 0.0];
-        let slopes: Vec<f64> = corners
+        let slopes: Vec<f64> = points
             .iter()
-            .map(|corner| {
-                let slope = (corner[1] - before[1]) / (corner[0] - before[0]);
-                before = *corner;
+            .map(|point| {
+                let slope = (point[1] - before[1]) / (point[0] - before[0]);
+                before = *point;
                 slope
             })
             .collect();
-        let elements = corners
-            .iter()
-            .zip(slopes.windows(2))
-            .map(|(corner, slopes)| {
-                let stiffness = slopes[0] - slopes[1];
-                Element {
-                    stiffness,
-                    yield_force: stiffness * corner[0],
-                    force: 0.0,
-                }
-            });
+        let elements = points.iter().zip(slopes.windows(2)).map(|(point, slopes)| {
+            let stiffness = slopes[0] - slopes[1];
+            Element {
+                stiffness,
+                yield_force: stiffness * point[0],
+                force: 0.0,
+            }
+        });
         Self {
             elements: elements.collect(),
             last_slope: slopes.last().copied().unwrap_or(0.0),
@@ -98,8 +94,8 @@ mod tests {
         );
     }
 
-    /// Masing: after a turn at (x_t, R_t) the branch is R = R_t − 2 F((x_t − x)/2), F the first loading; and a closed inner loop
-    /// is forgotten.
+    /// Masing: after a reversal at (x_t, R_t) the branch is R = R_t − 2 F((x_t − x)/2) with the backbone F; a closed inner loop is
+    /// erased.
     #[test]
     fn unloading_is_the_first_loading_twice_as_large_and_inner_loops_are_forgotten() {
         let mut turned = Multilinear::new(&CORNERS);
@@ -120,7 +116,7 @@ mod tests {
         assert!((turned.move_to(-0.002) - straight.move_to(-0.002)).abs() < 1e-9);
     }
 
-    /// Closed form: each element of yield displacement x_y takes 4 k x_y (A − x_y) a cycle of amplitude A > x_y.
+    /// Closed form: each element of yield displacement x_y dissipates 4 k x_y (A − x_y) per cycle of amplitude A > x_y.
     #[test]
     fn a_cycle_takes_the_energy_of_its_elements() {
         let amplitude = 0.006;

@@ -1,37 +1,37 @@
-//! Pinched hysteresis, peak-oriented. In: a displacement. Out: the force there, exact however large the move: every branch is
-//! straight, and a move is cut at their ends.
+//! Peak-oriented pinched hysteresis. In: a displacement. Out: the force there, exact for a move of any length: every branch is straight,
+//! and a move is divided at their ends.
 
 use super::RestoringForce;
+use super::deterioration::Degradation;
 use super::deterioration::Deterioration;
-use super::deterioration::Wear;
 
-/// Numbers of a pinched hysteresis.
+/// Parameters of a pinched hysteresis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pinching {
-    /// N/m
+    /// K \[N/m\]
     pub stiffness: f64,
-    /// N
+    /// F_y \[N\]
     pub yield_force: f64,
-    /// Stiffness of the backbone past yield over the initial one.
+    /// Post-yield stiffness ratio of the backbone.
     pub hardening: f64,
-    /// κ_F: force of the break point over that of the straight way to the peak.
+    /// κ_F: force of the break point over that of the straight line to the peak.
     pub force_factor: f64,
-    /// κ_D: 1 − displacement of the break point over the largest permanent one.
+    /// κ_D: 1 − displacement of the break point over the largest residual displacement.
     pub displacement_factor: f64,
     /// a of the unloading stiffness K (x_y/x_max)^a.
     pub unloading_exponent: f64,
-    /// Where its strength begins to fall with the displacement. None: nowhere.
+    /// Post-capping branch; None without one.
     pub capping: Option<Capping>,
-    /// How it wears with the energy it has taken. None: not at all.
+    /// Cyclic deterioration by absorbed energy; None without it.
     pub deterioration: Option<Deterioration>,
 }
 
-/// A backbone that falls beyond a displacement.
+/// Post-capping branch of a backbone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capping {
-    /// m
+    /// Its begin \[m\].
     pub displacement: f64,
-    /// How steeply it falls, over the initial stiffness.
+    /// Its negative slope over the initial stiffness.
     pub slope: f64,
     /// Strength that is never lost, over the first one.
     pub residual: f64,
@@ -39,30 +39,31 @@ pub struct Capping {
 
 /// After Ibarra, Medina & Krawinkler, *Hysteretic models that incorporate strength and stiffness deterioration*, Earthquake
 /// Engng Struct. Dyn. 34 (2005) 1489–1511; the break point and the order of the deterioration as `IMKPinching` of OpenSees has them:
-/// - the backbone is K to F_y, then hardening, and, where it is capped, from `x_c` on a line that falls, down to the residual strength;
-/// - unloading has the stiffness K (x_y/x_p)^a, x_p the peak displacement that way (as in Takeda's model), but at
-///   least that of the peak's chord, F_p/x_p; a return before the force is gone goes back up the same line;
-/// - from no force at u₀, reloading runs to the break point U = (1 − κ_D)·U_p, F = κ_F·F_p (U − u₀)/(x_p − u₀), with U_p the
-///   permanent displacement of the peak that way, and on to the peak; where u₀ is past the break point, straight to the peak;
-/// - from the peak on it is the backbone;
-/// - it wears by the energy of its excursions (`Wear`): basic strength, post-capping strength, unloading stiffness, and the peak that it
-///   reloads to. Nothing is lost while it is elastic.
+/// - the backbone has the slope K to F_y, then the post-yield slope, and, where it is capped, from `x_c` a falling line to the residual
+///   strength;
+/// - unloading has the stiffness K (x_y/x_p)^a, with the peak displacement x_p of that direction (as in Takeda's model), but at least
+///   that of the peak's chord, F_p/x_p; a reversal before zero force reloads along the same line;
+/// - from zero force at u₀, reloading runs to the break point U = (1 − κ_D)·U_p, F = κ_F·F_p (U − u₀)/(x_p − u₀), with the residual
+///   displacement U_p of the peak of that direction, and on to the peak; where u₀ is past the break point, straight to the peak;
+/// - beyond the peak it is the backbone;
+/// - basic strength, post-capping strength, unloading stiffness and the target of reloading deteriorate by the energy of its excursions
+///   (`Degradation`); not while it is elastic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinchedHysteresis {
     plan: Pinching,
-    /// Farthest displacements on the backbone, forwards and backwards, m, both counted positive.
+    /// Peak displacements on the backbone, forwards and backwards, both positive \[m\].
     peaks: [f64; 2],
     displacement: f64,
     force: f64,
-    /// Where the force was last 0, m.
+    /// Last displacement of zero force \[m\].
     zero: f64,
-    pub(super) wear: Wear,
-    /// Where an unloading began that has not come to no force yet: displacement (m), force (N).
+    pub(super) degradation: Degradation,
+    /// Begin of an unloading that has not reached zero force: displacement \[m\], force \[N\].
     turn: Option<[f64; 2]>,
 }
 
 impl PinchedHysteresis {
-    /// As built, without load.
+    /// Undamaged, without load.
     #[must_use]
     pub fn new(plan: Pinching) -> Self {
         let yielded = plan.yield_force / plan.stiffness;
@@ -72,31 +73,31 @@ impl PinchedHysteresis {
             displacement: 0.0,
             force: 0.0,
             zero: 0.0,
-            wear: Wear::new(plan.deterioration, plan.yield_force, plan.stiffness),
+            degradation: Degradation::new(plan.deterioration, plan.yield_force, plan.stiffness),
             turn: None,
         }
     }
 
-    /// Force of the backbone that way at `displacement` past yield, N.
-    fn backbone(&self, way: f64, displacement: f64) -> f64 {
-        let strength = self.wear.strength[usize::from(way < 0.0)];
+    /// Force of the backbone of a direction at `displacement` past yield \[N\].
+    fn backbone(&self, direction: f64, displacement: f64) -> f64 {
+        let strength = self.degradation.strength[usize::from(direction < 0.0)];
         let yield_force = strength * self.plan.yield_force;
         let past = displacement - yield_force / self.plan.stiffness;
-        let hardened = yield_force + strength * self.plan.hardening * self.plan.stiffness * past;
+        let post_yield = yield_force + strength * self.plan.hardening * self.plan.stiffness * past;
         match self.plan.capping {
-            None => hardened,
+            None => post_yield,
             Some(capping) => {
-                let capped =
-                    self.cap(way, capping) - capping.slope * self.plan.stiffness * displacement;
-                hardened
+                let capped = self.cap(direction, capping)
+                    - capping.slope * self.plan.stiffness * displacement;
+                post_yield
                     .min(capped)
                     .max(capping.residual * self.plan.yield_force)
             }
         }
     }
 
-    /// Force where the post-capping line meets no displacement, N.
-    fn cap(&self, way: f64, capping: Capping) -> f64 {
+    /// Force of the post-capping line at zero displacement \[N\].
+    fn cap(&self, direction: f64, capping: Capping) -> f64 {
         let Capping {
             displacement,
             slope,
@@ -109,11 +110,12 @@ impl PinchedHysteresis {
             ..
         } = self.plan;
         let top = yield_force + hardening * stiffness * (displacement - yield_force / stiffness);
-        self.wear.capping[usize::from(way < 0.0)] * (top + slope * stiffness * displacement)
+        self.degradation.capping[usize::from(direction < 0.0)]
+            * (top + slope * stiffness * displacement)
     }
 
-    /// Where the backbone that way begins to fall, and where it stops to, m.
-    fn corners(&self, way: f64) -> [f64; 2] {
+    /// Begin and end of the post-capping branch of a direction \[m\].
+    fn cap_limits(&self, direction: f64) -> [f64; 2] {
         let Some(capping) = self.plan.capping else {
             return [f64::INFINITY; 2];
         };
@@ -123,44 +125,44 @@ impl PinchedHysteresis {
             hardening,
             ..
         } = self.plan;
-        let strength = self.wear.strength[usize::from(way < 0.0)];
-        let (cap, falls) = (self.cap(way, capping), capping.slope * stiffness);
+        let strength = self.degradation.strength[usize::from(direction < 0.0)];
+        let (cap, falls) = (self.cap(direction, capping), capping.slope * stiffness);
         let hardens = strength * hardening * stiffness;
         let at_none = strength * yield_force * (1.0 - strength * hardening);
         let begins = (cap - at_none) / (hardens + falls);
         [begins, (cap - capping.residual * yield_force) / falls]
     }
 
-    /// Stiffness at which a force that way unloads, N/m.
-    fn unloading(&self, way: f64) -> f64 {
-        let peak = self.peak(way);
+    /// Unloading stiffness from a force of a direction \[N/m\].
+    fn unloading(&self, direction: f64) -> f64 {
+        let peak = self.peak(direction);
         let ductility = peak * self.plan.stiffness / self.plan.yield_force;
-        // Never softer than the way there, from where the force was gone: what was taken is not given back twice.
-        let falls = self.wear.wears() || self.plan.capping.is_some();
+        // Never softer than the chord from the last zero force, so that no energy is released twice.
+        let falls = self.degradation.degrades() || self.plan.capping.is_some();
         let from = if falls {
-            (self.zero * way).clamp(0.0, 0.999 * peak)
+            (self.zero * direction).clamp(0.0, 0.999 * peak)
         } else {
             0.0
         };
-        let worn = self.wear.unloading
+        let degraded = self.degradation.unloading
             * self.plan.stiffness
             * ductility.powf(-self.plan.unloading_exponent);
-        worn.max(self.backbone(way, peak) / (peak - from))
+        degraded.max(self.backbone(direction, peak) / (peak - from))
     }
 
-    const fn peak(&self, way: f64) -> f64 {
-        if way > 0.0 {
+    const fn peak(&self, direction: f64) -> f64 {
+        if direction > 0.0 {
             self.peaks[0]
         } else {
             self.peaks[1]
         }
     }
 
-    /// Ends of the straight branches of a reloading from no force at `zero` to the peak, all counted along the way.
-    fn branches(&self, way: f64, zero: f64) -> [[f64; 2]; 2] {
-        let peak = self.peak(way);
-        let top = self.backbone(way, peak);
-        let permanent = peak - top / self.unloading(way);
+    /// Ends of the straight branches of reloading from zero force at `zero` to the peak, all along the direction.
+    fn branches(&self, direction: f64, zero: f64) -> [[f64; 2]; 2] {
+        let peak = self.peak(direction);
+        let top = self.backbone(direction, peak);
+        let permanent = peak - top / self.unloading(direction);
         let at = (1.0 - self.plan.displacement_factor) * permanent;
         if at <= zero {
             return [[peak, top]; 2];
@@ -174,9 +176,9 @@ impl PinchedHysteresis {
         ]
     }
 
-    /// Goes along a straight branch to `end` or as far as `to`; true where `to` was reached. All counted along the way.
-    fn along(&mut self, way: f64, end: [f64; 2], to: f64) -> bool {
-        let (from, force) = (self.displacement * way, self.force * way);
+    /// Moves along a straight branch to `end`, or to `to` before it; true where `to` was reached. All along the direction.
+    fn along(&mut self, direction: f64, end: [f64; 2], to: f64) -> bool {
+        let (from, force) = (self.displacement * direction, self.force * direction);
         let [end_at, end_force] = end;
         let reached = to < end_at;
         let force = if reached {
@@ -184,38 +186,42 @@ impl PinchedHysteresis {
         } else {
             end_force
         };
-        self.pass(way * if reached { to } else { end_at }, way * force);
+        self.pass(
+            direction * if reached { to } else { end_at },
+            direction * force,
+        );
         reached
     }
 
-    /// Goes straight to a place (m) and the force there (N).
+    /// Moves to a displacement \[m\] and the force there \[N\], with the work of a straight line.
     fn pass(&mut self, displacement: f64, force: f64) {
-        self.wear
+        self.degradation
             .work(0.5 * (self.force + force) * (displacement - self.displacement));
         (self.displacement, self.force) = (displacement, force);
     }
 
-    /// Unloads a force against the way, or comes back up to where an unloading began; true where `to` was reached. A force that
-    /// has unloaded to exactly zero still ends its excursion when the motion goes on.
-    fn elastic(&mut self, way: f64, to: f64) -> bool {
-        let unloads = self.turn.is_some_and(|[_, force]| force * way < 0.0);
-        if self.force * way < 0.0 || unloads {
+    /// Unloads a force against the direction, or reloads to the begin of an unloading; true where `to` was reached. A force that has
+    /// unloaded to exactly zero still ends its excursion when the motion continues.
+    fn elastic(&mut self, direction: f64, to: f64) -> bool {
+        let unloads = self.turn.is_some_and(|[_, force]| force * direction < 0.0);
+        if self.force * direction < 0.0 || unloads {
             if self.turn.is_none() {
                 self.turn = Some([self.displacement, self.force]);
-                self.wear
-                    .turned(0.5 * self.force * self.force / self.unloading(-way));
+                self.degradation
+                    .turned(0.5 * self.force * self.force / self.unloading(-direction));
             }
-            let end = self.displacement * way - self.force * way / self.unloading(-way);
-            if self.along(way, [end, 0.0], to) {
+            let end =
+                self.displacement * direction - self.force * direction / self.unloading(-direction);
+            if self.along(direction, [end, 0.0], to) {
                 return true;
             }
             self.zero = self.displacement;
             self.turn = None;
-            let side = usize::from(way < 0.0);
-            self.peaks[side] *= self.wear.ended(side);
+            let side = usize::from(direction < 0.0);
+            self.peaks[side] *= self.degradation.ended(side);
         }
         if let Some([at, force]) = self.turn {
-            if self.along(way, [at * way, force * way], to) {
+            if self.along(direction, [at * direction, force * direction], to) {
                 return true;
             }
             self.turn = None;
@@ -223,30 +229,30 @@ impl PinchedHysteresis {
         false
     }
 
-    fn go(&mut self, way: f64, to: f64) {
-        if self.elastic(way, to) {
+    fn go(&mut self, direction: f64, to: f64) {
+        if self.elastic(direction, to) {
             return;
         }
-        for end in self.branches(way, self.zero * way) {
-            if self.displacement * way < end[0] && self.along(way, end, to) {
+        for end in self.branches(direction, self.zero * direction) {
+            if self.displacement * direction < end[0] && self.along(direction, end, to) {
                 return;
             }
         }
-        for corner in self.corners(way) {
-            if self.peak(way) < corner && corner < to {
-                self.beyond(way, corner);
+        for limit in self.cap_limits(direction) {
+            if self.peak(direction) < limit && limit < to {
+                self.beyond(direction, limit);
             }
         }
-        if to > self.peak(way) {
-            self.beyond(way, to);
+        if to > self.peak(direction) {
+            self.beyond(direction, to);
         }
-        self.displacement = way * to;
+        self.displacement = direction * to;
     }
 
-    /// On along the backbone, which is straight until there (m along the way).
-    fn beyond(&mut self, way: f64, to: f64) {
-        self.peaks[usize::from(way < 0.0)] = to;
-        self.pass(way * to, way * self.backbone(way, to));
+    /// Moves along the backbone, which is straight up to `to` (along the direction) \[m\].
+    fn beyond(&mut self, direction: f64, to: f64) {
+        self.peaks[usize::from(direction < 0.0)] = to;
+        self.pass(direction * to, direction * self.backbone(direction, to));
     }
 }
 

@@ -62,33 +62,33 @@ fn deterioration_is_monotone_and_its_energy_is_the_work_done() {
         model.move_to(0.0009);
         model.move_to(-0.0009);
     }
-    assert_eq!(model.wear.strength, [1.0; 2]);
+    assert_eq!(model.degradation.strength, [1.0; 2]);
     model.move_to(0.0);
-    let (mut work, mut strength) = (0.0, model.wear.strength);
+    let (mut work, mut strength) = (0.0, model.degradation.strength);
     for cycle in 1..=30 {
         let amplitude = 1e-3 * (2.0 + 0.1 * f64::from(cycle));
         work += energy_along(&mut model, 0.0, &[amplitude, -amplitude, 0.0], 1e-5);
         assert!(
             model
-                .wear
+                .degradation
                 .strength
                 .iter()
                 .zip(strength)
                 .all(|(now, before)| *now <= before && *now >= 0.1),
             "{:?}",
-            model.wear.strength
+            model.degradation.strength
         );
-        strength = model.wear.strength;
+        strength = model.degradation.strength;
     }
     assert_eq!(strength, [0.1; 2], "worn out");
-    let counted = model.wear.energy[0] + model.wear.energy[1];
+    let counted = model.degradation.energy[0] + model.degradation.energy[1];
     assert!(
         (counted / work - 1.0).abs() < 1e-4,
         "{counted} J are counted, {work} J were done"
     );
 }
 
-const fn worn(rule: Deterioration) -> Pinching {
+const fn degraded(rule: Deterioration) -> Pinching {
     Pinching {
         deterioration: Some(rule),
         ..TIRES
@@ -99,7 +99,7 @@ const fn worn(rule: Deterioration) -> Pinching {
 /// the force is gone and another turn there cost nothing more; 1 mm farther costs its 1 J.
 #[test]
 fn the_unloading_stiffness_falls_by_what_it_took_until_it_turned() {
-    let mut model = PinchedHysteresis::new(worn(Deterioration {
+    let mut model = PinchedHysteresis::new(degraded(Deterioration {
         unloading: 40.0,
         ..NO_WEAR
     }));
@@ -126,14 +126,17 @@ fn the_unloading_stiffness_falls_by_what_it_took_until_it_turned() {
         "its strength is whole"
     );
     let backwards = model.move_to(-0.0038);
-    assert!(model.wear.unloading * 1e6 < softer, "both sides soften");
-    assert!((backwards + (1000.0 - 2e-4 * model.wear.unloading * 1e6)).abs() < 1e-9);
+    assert!(
+        model.degradation.unloading * 1e6 < softer,
+        "both sides soften"
+    );
+    assert!((backwards + (1000.0 - 2e-4 * model.degradation.unloading * 1e6)).abs() < 1e-9);
 }
 
 /// 4 J of 40 J until the force is gone at 4 mm: the peak backwards is at −(1 + 1/9) mm; with the break point at no displacement.
 #[test]
 fn the_peak_that_it_reloads_to_moves_out() {
-    let mut model = PinchedHysteresis::new(worn(Deterioration {
+    let mut model = PinchedHysteresis::new(degraded(Deterioration {
         reloading: 40.0,
         ..NO_WEAR
     }));
@@ -169,9 +172,9 @@ fn a_capped_backbone_falls_to_its_residual() {
             model.move_to(0.02 * f64::from(part) / f64::from(moves));
         }
         assert!(
-            (model.wear.energy[1] - 9.1).abs() < 1e-9,
+            (model.degradation.energy[1] - 9.1).abs() < 1e-9,
             "{} J",
-            model.wear.energy[1]
+            model.degradation.energy[1]
         );
     }
     let mut model = PinchedHysteresis::new(CAPPED);
@@ -236,14 +239,14 @@ fn without_a_capacity_nothing_wears() {
             deterioration: Some(NO_WEAR),
             ..plan
         });
-        for way in WAYS {
+        for direction in WAYS {
             assert_eq!(
-                whole.move_to(way).to_bits(),
-                unworn.move_to(way).to_bits(),
-                "{plan:?} at {way} m"
+                whole.move_to(direction).to_bits(),
+                unworn.move_to(direction).to_bits(),
+                "{plan:?} at {direction} m"
             );
         }
-        assert_eq!(unworn.wear.unloading, 1.0);
+        assert_eq!(unworn.degradation.unloading, 1.0);
     }
 }
 
@@ -265,13 +268,13 @@ fn modes_together_wear_it_out_within_its_capacity() {
             deterioration: Some(rule),
             ..CAPPED
         });
-        let (mut work, mut before) = (0.0, model.wear);
+        let (mut work, mut before) = (0.0, model.degradation);
         for cycle in 1..=60 {
             let amplitude = 1e-3 * (2.0 + 0.3 * f64::from(cycle));
             let taken = energy_along(&mut model, 0.0, &[amplitude, -amplitude, 0.0], 1e-5);
             assert!(taken >= 0.0, "cycle {cycle} gave back {taken} J");
             work += taken;
-            let now = model.wear;
+            let now = model.degradation;
             let pairs = now
                 .strength
                 .iter()
@@ -291,20 +294,20 @@ fn modes_together_wear_it_out_within_its_capacity() {
         }
         if reloading.is_finite() {
             assert!(
-                model.wear.energy[0] < capacity
-                    && model.wear.strength.iter().all(|left| *left < 0.3),
+                model.degradation.energy[0] < capacity
+                    && model.degradation.strength.iter().all(|left| *left < 0.3),
                 "{:?}",
-                model.wear
+                model.degradation
             );
         } else {
-            assert_eq!(model.wear.strength, [0.1; 2], "worn out");
+            assert_eq!(model.degradation.strength, [0.1; 2], "worn out");
             assert!(
-                model.wear.capping.iter().all(|left| *left < 0.1),
+                model.degradation.capping.iter().all(|left| *left < 0.1),
                 "{:?}",
-                model.wear.capping
+                model.degradation.capping
             );
         }
-        let counted = model.wear.energy[0] + model.wear.energy[1];
+        let counted = model.degradation.energy[0] + model.degradation.energy[1];
         assert!(
             (counted / work - 1.0).abs() < 1e-3,
             "{counted} J are counted, {work} J were done"

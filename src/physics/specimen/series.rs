@@ -1,11 +1,11 @@
-//! Two specimens one behind the other: one force, displacements that add. In: the displacement of both. Out: their force.
+//! Two specimens in series: one force, displacements that add. In: the displacement of both. Out: their force.
 
 use super::{RestoringForce, SpecimenModel};
 
 /// f₁(u) = f₂(x − u). Neither force falls while its displacement grows, so that over a move by Δx the difference
 /// f₁(u) − f₂(x − u) does not fall over u between u₀ and u₀ + Δx and changes its sign there: the root is always bracketed, and each
-/// part moves the way the whole does. Where both parts give way at one force there are many roots: the first part moves only as far
-/// as the second leaves it no choice, so that many small moves end where a large one does. Found by false position with the
+/// part moves in the direction of the whole. Where both parts yield at one force there are many roots: the first part moves only as far
+/// as it must, so that many small moves end where a large one does. Found by false position with the
 /// Illinois rule, with bisection where it is slow, to the last bits of u.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
@@ -19,7 +19,7 @@ pub struct Series {
 
 /// Evaluations of one move, at most: bisection alone from 1 m to 1e-19 m takes 64.
 const MOST_TRIALS: usize = 200;
-/// Of a displacement: less is none.
+/// Relative resolution of a displacement.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Series {

@@ -1,31 +1,30 @@
-//! Measured force–displacement points. In: a displacement. Out: the force there, exact however large the move.
+//! Measured force–displacement points. In: a displacement. Out: the force there, exact for a move of any length.
 
 use super::{RestoringForce, SpecimenModel};
 
 /// Measured points, from the least displacement to the largest, through the origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Where the points were read, as whoever read them calls it.
+    /// Name of the source of the points.
     pub file: String,
-    /// Displacement (m), force (N).
+    /// Displacement \[m\], force \[N\].
     pub points: Vec<[f64; 2]>,
     pub unloading: Unloading,
-    /// The forces of the file times this; 1 unless a measured stiffness replaces the table's.
+    /// Factor of the forces of the source; 1 unless a measured stiffness replaces that of the table.
     pub scale: f64,
 }
 
-/// How a measured curve goes back.
+/// Unloading of a measured curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unloading {
-    /// Parallel to the steepest stretch of the table.
+    /// Parallel to the steepest segment of the table.
     InitialStiffness,
-    /// Back the way it came: elastic.
+    /// Along the loading curve: elastic.
     AlongTheCurve,
 }
 
 impl Table {
-    /// Slope of the stretches on either side of the origin, the steeper one, N/m; with elastic unloading parallel to the
-    /// steepest stretch, that one.
+    /// The steeper slope of the two segments at the origin \[N/m\]; with unloading parallel to the steepest segment, the slope of that.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {
         match self.unloading {
@@ -36,7 +35,7 @@ impl Table {
         }
     }
 
-    /// Slope of the steepest of the stretches that count, N/m.
+    /// Slope of the steepest segment in range \[N/m\].
     pub(super) fn steepest(&self, counts: impl Fn(&[[f64; 2]]) -> bool) -> f64 {
         let slope = |pair: &[[f64; 2]]| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]);
         self.scale
@@ -48,7 +47,7 @@ impl Table {
                 .fold(0.0, f64::max)
     }
 
-    /// Force of the curve at `displacement`, N; beyond its ends the last force holds.
+    /// Force of the curve at `displacement` \[N\]; constant beyond its ends.
     #[must_use]
     pub fn force(&self, displacement: f64) -> f64 {
         let after = self.points.partition_point(|[x, _]| *x < displacement);
@@ -68,7 +67,7 @@ impl Table {
     }
 }
 
-/// The model of a table, by the way it unloads.
+/// The model of a table, by its unloading.
 #[must_use]
 pub fn model(table: &Table) -> SpecimenModel {
     match table.unloading {
@@ -81,7 +80,7 @@ pub fn model(table: &Table) -> SpecimenModel {
     }
 }
 
-/// R = g(X), whatever came before: elastic, if not linear.
+/// R = g(X), independent of the path: non-linear elastic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlongTheCurve {
     table: Table,
@@ -97,21 +96,21 @@ impl RestoringForce for AlongTheCurve {
     }
 }
 
-/// R = K (X − p), K the steepest slope of the table, between two strengths, one each way. On the first loading each way the
-/// strength is the curve g itself, which begins where it bears its elastic strength; coming back, it is the force reached there before,
-/// until the farthest point is reached again and the curve goes on. p moves only at a strength and its way, so that nothing gives back energy it did not take.
+/// R = K (X − p) with the steepest slope K of the table, between two strengths, one in each direction. On initial loading the strength is
+/// the curve g itself, from its elastic strength on; on reloading it is the force of the peak so far, until the peak is reached again and
+/// the curve continues. p moves only at a strength and in its direction, so that no energy is released that was not absorbed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlasticCurve {
     table: Table,
     stiffness: f64,
-    /// Farthest points on the curve, forwards and backwards, m.
+    /// Peak displacements on the curve, forwards and backwards \[m\].
     farthest: [f64; 2],
     displacement: f64,
     force: f64,
 }
 
 impl PlasticCurve {
-    /// The curve from where it carries no load, which nobody has left yet.
+    /// Undamaged, at zero force.
     #[must_use]
     pub fn new(table: Table) -> Self {
         let stiffness = table.initial_stiffness();
@@ -127,12 +126,12 @@ impl PlasticCurve {
     }
 }
 
-/// How much the force that the elastic line lacks counts against the force of the curve: what is steeper than κ/(1 + κ) of
-/// the steepest stretch, 99 %, is still elastic; so no force of a first loading is off its curve by more than 1 % of the strength.
+/// κ, weight of the difference to the elastic line against the force of the curve: a segment steeper than κ/(1 + κ) = 99 % of the
+/// steepest one is still elastic, so that no force of the initial loading differs from its curve by more than 1 % of the strength.
 const KAPPA: f64 = 100.0;
 
-/// Where the curve first bears its elastic strength F_e = max(g − κ (K x − g)), m, one way. A greatest value of continuous
-/// things is continuous: points that differ by little have strengths that do.
+/// Displacement at which the curve first reaches its elastic strength F_e = max(g − κ (K x − g)) in one direction \[m\]. The maximum of
+/// continuous functions is continuous: similar points have similar strengths.
 fn elastic_to(table: &Table, stiffness: f64, way: f64) -> f64 {
     let mut curve: Vec<[f64; 2]> = table
         .points
@@ -239,7 +238,7 @@ mod tests {
         }
     }
 
-    /// Out to 3 mm and back to no force: the area under the curve less the triangle that comes back.
+    /// To 3 mm and back to zero force: the area under the curve minus the triangle of unloading.
     #[test]
     fn energy_of_one_way_out_and_back() {
         let mut model = PlasticCurve::new(table(&POINTS, Unloading::InitialStiffness));

@@ -1,8 +1,8 @@
-//! What holds for every behaviour, and what its tests share.
+//! Tests of all behaviours, and their common helpers.
 
 use super::*;
 
-/// ∫ R dX from `from` (where the model stands) through `turns`, by trapezia of at most `step` (m), J.
+/// ∫ R dX from `from` (the present displacement) through `turns`, by trapezia of at most `step` \[m\], in \[J\].
 pub fn energy_along(model: &mut impl RestoringForce, from: f64, turns: &[f64], step: f64) -> f64 {
     let (mut place, mut force, mut energy) = (from, model.move_to(from), 0.0);
     for to in turns {

@@ -1,6 +1,6 @@
-//! Mean and scatter of the readings at one place. It knows no rig.
+//! Mean and standard deviation of samples. In: numbers. Out: numbers. It knows no instrument.
 
-/// NaN of nothing.
+/// Arithmetic mean; NaN without values.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "far fewer values than 2^53")]
 pub fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {

@@ -1,6 +1,6 @@
 //! Beams by geometry: stiffness at the struck section and the mass that moves with it in the first mode.
 
-use super::portal_mass::EquivalentMasses;
+use super::portal::mass::EquivalentMasses;
 
 /// A beam by geometry: already its stiffness at the struck section (N/m), and what it was made from.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,11 +2,11 @@
 
 use std::ops::{Add as _, Sub as _};
 
-use crate::integrator::step_form::Matrices;
-use crate::matrix::{Matrix as _, Vector};
+use super::matrices::Matrices;
+use super::matrix::{Matrix as _, Vector};
 
 /// Energies at the end of a step, all in J, cumulated from the start; of displacements and velocities against the ground
-/// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90: what an absolute one adds is the ground's own work). They add up:
+/// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90; the absolute form adds the work of the ground). They add up:
 /// `kinetic + restoring + damping + error = input`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct FrameEnergies {
@@ -18,7 +18,7 @@ pub struct FrameEnergies {
     pub damping: f64,
     /// ∫ FᵀẊ dt; under a ground motion −∫ ẊᵀMι `ü_g` dt.
     pub input: f64,
-    /// What remains of the input: the integration error, and under α-OS with α < 0 what it damps numerically. With the
+    /// The rest of the input: the integration error, and under α-OS with α < 0 the numerical damping. With the
     /// tangent form it is rounding as long as the specimen is linear.
     pub error: f64,
 }

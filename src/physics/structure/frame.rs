@@ -31,7 +31,7 @@ pub struct Storey {
     pub stiffness_uncertainty: f64,
     /// m
     pub height: Option<f64>,
-    /// Storey shear against drift, what a virtual rig bends.
+    /// Restoring-force model: storey shear against storey drift.
     pub behaviour: Behaviour,
     /// On the load cells of a virtual rig, N·s/m of drift velocity.
     pub damping: f64,
@@ -88,7 +88,7 @@ impl Frame {
         self.mass.len()
     }
 
-    /// ιᵀMι, kg: what moves with the ground.
+    /// ιᵀMι \[kg\]: the mass that moves with the ground.
     #[must_use]
     pub fn total_mass(&self) -> f64 {
         self.mass.iter().flatten().sum()

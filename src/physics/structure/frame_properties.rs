@@ -4,14 +4,14 @@
 use thiserror::Error;
 
 use crate::contact::contact_time_step::Approach;
-use crate::frame::BandFactor;
-use crate::frame::{
+use crate::integrator::Integrator;
+use crate::integrator::stability::{Met, longest_stable_step};
+use crate::structure::BandFactor;
+use crate::structure::frame::Frame;
+use crate::structure::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand,
     damping_matrix, modes, storey_stiffness,
 };
-use crate::integrator::Integrator;
-use crate::integrator::stability::{Met, longest_stable_step};
-use crate::structure::frame::Frame;
 
 /// A frame, ready to be integrated.
 #[derive(Clone, Debug)]
@@ -55,7 +55,7 @@ impl FrameProperties {
         self.modes.critical_time_step()
     }
 
-    /// Effective mass of one floor, 1/(e_sᵀM⁻¹e_s), kg: what a blow of no duration meets there.
+    /// Effective mass of one floor, 1/(e_sᵀM⁻¹e_s), kg: the mass that an impulse meets there.
     #[must_use]
     pub fn struck_mass(&self, struck: usize) -> f64 {
         let mut push = vec![0.0; self.matrices.order()];
@@ -69,7 +69,7 @@ impl FrameProperties {
 
     /// A tenth of the shortest period there is while a striker touches a floor, s. Under a contact of finite stiffness that is
     /// the period of frame and striker with the contact's tangent at its deepest ([`Approach::contact_stiffness`]): a longer step
-    /// would not show the blow. A contact without stiffness of its own has none.
+    /// would not resolve the impact. None for a contact without stiffness.
     #[must_use]
     pub fn critical_on_impact(&self, struck: usize, approach: &Approach) -> f64 {
         let alone = self.critical_time_step();

@@ -1,5 +1,5 @@
-//! How well an actuator follows, and what that does to the run: the field's monitors of a hybrid test, one degree of
-//! freedom each. In: at every step the place that was asked for, the place that was measured, the force. Out: sums so far.
+//! Tracking monitors of a hybrid test, one for each degree of freedom. In: commanded displacement, measured displacement and force of
+//! every step. Out: sums so far.
 //! It holds no rig: whoever does compares them with the limits.
 //!
 //! With d_c commanded, d_m measured and r_m the force read, by the trapezoidal rule over the steps:
@@ -11,8 +11,8 @@
 //! peak error          max |d_m − d_c|                          m
 //! ```
 //!
-//! Where the recursion takes another force r* than the one read, as under the I-modification, r* = r_m − K_I(d_m − d_c), it
-//! supposes that the specimen goes on from d_m to d_c along K_I. So do the monitors:
+//! Where the recursion uses an effective force r* in place of the reading, as under the I-modification, r* = r_m − K_I(d_m − d_c), it
+//! assumes that the specimen moves from d_m to d_c along K_I. So do the monitors:
 //!
 //! ```text
 //! E_err = ∫ r* dd_c − (∫ r_m dd_m + ∫_{d_m}^{d_c} r dx),    ∫_{d_m}^{d_c} r dx = ½(r_m + r*)(d_c − d_m)
@@ -27,14 +27,14 @@
 //! positive: it takes energy out, as damping would. A share of the input, it is the one number to stop a test by.
 //! **Tracking indicator**: the area that command against measurement encloses. It falls as long as
 //! the actuator lags, and rises while it leads; an error in proportion leaves it where it is.
-//! **NRMS and peak error** tell of the size, and of no direction.
+//! **NRMS and peak error** give the size, not the direction.
 
 use serde::{Deserialize, Serialize};
 
 /// Share of the input energy at which a run is remarked on. Half a damping ratio of a per cent over a dozen cycles is of
 /// this size: more of it shows in the results.
 pub const WARN: f64 = 0.02;
-/// Share of the input energy at which the rig is held, where the plan says nothing else.
+/// Default fraction of the input energy at which the rig is held.
 pub const HOLD: f64 = 0.05;
 
 /// What the monitors show after a step.
@@ -51,7 +51,7 @@ pub struct Tracking {
 }
 
 impl Tracking {
-    /// All axes of a specimen told as one: energies and areas add, of the others the largest counts.
+    /// All axes of a specimen together: energies and areas add, of the others the largest counts.
     #[must_use]
     pub fn together(axes: &[Self]) -> Self {
         axes.iter().fold(Self::default(), |all, axis| Self {
@@ -87,22 +87,27 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// From what was asked for (m), measured (m) and read (N) before the first step.
+    /// From the command \[m\], the measured displacement \[m\] and force \[N\] before the first step.
     #[must_use]
     pub fn new(commanded: f64, measured: f64, force: f64) -> Self {
-        Self::new_as(commanded, measured, force, force)
+        Self::with_effective_force(commanded, measured, force, force)
     }
 
     /// The same, where a correction would have `taken` (N) for the force at the command; the recursion begins with the one read.
     #[must_use]
-    pub fn new_as(commanded: f64, measured: f64, force: f64, taken: f64) -> Self {
+    pub fn with_effective_force(
+        commanded: f64,
+        measured: f64,
+        force: f64,
+        effective_force: f64,
+    ) -> Self {
         let mut monitor = Self {
             commanded,
             measured,
             force,
             corrected: 0.0,
             integrated: 0.0,
-            behind_at_start: work_behind((commanded, measured), force, taken - force),
+            behind_at_start: work_behind((commanded, measured), force, effective_force - force),
             errors: 0.0,
             commands: 0.0,
             tracking: Tracking::default(),
@@ -113,12 +118,18 @@ impl Monitor {
 
     /// Takes the end of a step.
     pub fn take(&mut self, commanded: f64, measured: f64, force: f64) -> Tracking {
-        self.take_as(commanded, measured, force, force)
+        self.take_effective(commanded, measured, force, force)
     }
 
     /// The same, where the recursion takes `taken` (N) for the force at the command.
-    pub fn take_as(&mut self, commanded: f64, measured: f64, force: f64, taken: f64) -> Tracking {
-        let corrected = taken - force;
+    pub fn take_effective(
+        &mut self,
+        commanded: f64,
+        measured: f64,
+        force: f64,
+        effective_force: f64,
+    ) -> Tracking {
+        let corrected = effective_force - force;
         let (asked, went) = (commanded - self.commanded, measured - self.measured);
         let tracking = &mut self.tracking;
         self.integrated += 0.5 * (self.force + force) * (asked - went)
@@ -133,7 +144,7 @@ impl Monitor {
         self.tracking
     }
 
-    /// What following has come to so far.
+    /// The tracking error so far.
     #[must_use]
     pub const fn tracking(&self) -> Tracking {
         self.tracking
@@ -221,18 +232,19 @@ mod tests {
     ) -> Vec<f64> {
         let angle = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
         let place = |angle: f64| amplitude * (angle - phase).sin();
-        let taken =
+        let effective_force =
             |commanded: f64, measured: f64| force(measured) - operator * (measured - commanded);
         let first = place(0.0);
-        let mut monitor = Monitor::new_as(0.0, first, force(first), taken(0.0, first));
+        let mut monitor =
+            Monitor::with_effective_force(0.0, first, force(first), effective_force(0.0, first));
         let steps = (1..=2 * STEPS).map(|step| {
             let (commanded, measured) = (amplitude * angle(step).sin(), place(angle(step)));
             monitor
-                .take_as(
+                .take_effective(
                     commanded,
                     measured,
                     force(measured),
-                    taken(commanded, measured),
+                    effective_force(commanded, measured),
                 )
                 .energy_error
         });
@@ -284,11 +296,12 @@ mod tests {
     #[test]
     fn a_correction_of_what_flows_is_an_error() {
         let (flow, behind, operator, step) = (5.0, 1e-3, STIFFNESS, 1e-4);
-        let mut monitor = Monitor::new_as(0.1, 0.1 - behind, flow, flow + operator * behind);
+        let mut monitor =
+            Monitor::with_effective_force(0.1, 0.1 - behind, flow, flow + operator * behind);
         let mut last = Tracking::default();
         for index in 1..=100 {
             let commanded = 0.1 + step * f64::from(index);
-            last = monitor.take_as(
+            last = monitor.take_effective(
                 commanded,
                 commanded - behind,
                 flow,

@@ -1,5 +1,5 @@
-//! A smooth way of an actuator between two places: a cubic whose ends have a place and a velocity each. In: the ends and
-//! the time between them. Out: place, velocity and what follows from them at any time, the extremes in closed form.
+//! A smooth trajectory of an actuator: Hermite's cubic between two positions with a velocity each. In: the ends and the time between
+//! them. Out: position, velocity and acceleration at any time, peaks in closed form.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,7 +27,7 @@ pub struct Rate {
 }
 
 impl Path {
-    /// From a place with a velocity at constant acceleration: for exactly so long.
+    /// From a position with a velocity, at constant acceleration for `seconds`.
     #[must_use]
     pub fn accelerated(from: f64, start_velocity: f64, acceleration: f64, seconds: f64) -> Self {
         let end_velocity = start_velocity + acceleration * seconds;
@@ -75,7 +75,7 @@ impl Path {
         }
     }
 
-    /// Largest speed on the way, m/s: at an end, or where the acceleration vanishes.
+    /// Peak speed \[m/s\]: at an end, or where the acceleration is zero.
     #[must_use]
     pub fn fastest(&self) -> f64 {
         let Rate {
@@ -92,7 +92,7 @@ impl Path {
             .max(self.end_velocity.abs())
     }
 
-    /// Lowest and highest place on the way, m: the ends, and where the velocity vanishes.
+    /// Lowest and highest position \[m\]: at the ends, or where the velocity is zero.
     #[must_use]
     pub fn reach(&self) -> (f64, f64) {
         let Rate {

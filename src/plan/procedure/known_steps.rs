@@ -1,7 +1,7 @@
 //! How many steps a procedure that integrates takes, where the plan alone determines it. In: a procedure, the plan around it. Out: an
 //! upper bound of its steps, or none where it depends on results that are measured before. It runs nothing.
 
-use crate::physics::frame::Damping;
+use crate::physics::structure::Damping;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::formula::{Formula, NoResults};
 use crate::plan::{Escalate, Impact, ImpactTarget, Plan, Shake, Stepping, Striker, step_count};

@@ -8,7 +8,7 @@ pub(crate) mod devices;
 pub(crate) mod limits;
 
 use super::{AxisPlan, Interval};
-pub use crate::physics::perturbation::ReadingErrors;
+pub use crate::physics::reintegration::perturbation::ReadingErrors;
 
 /// The rig of a run, as the plan specifies it.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Frames in a plan: the ground motion under them, their damping.
 //! In: numbers that `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
-use crate::physics::frame::Damping;
+use crate::physics::structure::Damping;
 use crate::plan::Stepping;
 use crate::plan::formula::Formula;
 

@@ -1,6 +1,6 @@
 //! The motion that a shake leaves to the next procedure. In: a shake and the ground motions. Out: its end, in words, and the help.
 
-use crate::physics::frame::Damping;
+use crate::physics::structure::Damping;
 use crate::plan::formula::Formula;
 use crate::plan::{Ground, Shake};
 use crate::procedures::facts::Motion;

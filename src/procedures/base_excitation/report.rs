@@ -1,7 +1,7 @@
 //! A frame on moving ground, as a report states it: its storeys, the ground-motion record, the modes, the response of each storey, the
 //! energy. In: a plan and a record. Out: blocks.
 
-use crate::physics::frame::{SymmetricBand, storeys_of};
+use crate::physics::structure::{SymmetricBand, storeys_of};
 use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping::energy;

@@ -1,7 +1,7 @@
 //! The results of a shake: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in the
 //! schema's order. It moves nothing.
 
-use crate::physics::frame::{FrameState, Modes, drifts};
+use crate::physics::integrator::state::FrameState;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::procedures::stepping::tracking_summary::Followed;
 use crate::record::NamedResult;

@@ -3,7 +3,7 @@
 
 use super::results::ShakeSummary;
 use super::setting::Setting;
-use crate::physics::frame::FrameSolver;
+use crate::physics::integrator::solver::FrameSolver;
 use crate::physics::structure::ground::acceleration_at;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Ground, Shake};
@@ -120,7 +120,7 @@ impl Stepped for Shaken<'_> {
     }
 
     fn taken_at_start(&self, start: &Start) -> Vec<f64> {
-        self.solver.taken_at(
+        self.solver.effective_force_at(
             &start.commanded,
             &start.reading.displacement,
             &start.reading.force,
@@ -128,7 +128,7 @@ impl Stepped for Shaken<'_> {
     }
 
     fn taken(&self) -> Vec<f64> {
-        self.solver.taken().to_vec()
+        self.solver.effective_force().to_vec()
     }
 
     fn complete(&mut self, reading: &Reading) {

@@ -2,10 +2,10 @@
 //! contributions of each source to each number. The frame is re-integrated along its recorded path, under the same ground.
 
 use super::setting::Setting;
-use crate::physics::frame::FrameError;
-use crate::physics::perturbation::Perturbation;
+use crate::physics::integrator::input::FrameError;
 use crate::physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
+use crate::physics::reintegration::perturbation::Perturbation;
 use crate::physics::structure::ground::acceleration_at;
 use crate::plan::{Ground, Shake};
 use crate::procedures::perturbed_inputs::LEADS_ELSEWHERE;

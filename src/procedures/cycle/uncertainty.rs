@@ -5,7 +5,7 @@ use std::convert::Infallible;
 
 use super::results::results;
 use crate::physics::identification::cyclic::{LoopPoint, loop_of};
-use crate::physics::perturbation::{Perturbation, ReadingErrors};
+use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
 use crate::plan::formula::ProcedureId;
 use crate::procedures::fit_uncertainty::Fits;
 use crate::procedures::loop_sampling::{left_open_by, of_open};

@@ -9,7 +9,7 @@ use super::steps::{ImpactSteps, Kept};
 use super::storey_uncertainty;
 use super::summary::StruckSummary;
 use super::uncertainty::ImpactUncertainty;
-use crate::physics::impact::{FrameImpactSolver, ImpactSolver, Striking};
+use crate::physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::{Impact, ImpactTarget, Plan, StoreyTarget};
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
@@ -185,13 +185,13 @@ fn on_storey(
 ) -> Result<(FrameImpactSolver, StifferSprings), Stop> {
     let unloaded = vec![0.0; frame.order()];
     let input = start.input(frame, &plan.stepping, &unloaded);
-    let striking = Striking {
+    let setup = ImpactSetup {
         struck: target.storey,
-        ..setting.input.striking()
+        ..setting.input.setup()
     };
     let time_step = frame.steps.time_step;
     let solver =
-        FrameImpactSolver::on(&input, &striking).map_err(|error| not_stepped(time_step, &error))?;
+        FrameImpactSolver::on(&input, &setup).map_err(|error| not_stepped(time_step, &error))?;
     let matrices = &frame.properties.matrices;
     Ok((
         solver,

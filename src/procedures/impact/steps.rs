@@ -4,7 +4,7 @@
 
 use super::summary::StruckSummary;
 use crate::physics::impact::ImpactSolver;
-use crate::physics::matrix::Vector;
+use crate::physics::structure::matrix::Vector;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Stepping, Until};
 use crate::procedures::stepping::axes::AxesState;
@@ -115,7 +115,7 @@ impl<V: Vector> Stepped for Struck<'_, V> {
             force,
             ..
         } = &start.reading;
-        let taken = self.solver.taken_at(
+        let taken = self.solver.effective_force_at(
             V::view_of(&start.commanded),
             V::view_of(displacement),
             V::view_of(force),
@@ -124,7 +124,7 @@ impl<V: Vector> Stepped for Struck<'_, V> {
     }
 
     fn taken(&self) -> Vec<f64> {
-        V::slice_of(&self.solver.taken()).to_vec()
+        V::slice_of(&self.solver.effective_force()).to_vec()
     }
 
     fn complete(&mut self, reading: &Reading) {

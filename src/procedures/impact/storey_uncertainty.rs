@@ -5,7 +5,6 @@ use super::setting::{Setting, contact_law};
 use super::uncertainty::{at_least, contact_formulas, no_known_force, same, whole_steps};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
-use crate::physics::perturbation::Perturbation;
 use crate::physics::reintegration::frame::{Blow, Floors, FrameRun, StrikerOutcome};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::impact::OUTCOMES;

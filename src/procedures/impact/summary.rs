@@ -2,12 +2,12 @@
 //! storey. In: the ends of steps. Out: numbers. It moves nothing.
 
 use crate::physics::contact::state::StepState;
-use crate::physics::frame::{drifts, shears};
 use crate::physics::impact::summary::{ImpactSummary, SummaryBuilder};
 use crate::physics::impact::{ImpactInput, ImpactState};
-use crate::physics::integrator::solver::State;
-use crate::physics::matrix::Vector;
+use crate::physics::integrator::state::State;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
+use crate::physics::structure::matrix::Vector;
+use crate::physics::structure::{drifts, shears};
 
 /// An impact on one degree of freedom, or on one floor of a frame.
 pub(crate) struct StruckSummary {

@@ -6,9 +6,9 @@ use super::setting::{Setting, StruckStructure};
 use crate::physics::contact::state::ContactLaw;
 use crate::physics::impact::ImpactError;
 use crate::physics::impact::summary::ImpactSummary;
-use crate::physics::perturbation::Perturbation;
 use crate::physics::reintegration::hysteresis_replay::{Reading, RecordedPath};
-use crate::physics::reintegration::impact::{OUTCOMES, Outcome, foretold, rerun};
+use crate::physics::reintegration::impact::{OUTCOMES, Outcome, predicted_velocities, rerun};
+use crate::physics::reintegration::perturbation::Perturbation;
 use crate::plan::formula::{Formula, ProcedureId, Results};
 use crate::plan::{Contact, Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::perturbed_inputs::{
@@ -136,8 +136,9 @@ impl<'run> ImpactUncertainty<'run> {
                 input.resolution,
             );
         }
-        let velocities = foretold(input, self.plan.until, setting.steps().count, &readings);
-        RecordedPath::under_way(
+        let velocities =
+            predicted_velocities(input, self.plan.until, setting.steps().count, &readings);
+        RecordedPath::continuous(
             readings,
             (&velocities, input.time_step),
             input.stiffness,

@@ -1,8 +1,8 @@
 //! The impact that a series repeats, on one degree of freedom or on one storey of a frame. In: the impact of the plan, evaluated once; a
 //! velocity for each repetition. Out: each repetition as an impact of its own. It decides nothing about the next one.
 
-use crate::physics::frame::Unloading;
 use crate::physics::impact::ImpactInput;
+use crate::physics::structure::Unloading;
 use crate::plan::{Escalate, Impact, ImpactTarget, Plan, Striker};
 use crate::procedures::impact::run::{ImpactRun, UncertaintyInputs, strike};
 use crate::procedures::impact::setting::Setting;

@@ -3,7 +3,7 @@
 
 use super::repeated_impact::{RepeatedImpact, velocities};
 use super::results::{Left, list, number, results};
-use crate::physics::frame::Unloading;
+use crate::physics::structure::Unloading;
 use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Between, Escalate, Plan};
 use crate::procedures::impact::run::ImpactRun;

@@ -1,8 +1,8 @@
 //! Several axes in one step: the tracking of each, and the report to an observer of the run. In: targets, readings, the end of a step.
 //! Out: numbers of each axis. It moves nothing.
 
-use crate::physics::integrator::solver::State;
-use crate::physics::matrix::Vector;
+use crate::physics::integrator::state::State;
+use crate::physics::structure::matrix::Vector;
 use crate::physics::tracking::monitor::{Monitor, Tracking};
 use crate::rig::Reading;
 use crate::run::{AxisReport, StepReport};
@@ -52,7 +52,7 @@ impl Monitors {
                 .zip(reading.force.iter().zip(taken)),
         );
         let monitor = |(commanded, (measured, (force, taken))): (&f64, (&f64, (&f64, &f64)))| {
-            Monitor::new_as(*commanded, *measured, *force, *taken)
+            Monitor::with_effective_force(*commanded, *measured, *force, *taken)
         };
         Self(axes.map(monitor).collect())
     }
@@ -72,7 +72,7 @@ impl Monitors {
         let read = reading.displacement.iter().zip(&reading.force).zip(taken);
         let axes = self.0.iter_mut().zip(commanded).zip(read);
         axes.map(|((monitor, to), ((measured, force), taken))| {
-            monitor.take_as(*to, *measured, *force, *taken)
+            monitor.take_effective(*to, *measured, *force, *taken)
         })
         .collect()
     }

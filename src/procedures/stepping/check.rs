@@ -6,8 +6,8 @@ use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole as whole_number;
 use crate::language::check::messages::{frames as fault, methods, values, whole};
-use crate::physics::frame::storeys_of;
 use crate::physics::structure::frame_properties::FrameProperties;
+use crate::physics::structure::storeys_of;
 use crate::plan::formula::{Formula, NoResults, Operator};
 use crate::plan::{
     Contact, Frame, InspectTrigger, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in,

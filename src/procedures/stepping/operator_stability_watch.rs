@@ -3,9 +3,9 @@
 //! observation. It stops nothing.
 
 use super::start::Start;
-use crate::physics::frame::{FrameMatrices, drifts, shears, storeys_of};
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
+use crate::physics::structure::{FrameMatrices, drifts, shears, storeys_of};
 use crate::plan::{Integrator, Mode, Stepping};
 use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit;
 use crate::record::EventKind;

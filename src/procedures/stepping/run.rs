@@ -3,8 +3,9 @@
 //! no ground and no striker.
 
 use super::pace::Pace;
-use crate::physics::frame::{Damping, Tangents, storeys_of};
+use crate::physics::integrator::tangents::Tangents;
 use crate::physics::structure::frame_properties::FrameProperties;
+use crate::physics::structure::{Damping, storeys_of};
 use crate::plan::{
     Frame, Integrator, MOST_STEPS, Plan, ShakeDamping, Stepping, rayleigh, step_count, steps_in,
 };

@@ -4,7 +4,7 @@
 use std::fmt::Display;
 
 use super::run::FrameSteps;
-use crate::physics::frame::FrameInput;
+use crate::physics::integrator::input::FrameInput;
 use crate::plan::Stepping;
 use crate::rig::{DeclaredNoise, Reading};
 use crate::run::stop::Stop;

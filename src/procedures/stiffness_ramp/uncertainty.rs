@@ -5,7 +5,7 @@ use std::convert::Infallible;
 
 use super::points::{Point, point, secant};
 use crate::physics::identification::loop_energy;
-use crate::physics::perturbation::{Perturbation, ReadingErrors};
+use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
 use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::physics::statistics::samples::mean;
 use crate::plan::StiffnessRamp;

@@ -3,8 +3,8 @@
 //! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
 use super::uncertainty::{NOISE, RestUncertainty};
-use crate::physics::frame::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::physics::structure::frame_properties::FrameProperties;
+use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::formula::{Formula, ResultValue};
 use crate::plan::{Frame, FrameUnload, Plan, Unload};
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
@@ -217,7 +217,7 @@ pub(crate) fn to_rest(
     steps.push(step_of(before, start, &at, secants, session));
     let noise = session.guard.declared_noise();
     let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
-    let detectable = (NOISE * noise.force).max(unloading.felt(noise.resolution.max(rounding)));
+    let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
     let mut left = largest(&at.force);
     let within = within.unwrap_or_else(|| detectable.max(SMALL * left).max(f64::MIN_POSITIVE));
     let mut path = UnloadingPath::new(unloading, (noise.force, noise.resolution), loaded(&at));
@@ -228,7 +228,7 @@ pub(crate) fn to_rest(
         if left <= within {
             return Ok(rest(at));
         }
-        let increments = path.way(&at.force);
+        let increments = path.moves(&at.force);
         let target: Vec<f64> = session
             .guard
             .commanded()

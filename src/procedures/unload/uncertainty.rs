@@ -6,8 +6,8 @@
 //! f are off by −K⁻¹f in that place. With whatever stiffness it was sent there, it rests at the same place: to first order
 //! that is no source. What left the specimen where it is, a blow say, is not measured by where it rests, and no source of it.
 
-use crate::physics::frame::{Loaded, Unloading};
 use crate::physics::integrator::tangent::NOISE_MULTIPLE;
+use crate::physics::structure::{Loaded, Unloading};
 use crate::plan::Plan;
 use crate::plan::formula::ProcedureId;
 use crate::record::{Rest, UnloadStep};
@@ -81,7 +81,7 @@ impl<'run> RestUncertainty<'run> {
             values.fold(0.0, |most: f64, value| most.max(value.abs()))
         };
         let told = NOISE * most(&mut errors.iter().map(|error| error.0));
-        let told = told.max(unloading.felt(most(&mut errors.iter().map(|error| error.1))));
+        let told = told.max(unloading.force_of(most(&mut errors.iter().map(|error| error.1))));
         if !exact && most(&mut rest.force.iter().copied()) > told {
             let RestUncertainty {
                 procedure, blow, ..
@@ -155,7 +155,7 @@ impl<'run> RestUncertainty<'run> {
 
 /// Forces (N) that a source makes of the floors move the place where none is left.
 fn moves(rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) {
-    for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.way(force)) {
+    for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.moves(force)) {
         parts.extend((amount != 0.0).then(|| Contribution::new(source, amount)));
     }
 }

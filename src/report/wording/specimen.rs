@@ -2,8 +2,8 @@
 //! function that prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
 use crate::physics::structure::beam::first_mode_mass_factor;
-use crate::physics::structure::portal_limit::mechanism_limit;
-use crate::physics::structure::portal_mass::{EquivalentMasses, equivalent_masses};
+use crate::physics::structure::portal::limit::mechanism_limit;
+use crate::physics::structure::portal::mass::{EquivalentMasses, equivalent_masses};
 use crate::plan::{
     Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal,
     Sections, Unloading,
@@ -72,7 +72,7 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
                 ("hardening", *hardening, Of::NUMBER),
             ],
         ),
-        Behaviour::WearingBilinear {
+        Behaviour::DeterioratingBilinear {
             stiffness,
             yield_force,
             hardening,

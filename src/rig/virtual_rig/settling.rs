@@ -2,7 +2,7 @@
 
 use crate::physics::relaxation::maxwell::MaxwellBranch;
 use crate::physics::relaxation::relaxation_state::RelaxationState;
-use crate::physics::structure::damping::StrengthRate;
+use crate::physics::structure::cell_damping::StrengthRate;
 use crate::plan::Settle;
 
 /// What moves after the reference has arrived.

@@ -1,11 +1,11 @@
 //! What gives the axes of a virtual rig their forces: a specimen, the storeys of a frame, or a matrix. In: where the pistons are,
 //! and how they went there. Out: forces, and what is still settling. It knows no actuator and no load cell.
 
-use crate::physics::frame::{SymmetricBand, drifts, floor_forces};
 use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use crate::physics::specimen::{RestoringForce as _, SpecimenModel};
-use crate::physics::structure::damping::{CellDamping, StrengthRate};
+use crate::physics::structure::cell_damping::{CellDamping, StrengthRate};
+use crate::physics::structure::{SymmetricBand, drifts, floor_forces};
 use crate::plan::{Behaviour, Frame, Specimen};
 
 /// Springs between the axes and the ground.
@@ -148,7 +148,7 @@ impl Springs {
             let storeys = storeys.iter_mut().zip(of_drifts(velocities));
             let shears: Vec<f64> = storeys
                 .map(|(storey, velocity)| {
-                    storey.damper.felt(storey.shear, velocity) + storey.relaxing.force()
+                    storey.damper.measured_force(storey.shear, velocity) + storey.relaxing.force()
                 })
                 .collect();
             floor_forces(&shears, &mut felt);

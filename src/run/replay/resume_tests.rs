@@ -236,7 +236,8 @@ fn drifting() -> Plan {
 
 /// Two blows on the upper of two floors, the load taken off both after each, and once more.
 fn frame_row() -> Plan {
-    let mut plan = crate::tests::procedures::frame_sequence::rising(&[0.4, 0.8], Between::Unload);
+    let mut plan =
+        crate::tests::procedures::frame::impact_series::rising(&[0.4, 0.8], Between::Unload);
     let ProcedureKind::Escalate(escalate) = &mut plan.procedures[0].kind else {
         panic!()
     };

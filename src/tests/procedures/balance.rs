@@ -1,4 +1,4 @@
-//! A run whose energy does not close says so, whatever moves the specimen.
+//! A run whose energy balance does not close reports it, for every procedure.
 
 use crate::plan::{Behaviour, ProcedureKind, ShakeDamping, Storey};
 use crate::record::{EventKind, Record};

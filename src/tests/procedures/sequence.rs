@@ -1,4 +1,4 @@
-//! Several blows on one specimen, with its damage carried on.
+//! Several impacts on one specimen that keeps its damage.
 
 use crate::plan::formula::Formula;
 use crate::plan::formula::Formula::Constant;

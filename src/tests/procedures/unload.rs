@@ -1,6 +1,6 @@
-//! Where a specimen rests whose load is taken off, against its model moved back in steps of a hundred-thousandth of the way.
+//! Unloaded position of a specimen, compared with its model moved back in steps of a hundred-thousandth of the distance.
 
-use super::frame_sequence::three;
+use super::frame::three;
 use crate::physics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::ProcedureId;

@@ -1,9 +1,9 @@
-//! What a study tells of a shaken frame with an input moved, against the same run on the same rig with that input truly moved:
-//! every kind of storey, stopping and under way, with a damper in each storey and without.
+//! Sensitivity of a ground-motion test by re-integration, compared with a re-run on the same rig with the input perturbed: every kind of
+//! storey, ramp-and-hold and continuous, with a damper in each storey and without.
 
 use super::frame::{constant, entry, shaken};
 use super::rest::{Misread, RIGHT};
-use crate::physics::impact::peaks::{Extremes, Peak};
+use crate::physics::impact::peaks::{Peak, PeakDisplacements};
 use crate::plan::{
     Behaviour, Calibration, Frame, Integrator, Link, Mode, Plan, ProcedureKind, Settle, Shake,
     ShakeDamping, Stepping, Storey, VirtualLink,
@@ -190,8 +190,8 @@ fn numbers(record: &Record) -> [f64; 7] {
         panic!("{:?}", record.outcome)
     };
     let (mut places, mut drifts, mut shear) = (
-        Extremes::new(2, TIME_STEP),
-        Extremes::new(2, TIME_STEP),
+        PeakDisplacements::new(2, TIME_STEP),
+        PeakDisplacements::new(2, TIME_STEP),
         Peak::default(),
     );
     for step in &history.steps {

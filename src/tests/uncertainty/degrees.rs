@@ -1,4 +1,4 @@
-//! What an uncertainty is worth: of hundreds of ramps of few points with drawn noise, as many as U says hold the stiffness.
+//! Coverage of expanded uncertainties: of hundreds of ramps of few points with simulated noise, U covers the stiffness as stated.
 
 use crate::physics::statistics::student_t::LEVEL;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};

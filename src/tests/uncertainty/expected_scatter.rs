@@ -1,4 +1,4 @@
-//! Standard uncertainties that a dry run foretells of fits, against those that runs with other noise come to.
+//! Standard uncertainties of fits as predicted by a simulation, compared with those of runs with other noise.
 
 use crate::physics::identification::multilinear_fit::BreakCount;
 use crate::physics::relaxation::time_constant::RelaxationModel;
@@ -44,7 +44,7 @@ fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
 
 /// s² of ν degrees of freedom over N runs has the standard deviation √(2/(Nν)) of σ²: no more than four of it, and `curved` for what a
 /// fit that is not linear makes of it.
-fn assert_foretold(
+fn assert_predicted(
     plan: &Plan,
     link: VirtualLink,
     names: &[&str],
@@ -77,13 +77,13 @@ const NOISY: VirtualLink = VirtualLink {
 
 /// Ten points, twice over, of three samples each.
 #[test]
-fn the_line_of_a_ramp_is_foretold() {
+fn the_line_of_a_ramp_is_predicted() {
     let plan = ramp_plan(StiffnessRamp {
         samples: 3,
         repeats: 2,
         ..ramp(1e-4)
     });
-    assert_foretold(
+    assert_predicted(
         &plan,
         NOISY,
         &["stiffness", "intercept_force"],
@@ -109,13 +109,13 @@ fn the_line_of_a_ramp_is_foretold() {
         resolution: 1.3e-5,
         ..NOISY
     };
-    assert_foretold(&plan, rounded, &["stiffness"], (100, 18.0, 0.1));
+    assert_predicted(&plan, rounded, &["stiffness"], (100, 18.0, 0.1));
     let quiet = VirtualLink {
         noise: 0.0,
         force_resolution: 7.3,
         ..NOISY
     };
-    assert_foretold(&plan, quiet, &["stiffness"], (1, 1e9, 0.35));
+    assert_predicted(&plan, quiet, &["stiffness"], (1, 1e9, 0.35));
     // An ideal rig has nothing to foretell.
     assert!(
         number(&run_unwatched(&dry(&plan)), 0, "stiffness")
@@ -126,7 +126,7 @@ fn the_line_of_a_ramp_is_foretold() {
 }
 
 #[test]
-fn both_lines_of_a_ramp_past_yield_are_foretold() {
+fn both_lines_of_a_ramp_past_yield_are_predicted() {
     let displacements = (1..=24)
         .map(|step| constant(1e-4 * f64::from(step)))
         .collect();
@@ -147,16 +147,16 @@ fn both_lines_of_a_ramp_past_yield_are_foretold() {
         "hardened_stiffness",
         "hardening",
     ];
-    assert_foretold(&plan, NOISY, &names, (60, 20.0, 0.03));
+    assert_predicted(&plan, NOISY, &names, (60, 20.0, 0.03));
     let ProcedureKind::StiffnessRamp(asked) = &mut plan.procedures[0].kind else {
         panic!()
     };
     asked.fit = RampFit::Multilinear(BreakCount::Exactly(1));
-    assert_foretold(&plan, NOISY, &names, (60, 20.0, 0.03));
+    assert_predicted(&plan, NOISY, &names, (60, 20.0, 0.03));
 }
 
 #[test]
-fn damping_is_foretold() {
+fn damping_is_predicted() {
     let sweep = DampingSweep {
         specimen: 0,
         velocities: [1e-3, 4e-3, 1e-2].map(Formula::Constant).to_vec(),
@@ -167,7 +167,7 @@ fn damping_is_foretold() {
     };
     let mut plan = elastic_plan(2e4, vec![ProcedureKind::DampingSweep(sweep)]);
     (plan.specimens[0].damping, plan.specimens[0].coulomb) = (400.0, 2.0);
-    assert_foretold(
+    assert_predicted(
         &plan,
         NOISY,
         &["damping", "coulomb_force", "damping_ratio"],
@@ -178,11 +178,11 @@ fn damping_is_foretold() {
         force_resolution: 3.0,
         ..NOISY
     };
-    assert_foretold(&plan, rounded, &["damping"], (20, 140.0, 0.05));
+    assert_predicted(&plan, rounded, &["damping"], (20, 140.0, 0.05));
 }
 
 #[test]
-fn the_loops_of_a_cycle_are_foretold() {
+fn the_loops_of_a_cycle_are_predicted() {
     let cycle = Cycle {
         specimen: 0,
         levels: vec![Level {
@@ -213,7 +213,7 @@ fn the_loops_of_a_cycle_are_foretold() {
         resolution: 1e-5,
         ..NOISY
     };
-    assert_foretold(
+    assert_predicted(
         &plan,
         link,
         &["dissipated_energy", "stiffness", "last_stiffness"],
@@ -222,7 +222,7 @@ fn the_loops_of_a_cycle_are_foretold() {
 }
 
 #[test]
-fn what_holds_tell_is_foretold() {
+fn the_relaxation_of_dwells_is_predicted() {
     let plan = |model| {
         let relaxation = Some(WatchedHold {
             readings: 20,
@@ -260,7 +260,7 @@ fn what_holds_tell_is_foretold() {
             noise: 0.3,
             ..NOISY
         };
-        assert_foretold(&decay, noisy, &names, (20, 100.0, 0.05));
+        assert_predicted(&decay, noisy, &names, (20, 100.0, 0.05));
         let record = run_unwatched(&decay);
         assert!(
             matches!(&record.procedures[0].history, History::Ramp(ramp) if ramp.relaxation.is_some())

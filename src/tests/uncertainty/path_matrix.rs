@@ -1,5 +1,5 @@
-//! Uncertainty of a blow against the truth, specimen by specimen and contact by contact: the virtual specimen itself, struck
-//! again with one input moved, says what the recorded way taken again should have foretold.
+//! Uncertainty of an impact, for every pair of specimen and contact law: a re-run of the virtual specimen with one input perturbed is
+//! compared with the re-integration along the recorded path.
 
 use crate::physics::impact::ImpactInput;
 use crate::physics::reintegration::impact::{OUTCOMES, integrate};

@@ -1,6 +1,6 @@
-//! Where a specimen rests, unloaded by a rig that reads wrong, against what one run with a right one foretells.
+//! Unloaded position of a specimen on rigs with calibration errors, compared with the prediction of one run.
 
-use crate::physics::frame::Unloading;
+use crate::physics::structure::Unloading;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::formula::{NoResults, ProcedureId};
 use crate::plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
@@ -13,7 +13,7 @@ use crate::rig::{
 use crate::run::Unwatched;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
-use crate::tests::procedures::frame_sequence::{close, three};
+use crate::tests::procedures::frame::{close, three};
 use crate::tests::testing::elastic_plan;
 use crate::uncertainty::{Contribution, Source, combined};
 
@@ -167,7 +167,7 @@ fn calibrated(mut plan: Plan) -> Plan {
 /// One degree of freedom, of specimens that come back as stiff as they were born and of such that do not: half the difference
 /// of what rigs find whose cell or transducer is off by ± its uncertainty.
 #[test]
-fn a_rig_that_reads_wrong_rests_where_it_is_foretold() {
+fn a_rig_with_calibration_errors_unloads_as_predicted() {
     let specimens = [
         ("elastic", Behaviour::Elastic { stiffness: 500.0 }),
         (
@@ -303,7 +303,7 @@ fn scatter(values: &[f64]) -> f64 {
 /// Noise of the cells: runs that differ in nothing but the seed. The deviation of a deviation of n normal numbers is
 /// 1/√(2(n − 1)) of it: within three of them.
 #[test]
-fn places_of_rest_scatter_as_foretold() {
+fn unloaded_positions_scatter_as_predicted() {
     const RUNS: u32 = 200;
     let mut plan = three(0.05);
     let mut at = |seed: u64| {

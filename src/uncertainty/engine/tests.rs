@@ -1,7 +1,7 @@
 //! The engine on functions whose uncertainties are known in closed form.
 
 use super::*;
-use crate::physics::perturbation::ReadingErrors;
+use crate::physics::reintegration::perturbation::ReadingErrors;
 
 fn source(index: usize) -> Source {
     Source::StrikerMass(index)

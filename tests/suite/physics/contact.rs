@@ -93,7 +93,7 @@ fn restitution_follows_exact_collisions() {
     }
 }
 
-/// e = 0: one blow, after which the two are one body.
+/// e = 0: one impact, after which the two are one body.
 #[test]
 fn without_restitution_they_stick() {
     let run = run(&impact(1.0, K, restitution(0.0), 1e-4));
@@ -154,7 +154,7 @@ fn bodies_never_pass_through_each_other() {
     }
 }
 
-/// Free masses under Hertz's law, until the blow is over.
+/// Free masses under Hertz's law, to the end of the contact.
 fn free_masses(loss: f64, force_limit: Option<f64>) -> (Run, f64) {
     let input = impact(
         1.0,
@@ -370,7 +370,7 @@ fn a_yielding_specimen_stops_where_energy_says() {
 }
 
 /// Eq. (6) on ±5 N of noise: a secant counts only over 10·σ/K0 or more, so that 10 N of change is 20 % of K0 at most. At
-/// the fine step no step tells alone, and the window of several tells better than that.
+/// the fine step no step determines the stiffness alone, and the window of several determines it better than that.
 #[test]
 fn noise_does_not_become_a_stiffness() {
     struct Noisy {
@@ -407,8 +407,8 @@ fn noise_does_not_become_a_stiffness() {
     }
 }
 
-/// Past yield the tangent is the hardened one, whatever the step: at 20 µs no step of some 8 µm stands out of 5 N of noise
-/// (10·σ/K0 is 0.17 mm), and the stiffness of the start was kept to the end before readings were taken together.
+/// Past yield the tangent is the post-yield stiffness for every time step: at 20 µs no step of some 8 µm exceeds 5 N of noise
+/// (10·σ/K0 is 0.17 mm), so that single secants would keep the initial stiffness to the end.
 #[test]
 fn the_tangent_follows_a_specimen_that_yields_under_noise() {
     struct Noisy {
@@ -466,7 +466,7 @@ fn the_tangent_follows_a_specimen_that_yields_under_noise() {
     assert!((mean - 0.1).abs() < 0.02, "{mean} of K0, 0.1 it is");
 }
 
-/// A cell that drifts and rattles pushes a light structure both ways: every step still ends, apart or touching.
+/// A cell with zero drift and noise pushes a light structure in both directions: every step still ends, free or in contact.
 #[test]
 fn restitution_stands_a_rattling_cell() {
     struct Rattle {

@@ -16,7 +16,7 @@ fn falling(law: ContactLaw, time_step: f64) -> ImpactInput {
     }
 }
 
-/// The balance counts the work of the weight, and closes to rounding whatever the law and the length of the step.
+/// The balance includes the work of the weight, and closes to rounding for every contact law and time step.
 #[test]
 fn the_work_of_the_weight_closes_the_balance() {
     let laws = [
@@ -50,7 +50,7 @@ fn the_work_of_the_weight_closes_the_balance() {
     }
 }
 
-/// A blow that sticks: the pair swings about Ms g/K with the velocity that momentum leaves it,
+/// A plastic impact: the pair vibrates about Ms g/K with the velocity by conservation of momentum,
 /// X = `x_s` + √(`x_s`² + v²(M + Ms)/K).
 #[test]
 fn a_weight_that_sticks_swings_about_its_rest() {
@@ -71,11 +71,11 @@ fn a_weight_that_sticks_swings_about_its_rest() {
             "{error} m off {exact} m at {time_step} s, {most} m at most"
         );
     }
-    // Without its weight it would stop 26 % earlier: the test sees the difference.
+    // Without its weight it would stop 26 % earlier: the test resolves the difference.
     assert!((common * (11.0 / K).sqrt()) < 0.9 * exact);
 }
 
-/// A weight that leaves falls back: on a structure too heavy to move it comes again after 2eⁿv/g with eⁿv.
+/// A weight that rebounds falls back: on a structure too heavy to move it returns after 2eⁿv/g with eⁿv.
 #[test]
 fn a_weight_falls_back_and_strikes_again() {
     let (e, time_step, drop) = (0.6, 1e-4, 0.05);
@@ -114,7 +114,7 @@ fn a_weight_falls_back_and_strikes_again() {
     assert!(blows.len() >= 4, "{blows:?}");
 }
 
-/// With no weight not one bit is another.
+/// Without weight the result is bit-identical.
 #[test]
 fn nothing_is_added_where_nothing_falls() {
     let input = impact(1.0, K, ContactLaw::Rigid, 1e-3);

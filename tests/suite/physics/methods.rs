@@ -156,7 +156,7 @@ fn energy_closes_under_every_integrator() {
     }
 }
 
-/// The blow of α-OS is the paper's collision, e = Ms/(Ms + 2M), whatever α damps.
+/// The rigid impact of α-OS is the paper's collision, e = Ms/(Ms + 2M), for every α.
 #[test]
 fn numerical_damping_does_not_soften_the_blow() {
     for integrator in ALL {
@@ -174,7 +174,7 @@ fn numerical_damping_does_not_soften_the_blow() {
     }
 }
 
-/// Just inside the limit a free vibration stays bounded for a thousand steps, just beyond it runs away.
+/// Just inside the limit a free vibration is bounded for a thousand steps, just beyond it diverges.
 #[test]
 fn the_stability_limits_are_where_they_are_said_to_be() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
@@ -219,8 +219,8 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
     }
 }
 
-/// Growth of a free vibration by each step, as it runs, against the limit that is told: α-OS that splits with less than the specimen's
-/// stiffness, damped and not. Just inside no more than what a damping ratio of 1e-4 would take in a cycle, just beyond more.
+/// Growth of a free vibration by each step, compared with the reported limit: α-OS that splits with less than the specimen's
+/// stiffness, damped and not. Just inside no more than a damping ratio of 1e-4 would remove in a cycle, just beyond more.
 #[test]
 fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
@@ -282,7 +282,7 @@ fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
     }
 }
 
-/// What the tangent form makes of a specimen that yields. It foretells the force by the slope of the step before; where the slope changes
+/// The tangent form on a specimen that yields. It predicts the force by the slope of the step before; where the slope changes
 /// it errs by δ = (K − `K_t`)ΔX for that step, and the balance by −½ΔX(δ + δ₀), δ₀ that of the step before, which is all that it errs by. So
 /// no step is stable by itself: at a tenth of the default step a yielding vibration loses next to nothing, at a fifth of the period
 /// (`critical` twice over) the balance is worth nothing.

@@ -1,7 +1,7 @@
 //! How high a load a portal's mechanism follows: in closed form where it is one, and by the moments along its members, which are summed
 //! here from the inertia point by point. The sums share nothing with the product.
 
-use psd::physics::structure::portal_limit::mechanism_limit;
+use psd::physics::structure::portal::limit::mechanism_limit;
 use psd::plan::{FrameMasses, Loads, Portal, Sections};
 
 const SPAN: f64 = 4.0;
@@ -32,7 +32,7 @@ fn a_bare_frame_follows_three_times_its_collapse_load() {
     assert!((limit(&swayed) / by_hand - 1.0).abs() < 1e-12);
 }
 
-/// Without mass between the hinges, as in the paper's lumped frame, no load is too fast; of two loads, and of a frame without masses, nothing is told.
+/// Without mass between the hinges, as in the paper's lumped frame, no load is too fast; two loads, and a frame without masses, have no limit.
 #[test]
 fn lumped_frames_follow_any_load() {
     let strong = Sections::same(20e3);

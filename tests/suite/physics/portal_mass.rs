@@ -3,7 +3,7 @@
 //! factors are published. The finite elements and the rigid bodies share nothing with the product.
 
 use nalgebra::{DMatrix, DVector};
-use psd::physics::structure::portal_mass::{EquivalentMasses, equivalent_masses};
+use psd::physics::structure::portal::mass::{EquivalentMasses, equivalent_masses};
 use psd::plan::{FrameMasses, Loads, Mechanism, Portal, Sections};
 
 const SPAN: f64 = 4.0;

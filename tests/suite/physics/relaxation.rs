@@ -200,7 +200,7 @@ fn rig_of(behaviour: Behaviour, link: VirtualLink, settle: Settle) -> VirtualRig
     )
 }
 
-/// 1 kN/mm to 3 kN: out elastically in three steps, flowing in the fourth and back in the fifth, a pause after each. What is felt is the
+/// 1 kN/mm to 3 kN: elastic loading in three steps, yielding in the fourth and unloading in the fifth, a dwell after each. The measured force is the
 /// reached force less `a` times the sum of every increment's own logarithm, whatever came after it.
 #[test]
 fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
@@ -277,7 +277,7 @@ fn a_rig_settles_when_the_logarithm_is_slow() {
     assert!(never.execute().is_err(), "0.5 N/s do not come within 10 s");
 }
 
-/// The work done on it never comes back whole, whatever it is, wherever it goes and however long it rests there.
+/// No specimen releases all of the work done on it, on any path and with any dwells.
 #[test]
 fn what_relaxes_gives_back_no_more_than_it_took() {
     let bases = [

@@ -1,5 +1,5 @@
-//! What holds for every behaviour of a specimen, on any path: no number is lost, no force is beyond what the behaviour
-//! carries, nothing gives back more energy than it took, and large moves end where small ones do.
+//! Properties of every specimen model on any path: finite forces, none beyond the capacity, no more energy released than absorbed, and
+//! large moves that end where small ones do.
 
 use proptest::prelude::*;
 use psd::physics::specimen::{RestoringForce, SpecimenModel};
@@ -186,11 +186,11 @@ fn turns() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-4.0..4.0_f64, 1..8)
 }
 
-/// Where energy seems to have been given back, by trapezia: place (m), energy (J), what went to and fro (J).
+/// Apparent release of energy, by trapezia: displacement \[m\], energy \[J\], energy exchanged \[J\].
 fn given_back(behaviour: &Behaviour, turns: &[f64], pieces: u32) -> Option<[f64; 3]> {
     let mut model = SpecimenModel::new(behaviour);
     let (mut place, mut force, mut energy, mut scale) = (0.0, model.move_to(0.0), 0.0, 0.0);
-    places(turns, pieces).into_iter().find_map(|to| {
+    displacements(turns, pieces).into_iter().find_map(|to| {
         let next = model.move_to(to);
         energy += 0.5 * (force + next) * (to - place);
         scale += (0.5 * (force + next) * (to - place)).abs();
@@ -199,8 +199,8 @@ fn given_back(behaviour: &Behaviour, turns: &[f64], pieces: u32) -> Option<[f64;
     })
 }
 
-/// Every place of a path whose legs are cut into `pieces`.
-fn places(turns: &[f64], pieces: u32) -> Vec<f64> {
+/// Every displacement of a path whose legs are divided into `pieces`.
+fn displacements(turns: &[f64], pieces: u32) -> Vec<f64> {
     let mut from = 0.0;
     let mut all = Vec::new();
     for to in turns {
@@ -241,7 +241,7 @@ proptest! {
         let (mut place, mut force) = (0.0, model.move_to(0.0));
         let bound = behaviour.largest_stiffness();
         prop_assert!(bound >= behaviour.initial_stiffness() * (1.0 - 1e-12));
-        for to in places(&turns, 40) {
+        for to in displacements(&turns, 40) {
             let next = model.move_to(to);
             let most = bound * (to - place).abs() * (1.0 + 1e-6) + 1e-7;
             prop_assert!((next - force) * (to - place).signum() <= most, "{} at {to}, at most {bound}", (next - force) / (to - place));
@@ -265,7 +265,7 @@ proptest! {
     #[test]
     fn large_moves_end_where_small_ones_do(behaviour in any(), turns in turns()) {
         let (mut large, mut small) = (SpecimenModel::new(&behaviour), SpecimenModel::new(&behaviour));
-        let mut small_places = places(&turns, 37).into_iter();
+        let mut small_places = displacements(&turns, 37).into_iter();
         for to in &turns {
             let by_large = large.move_to(*to);
             let mut by_small = 0.0;
@@ -287,7 +287,7 @@ proptest! {
     }
 }
 
-/// Two parts in series that give way at one force share a way between them in many manners: of these a large move takes the one
+/// Two parts in series that yield at one force can share a displacement in many ways: a large move chooses the one
 /// that small moves take. Without force, a table between its toes and a spring that has pinched; at the yield force, two alike.
 #[test]
 fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
@@ -333,7 +333,7 @@ fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
                 SpecimenModel::new(&behaviour),
                 SpecimenModel::new(&behaviour),
             );
-            let mut small_places = places(&turns, 37).into_iter();
+            let mut small_places = displacements(&turns, 37).into_iter();
             for to in turns {
                 let by_small = small_places
                     .by_ref()

@@ -59,7 +59,7 @@ pub fn run_on(input: &ImpactInput, specimen: &mut impl RestoringForce) -> Run {
     run_while(input, specimen, |state| state.time < 10.0)
 }
 
-/// The run until it is finished or `go_on` says no.
+/// The run until it has finished or `go_on` returns false.
 pub fn run_while(
     input: &ImpactInput,
     specimen: &mut impl RestoringForce,
@@ -123,7 +123,7 @@ pub fn event_driven(
         v = common + e * closing * striker_mass / (mass + striker_mass);
         vs = common - e * closing * mass / (mass + striker_mass);
         if e * closing < 1e-10 {
-            // One body: it turns where x and v, seen as an amplitude and a phase, say.
+            // One body: it reverses at the instant given by the amplitude and phase of x and v.
             let amplitude = x.hypot(common / joint);
             let stop = if common > 0.0 {
                 (common / joint).atan2(x) / joint

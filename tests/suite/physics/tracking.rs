@@ -12,7 +12,7 @@ const TIME_STEP: f64 = 0.01;
 const CYCLES: u32 = 10;
 const STEPS_A_CYCLE: u32 = 50;
 
-/// Where an actuator goes that is told `target`, from the target and the place before: m.
+/// Position of an actuator after the command `target`, from the last target and position \[m\].
 type Actuator = fn(target: f64, last_target: f64, last_place: f64) -> f64;
 
 /// Ten per cent short of its increment, which it takes from the target before.
@@ -20,7 +20,7 @@ const SHORT: Actuator = |target, last, _| last + 0.9 * (target - last);
 const BEYOND: Actuator = |target, last, _| last + 1.1 * (target - last);
 /// Behind by 2 % of the first amplitude, against the motion.
 const BEHIND: Actuator = |target, last, _| target - 0.02 * (target - last).signum();
-/// As an actuator does: from where it stands.
+/// An actuator that starts from its present position.
 const SHORT_FROM_PLACE: Actuator = |target, _, place| place + 0.9 * (target - place);
 const BEYOND_FROM_PLACE: Actuator = |target, _, place| place + 1.1 * (target - place);
 
@@ -69,7 +69,7 @@ fn ten_cycles_of_tracking_error_grow_or_shrink_as_printed() {
     }
 }
 
-/// What the monitor says went into the test is what the amplitude gained: ½K(A² − 1) to the order of the error squared.
+/// The tracking-error energy of the monitor equals the gain of the amplitude: ½K(A² − 1) to the order of the error squared.
 #[test]
 fn the_monitor_sees_the_energy_that_tracking_puts_in() {
     let stiffness = (2.0 * std::f64::consts::PI / PERIOD).powi(2);

@@ -16,7 +16,7 @@ pub(super) fn is_kept(
     branches: &[Branch],
     pieces: &[Piece],
     noise: f64,
-    under_way: bool,
+    continuous: bool,
 ) -> bool {
     let off = |reading: &Reading| (reading.target - readings[0].target).abs();
     let strongest = readings
@@ -43,7 +43,7 @@ pub(super) fn is_kept(
             .iter()
             .map(|[x, _]| [*x, pieces[0].start_tangent * x])
             .collect();
-        let known = if under_way { &line } else { &longest };
+        let known = if continuous { &line } else { &longest };
         if !agrees(
             &found,
             known,
@@ -112,7 +112,7 @@ fn agrees(curve: &Curve, known: &Curve, noise: f64, least: f64) -> bool {
     let (mut off, mut count, mut height, mut step) = (0.0, 0.0, 0.0_f64, 0.0_f64);
     for pair in curve.windows(2) {
         let ([_, before], [x, r]) = (pair[0], pair[1]);
-        let after = known.partition_point(|[place, _]| *place < x);
+        let after = known.partition_point(|[position, _]| *position < x);
         let (Some(low), Some(high)) =
             (after.checked_sub(1).map(|low| known[low]), known.get(after))
         else {

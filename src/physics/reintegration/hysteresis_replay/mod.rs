@@ -14,50 +14,50 @@ mod rate_correction;
 mod reintegrated;
 
 pub(crate) use rate_correction::lag;
-pub use reintegrated::Again;
+pub use reintegrated::Retrace;
 pub(crate) use reintegrated::nearest;
 
 use self::pieces::{Branch, Piece};
 use crate::integrator::tangent::NOISE_MULTIPLE;
-use crate::reintegration::hysteresis_replay::rate_correction::UnderWay;
+use crate::reintegration::hysteresis_replay::rate_correction::ContinuousReadings;
 
 /// One step of the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// Commanded, m.
+    /// Commanded displacement \[m\].
     pub target: f64,
-    /// m
+    /// Measured \[m\].
     pub displacement: f64,
-    /// N
+    /// Measured \[N\].
     pub force: f64,
 }
 
-/// A re-run that goes back where nothing is recorded departs from the record beyond this fraction of the farthest recorded place.
+/// A re-run that reverses where nothing is recorded departs from the record beyond this fraction of the farthest recorded position.
 const UNSEEN: f64 = 1e-3;
-/// Curves that lie nearer to their record, of the same, lie there.
+/// Curves nearer to their record than this fraction of it lie on it.
 const ROUNDING: f64 = 1e-9;
 /// A curve whose last slope is less than this fraction of its first has settled on that.
 const SETTLED: f64 = 0.9;
 
-/// Readings along the way, in branches and curves.
+/// Readings along the path, in branches and curves.
 #[derive(Clone, Debug)]
 pub struct RecordedPath {
     readings: Vec<Reading>,
     branches: Vec<Branch>,
     pieces: Vec<Piece>,
-    /// Places no farther apart tell no difference of force, m.
+    /// Positions closer than this determine no slope \[m\].
     least: f64,
-    /// Farthest target from zero, m.
+    /// Farthest target from zero \[m\].
     farthest: f64,
-    /// Whether its curves keep Masing's rule.
+    /// Whether its curves satisfy Masing's rule.
     keeps_masing: bool,
-    /// Of readings made without a stop: `readings` are those of the specimen at rest.
-    under_way: Option<UnderWay>,
+    /// Readings of a continuous motion; `readings` are then those of the specimen at rest.
+    continuous: Option<ContinuousReadings>,
 }
 
 impl RecordedPath {
-    /// `stiffness` (N/m) where no branch tells one; `force_noise` (N) and `resolution` (m) say how long a piece must be to
-    /// tell. None of no reading.
+    /// `stiffness` \[N/m\] applies where no branch determines one; `force_noise` \[N\] and `resolution` \[m\] give the least length of a piece that
+    /// determines a slope. None without readings.
     #[must_use]
     pub fn new(
         readings: Vec<Reading>,
@@ -76,9 +76,9 @@ impl RecordedPath {
         ))
     }
 
-    /// The same of readings made under way, `time_step` (s) apart, with the velocities foretold for their targets, m/s.
+    /// The same for readings of a continuous motion, `time_step` \[s\] apart, with the velocities predicted for their targets \[m/s\].
     #[must_use]
-    pub fn under_way(
+    pub fn continuous(
         readings: Vec<Reading>,
         (velocities, time_step): (&[f64], f64),
         stiffness: f64,
@@ -88,7 +88,7 @@ impl RecordedPath {
         if readings.is_empty() {
             return None;
         }
-        let found = UnderWay::of(readings, velocities, time_step, resolution);
+        let found = ContinuousReadings::of(readings, velocities, time_step, resolution);
         Some(Self::of(
             found.at_rest(),
             Some(found),
@@ -99,22 +99,22 @@ impl RecordedPath {
 
     fn of(
         readings: Vec<Reading>,
-        under_way: Option<UnderWay>,
+        continuous: Option<ContinuousReadings>,
         stiffness: f64,
         (force_noise, resolution): (f64, f64),
     ) -> Self {
         let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
-        let unsure = under_way
-            .as_ref()
-            .map_or(0.0, |under_way| under_way.unsure(stiffness, resolution));
-        let told = (stiffness, force_noise.hypot(unsure), least);
-        let (branches, pieces) = pieces::cut(&readings, told, under_way.as_ref());
+        let force_uncertainty = continuous.as_ref().map_or(0.0, |continuous| {
+            continuous.force_uncertainty(stiffness, resolution)
+        });
+        let slopes = (stiffness, force_noise.hypot(force_uncertainty), least);
+        let (branches, pieces) = pieces::cut(&readings, slopes, continuous.as_ref());
         let keeps_masing = masing::is_kept(
             &readings,
             &branches,
             &pieces,
             force_noise,
-            under_way.is_some(),
+            continuous.is_some(),
         );
         let farthest = readings.iter().fold(0.0, |farthest: f64, reading| {
             farthest.max(reading.target.abs())
@@ -126,7 +126,7 @@ impl RecordedPath {
             least,
             farthest,
             keeps_masing,
-            under_way,
+            continuous,
         }
     }
 
@@ -134,25 +134,25 @@ impl RecordedPath {
     #[must_use]
     pub fn recorded(&self, step: usize) -> &Reading {
         let step = step.min(self.readings.len() - 1);
-        self.under_way
+        self.continuous
             .as_ref()
-            .map_or(&self.readings[step], |under_way| under_way.reading(step))
+            .map_or(&self.readings[step], |continuous| continuous.reading(step))
     }
 
-    /// Goes along it again from its beginning, in `finer` steps for each of the record.
+    /// Retraces it from its begin, in `finer` steps for each of the record.
     #[must_use]
-    pub fn again(&self, finer: u8) -> Again<'_> {
-        Again::new(self, finer)
+    pub fn retrace(&self, finer: u8) -> Retrace<'_> {
+        Retrace::new(self, finer)
     }
 
-    /// Displacement and force at `place` (m) on the curve of `piece`, looked for from the reading of `step`.
-    fn at(&self, piece: usize, step: usize, place: f64) -> (f64, f64) {
+    /// Displacement and force at `position` \[m\] on the curve of `piece`, searched from the reading of `step`.
+    fn at(&self, piece: usize, step: usize, position: f64) -> (f64, f64) {
         let mut index = piece;
-        // Where the curve was left and gone on with, on that side of it.
+        // On either side of the point at which the curve was left and later continued.
         let piece = loop {
             let piece = self.pieces[index];
             let direction = self.branches[piece.branch].direction;
-            let beyond = |reading: &Reading| (place - reading.target) * direction;
+            let beyond = |reading: &Reading| (position - reading.target) * direction;
             index = match (piece.before, piece.after) {
                 (Some(before), _) if beyond(&piece.begin) < 0.0 => before,
                 (_, Some(after)) if beyond(&self.pieces[after].begin) > 0.0 => after,
@@ -170,10 +170,10 @@ impl RecordedPath {
         };
         let mut from = (step + 1).saturating_sub(piece.first).min(count);
         let here = reading(from);
-        if place == here.target {
+        if position == here.target {
             return (here.displacement, here.force);
         }
-        let onwards = (place - here.target) * direction > 0.0;
+        let onwards = (position - here.target) * direction > 0.0;
         loop {
             let next = if onwards && from < count {
                 from + 1
@@ -184,14 +184,14 @@ impl RecordedPath {
             };
             let (near, far) = (reading(from), reading(next));
             let off = |reading: Reading| (reading.target - here.target).abs();
-            // Between the two, or at one of them. Near by, the noise of this reading counts and not that of its neighbours, which
-            // the way as it was had at other places: the force goes on from here to the first that is far enough to tell a slope.
-            if off(far) >= (place - here.target).abs()
+            // Between the two, or at one of them. Nearby, the noise of this reading applies and not that of its neighbours: the
+            // force continues from here to the first reading that is far enough to determine a slope.
+            if off(far) >= (position - here.target).abs()
                 && off(far) >= self.least
                 && off(far) > off(near)
             {
                 let near = if off(near) < self.least { here } else { near };
-                let share = (place - near.target) / (far.target - near.target);
+                let share = (position - near.target) / (far.target - near.target);
                 let between = |near: f64, far: f64| near + share * (far - near);
                 return (
                     between(near.displacement, far.displacement),
@@ -211,7 +211,7 @@ impl RecordedPath {
         } else {
             end
         };
-        let beyond = place - end.target;
+        let beyond = position - end.target;
         (end.displacement + beyond, end.force + tangent * beyond)
     }
 }

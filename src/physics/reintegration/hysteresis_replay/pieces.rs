@@ -1,91 +1,91 @@
-//! What a record of force over displacement is made of: branches from turn to turn, and on each the pieces of the curves it
-//! goes along. In: the readings. Out: branches and pieces with their tangents. It knows no way but the recorded one.
+//! Segmentation of a recorded force–displacement path: branches from reversal to reversal, and on each the pieces of its curves. In: the
+//! readings. Out: branches and pieces with their tangents. It knows only the recorded path.
 //!
-//! A curve begins where the specimen turns. It is left where the specimen turns again, and gone on with once the place of
-//! that turn is passed on the way back: the loop is closed and forgotten (Masing's rule; the return-point memory of Iwan's
-//! and Preisach's models). So one branch may have pieces of several curves, and one curve pieces on several branches.
+//! A curve begins at a reversal. It is left at the next reversal, and continued once the position of that reversal is passed again: the
+//! loop is closed and erased (Masing's rule; the return-point memory of Iwan's and Preisach's models). One branch may therefore have
+//! pieces of several curves, and one curve pieces on several branches.
 
 use super::Reading;
-use super::rate_correction::UnderWay;
+use super::rate_correction::ContinuousReadings;
 
-/// Loops no thicker than this share of the force they span are none: the way back is the way there.
+/// A loop thinner than this fraction of its force range is not a loop: unloading follows the loading branch.
 const THIN: f64 = 1e-3;
-/// And those that miss the turn where they would close by more than this share of their height do not close.
+/// A loop that misses its reversal point by more than this fraction of its height does not close.
 const OPEN: f64 = 0.02;
-/// Noise of a difference that is taken for one, in standard deviations of a reading.
+/// Smallest significant difference, in standard deviations of a reading.
 pub(super) const NOISE_BOUND: f64 = 3.0;
 
-/// Part of a curve that was gone along at a stretch.
+/// Part of a curve that was followed without interruption.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
-    /// Where it begins: the turn where its curve begins or had been left.
+    /// Its begin: the reversal at which its curve begins or had been left.
     pub begin: Reading,
-    /// Readings after that; the first is past the last where there is none.
+    /// Indices of its readings; `first` is past `last` where there is none.
     pub first: usize,
     pub last: usize,
     pub branch: usize,
-    /// The branch whose turn its curve began with.
+    /// The branch at whose reversal its curve began.
     pub curve: usize,
-    /// The branch at whose end the curve had been left, of a piece that goes on with one.
+    /// For a continued curve, the branch at whose end it had been left.
     pub rejoins: Option<usize>,
     /// Pieces of the same curve.
     pub before: Option<usize>,
     pub after: Option<usize>,
-    /// N/m, at its ends.
+    /// Tangent stiffnesses at its ends \[N/m\].
     pub start_tangent: f64,
     pub end_tangent: f64,
 }
 
-/// From one turn to the next.
+/// The path from one reversal to the next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Branch {
-    /// 1 or −1; 0 of a record that goes nowhere.
+    /// 1 or −1; 0 for a record without motion.
     pub direction: f64,
-    /// The reading before the turn at its end, or the last.
+    /// The reading before the reversal at its end, or the last.
     pub end: usize,
-    /// That turn, as the next branch begins with it: a reading, or between two of them.
+    /// That reversal, the begin of the next branch: a reading, or a point between two.
     pub turn: Reading,
-    /// The force there as its own curve leads to it, N.
+    /// Force there by its own curve \[N\].
     pub led_to: f64,
-    /// Its pieces, one at least.
+    /// Its pieces, at least one.
     pub first_piece: usize,
     pub last_piece: usize,
-    /// It goes back over the curve it came from.
+    /// Whether it follows the curve of the branch before it.
     pub retraces: bool,
-    /// The first reading past the place of an earlier turn that it did not go through: no loop was closed.
+    /// The first reading past the position of an earlier reversal that it missed: no loop was closed.
     pub drifts: Option<usize>,
 }
 
-/// Cuts a record into branches and the pieces of their curves; `least` (m) is how long a piece must be to tell a tangent, `stiffness`
-/// (N/m) what holds where none does. Readings made under way turn between two of them.
+/// Divides a record into branches and the pieces of their curves. `least` \[m\] is the length of a piece that determines a tangent,
+/// `stiffness` \[N/m\] applies where none does. A continuous motion reverses between two readings.
 pub(super) fn cut(
     readings: &[Reading],
     (stiffness, force_noise, least): (f64, f64, f64),
-    under_way: Option<&UnderWay>,
+    continuous: Option<&ContinuousReadings>,
 ) -> (Vec<Branch>, Vec<Piece>) {
     let mut branches: Vec<Branch> = Vec::new();
     let mut pieces: Vec<Piece> = Vec::new();
-    // Branches that ended in a turn whose loop is not closed.
+    // Branches that ended in a reversal whose loop is not closed.
     let mut open: Vec<usize> = Vec::new();
     let mut elastic = stiffness;
-    let found = under_way.map_or_else(
-        || stretches(readings),
-        |under_way| stretches_of(under_way.velocities()),
+    let found = continuous.map_or_else(
+        || monotonic_branches(readings),
+        |continuous| branches_of(continuous.velocities()),
     );
     for (begin, end, direction) in found {
         let branch = branches.len();
         let mut turn = readings[begin];
         if let Some(before) = branch.checked_sub(1) {
-            if let Some(place) = under_way.and_then(|under_way| under_way.turned(begin)) {
+            if let Some(position) = continuous.and_then(|continuous| continuous.turned(begin)) {
                 let onto = readings[begin + 1];
                 let tangent = tangent(readings[begin + 1..=end].iter(), least).unwrap_or(elastic);
-                let displacement = onto.displacement + (place - onto.target);
+                let displacement = onto.displacement + (position - onto.target);
                 branches[before].led_to +=
-                    pieces[branches[before].last_piece].end_tangent * (place - turn.target);
+                    pieces[branches[before].last_piece].end_tangent * (position - turn.target);
                 turn = Reading {
-                    target: place,
+                    target: position,
                     displacement,
-                    force: onto.force + tangent * (place - onto.target),
+                    force: onto.force + tangent * (position - onto.target),
                 };
                 branches[before].turn = turn;
             }
@@ -124,8 +124,9 @@ pub(super) fn cut(
                     + (turn.target - near.target) / (far.target - near.target)
                         * (far.force - near.force);
                 let height = (turn.force - own.begin.force).abs();
-                let unsure = NOISE_BOUND * force_noise + 0.5 * (far.force - near.force).abs();
-                let closed = (force - turn.force).abs() <= unsure + OPEN * height;
+                let force_uncertainty =
+                    NOISE_BOUND * force_noise + 0.5 * (far.force - near.force).abs();
+                let closed = (force - turn.force).abs() <= force_uncertainty + OPEN * height;
                 rejoined = closed.then_some(left);
                 drifts = drifts.or((!closed).then_some(step));
                 open.truncate(open.len() - 2);
@@ -185,13 +186,13 @@ pub(super) fn cut(
 }
 
 /// Readings at the ends of each stretch without a turn, and its direction.
-fn stretches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
+fn monotonic_branches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
     let moved = readings.windows(2).map(|two| two[1].target - two[0].target);
-    stretches_of(std::iter::once(0.0).chain(moved))
+    branches_of(std::iter::once(0.0).chain(moved))
 }
 
 /// The same of how it went to each reading: a way, or a velocity.
-pub(super) fn stretches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
+pub(super) fn branches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::new();
     let (mut begin, mut last, mut direction) = (0, 0, 0.0);
     for (step, moved) in went.enumerate() {
@@ -236,10 +237,10 @@ fn within(
     pieces: &[Piece],
     branches: &[Branch],
     piece: usize,
-    place: f64,
+    position: f64,
 ) -> Option<(f64, f64)> {
     let mut piece = piece;
-    while (place - pieces[piece].begin.target) * branches[pieces[piece].branch].direction < 0.0 {
+    while (position - pieces[piece].begin.target) * branches[pieces[piece].branch].direction < 0.0 {
         piece = pieces[piece].before?;
     }
     let Piece {
@@ -257,10 +258,10 @@ fn within(
         ..
     } = branches[branch];
     let reached = readings[first..=last]
-        .partition_point(|reading| (reading.target - place) * direction < 0.0);
+        .partition_point(|reading| (reading.target - position) * direction < 0.0);
     let far = if first + reached <= last {
         readings[first + reached]
-    } else if piece == last_piece && (turn.target - place) * direction >= 0.0 {
+    } else if piece == last_piece && (turn.target - position) * direction >= 0.0 {
         Reading {
             force: led_to,
             ..turn
@@ -276,7 +277,7 @@ fn within(
     let share = if far.target == near.target {
         1.0
     } else {
-        (place - near.target) / (far.target - near.target)
+        (position - near.target) / (far.target - near.target)
     };
     Some((
         near.displacement + share * (far.displacement - near.displacement),
@@ -284,20 +285,19 @@ fn within(
     ))
 }
 
-/// Slope of the least squares over the fewest readings that span more than `least` (m), two at least; None where all of
-/// them do not.
+/// Least-squares slope over the fewest readings that span more than `least` \[m\], at least two; None where all of them span less.
 fn tangent<'a>(readings: impl Iterator<Item = &'a Reading>, least: f64) -> Option<f64> {
-    let mut taken: Vec<(f64, f64)> = Vec::new();
+    let mut selected: Vec<(f64, f64)> = Vec::new();
     for reading in readings {
-        taken.push((reading.target, reading.force));
-        if (reading.target - taken[0].0).abs() > least && taken.len() > 1 {
-            return slope(&taken);
+        selected.push((reading.target, reading.force));
+        if (reading.target - selected[0].0).abs() > least && selected.len() > 1 {
+            return slope(&selected);
         }
     }
     None
 }
 
-/// Of least squares through places (m) and forces (N) there; None of one place.
+/// Least-squares slope of forces \[N\] over positions \[m\]; None for a single position.
 fn slope(points: &[(f64, f64)]) -> Option<f64> {
     #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
     let count = points.len() as f64;

@@ -1,155 +1,155 @@
-//! What is in the readings of an actuator that passed its targets without a stop. In: readings, and the velocity that was
-//! foretold for each target. Out: how far behind the specimen was, what a damper of it gave, and the readings without both:
-//! the specimen as it would be read at rest. It knows no way but the recorded one.
+//! Lag and damping in the readings of a continuous motion. In: readings, and the velocity predicted for each target. Out: the lag of the
+//! specimen, its viscous damping, and the readings without both, as of the specimen at rest. It knows only the recorded path.
 //!
-//! # Why a way under way must be told without its velocity
+//! # Why the velocity must be removed from a continuous path
 //!
-//! The force of a specimen with a damper is r = f(x) + c·v, and a way that is told as force over place has for its slope
+//! The force of a specimen with a damper is r = f(x) + c·v, and the path of force over displacement has the slope
 //!
 //! ```text
 //! dr/dx = f' + c·a/v
 //! ```
 //!
-//! which has no bound where the way turns. Let a motion x = A cos ωt be taken again a share ε larger. At its turn (t = 0) the
-//! force has grown by εkA, as it should. Along the next branch, which is shifted to the new turn, it would grow by
+//! which is unbounded at a reversal. Let a motion x = A cos ωt be retraced with an amplitude larger by the fraction ε. At its reversal
+//! (t = 0) the force has grown by εkA, as it should. Along the next branch, which is shifted to the new reversal, it would grow by
 //!
 //! ```text
 //! δr = εkA + (k + cω cot ωt)·εA(cos ωt − 1)     truly: εkA cos ωt − εcωA sin ωt
 //! ```
 //!
-//! At the quarter the damper gives nothing more, where it should give all of −εcωA; and as the next turn comes near, at
-//! ωt = π − ωs, δr gains 2εcA/s. The last reading before the turn is half a step from it on the mean, s = ½Δt, so that
-//! each turn leaves behind a force
+//! At the quarter period the damper adds nothing, where it should add −εcωA; and near the next reversal, at ωt = π − ωs, δr gains
+//! 2εcA/s. The last reading before the reversal is half a step from it on average, s = ½Δt, so that each reversal leaves a force
 //!
 //! ```text
 //! δr/(k·εA) = 4c/(k·Δt)
 //! ```
 //!
-//! times what the deviation itself should come to, and the next branch begins with it: a finer step makes it worse. With
-//! C/K = 9 ms and Δt = 10 ms that is 3.6 at every turn. The same holds of a lag: where the actuator is τv behind, the
-//! measured place has the slope 1 − τa/v over the target, and the correction r − K(d_m − d) takes (K − f')·τa/v with it.
+//! relative to the deviation itself, and the next branch begins with it: a finer step increases it. With C/K = 9 ms and Δt = 10 ms it is
+//! 3.6 at every reversal. The same applies to a lag: where the actuator is τv behind, the measured displacement has the slope 1 − τa/v
+//! over the target, and the correction r − K(d_m − d) adds (K − f')·τa/v.
 //!
-//! So the readings are told over the place of the specimen, x = d − τv, with c·v taken off them, and what is read again is
-//! r + c·v at the velocity of the way that is taken again. The slope is f' then, as it is of a way with a stop at each step.
+//! The readings are therefore given over the displacement of the specimen, x = d − τv, minus c·v, and a retraced reading is r + c·v at
+//! the velocity of the retraced motion. The slope is then f', as for ramp-and-hold.
 //!
-//! A specimen that yields turns between two readings, at a place that nobody reads: they lie on two curves, and the slope from
-//! one to the other, (K − f')·½as²/Δx with Δx as small as chance will have it, is none of either. The turn is where the
-//! velocity, which goes evenly from one reading to the next, vanishes; each curve leads to it along its own tangent.
+//! A specimen that yields reverses between two readings: they lie on two curves, and the slope from one to the other,
+//! (K − f')·½as²/Δx with an arbitrarily small Δx, is that of neither. The reversal is where the velocity, linear from one reading to the
+//! next, is zero; each curve is extended to it along its own tangent.
 //!
-//! # How τ and c are found
+//! # Estimation of τ and c
 //!
-//! τ is the least squares of d − `d_m` on v. For c every few readings of a branch are taken together: their tangent f' is one
-//! number, so that Δr = f'Δx + cΔv, and what is left of Δv when its share along Δx is taken off tells c. That is most where
-//! a/v changes most, beside the turns, and there only v counts, whatever the specimen does. Each few have their own c, and
-//! the middle of all, each weighed by what it tells, is not moved by those in which the specimen yields.
+//! τ is the least-squares slope of d − `d_m` on v. For c every few increments of a branch are grouped: their tangent f' is one number, so
+//! that Δr = f'Δx + cΔv, and the part of Δv orthogonal to Δx determines c. It is largest where a/v changes most, near the reversals. Each
+//! group has its own c; the weighted median of all is not affected by the groups in which the specimen yields.
 
 use super::Reading;
-use super::pieces::stretches_of;
+use super::pieces::branches_of;
 
-/// Increments taken together: few enough that the tangent is one, one more than the two unknowns need.
+/// Increments of a group: few enough for one tangent, more than the two unknowns.
 const TOGETHER: usize = 4;
-/// Of the specimen's velocity after its lag and of that after its velocity.
+/// Iterations of velocity and lag, which depend on each other.
 const ROUNDS: usize = 6;
-/// How many times its own uncertainty a number must be to count.
+/// Significance of a value, in its standard uncertainties.
 const SURE: f64 = 3.0;
-/// Standard deviation of a normal number whose median distance is 1.
+/// Standard deviation of a normal variable whose median absolute deviation is 1.
 const OF_MEDIAN: f64 = 1.4826;
 
-/// Readings made under way.
+/// Readings of a continuous motion.
 #[derive(Clone, Debug)]
-pub(super) struct UnderWay {
-    /// Of the specimen behind its target, s.
+pub(super) struct ContinuousReadings {
+    /// Lag of the specimen behind its target τ \[s\].
     lag: f64,
-    /// Of the specimen, N·s/m.
+    /// Damping of the specimen c \[N·s/m\].
     damping: f64,
-    /// From one reading to the next, s.
+    /// From one reading to the next \[s\].
     time_step: f64,
-    /// As they were read, with the velocity that the specimen had, m/s.
+    /// The readings, with the velocity of the specimen \[m/s\].
     passed: Vec<(Reading, f64)>,
 }
 
-/// How fast an actuator and the specimen on it go, m/s.
+/// Velocities of an actuator and of the specimen on it \[m/s\].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Speed {
-    /// As foretold for a target.
-    foretold: f64,
-    pub felt: f64,
+    /// Predicted for a target.
+    predicted: f64,
+    pub actual: f64,
 }
 
-impl UnderWay {
-    /// `velocities` are those foretold for the targets, m/s, and of the same time as `time_step` (s); `resolution` in m.
+impl ContinuousReadings {
+    /// `velocities` are those predicted for the targets \[m/s\], in the same time as `time_step` \[s\]; `resolution` in \[m\].
     pub fn of(readings: Vec<Reading>, velocities: &[f64], time_step: f64, resolution: f64) -> Self {
-        let foretold: Vec<f64> = velocities
+        let predicted: Vec<f64> = velocities
             .iter()
             .copied()
             .chain(std::iter::repeat(0.0))
             .take(readings.len())
             .collect();
-        let passed = readings.into_iter().zip(foretold.iter().copied()).collect();
+        let passed = readings
+            .into_iter()
+            .zip(predicted.iter().copied())
+            .collect();
         let mut found = Self {
             lag: 0.0,
             damping: 0.0,
             time_step,
             passed,
         };
-        // How fast the specimen goes hangs on how far it is behind.
+        // The velocity of the specimen depends on its lag.
         for _ in 0..ROUNDS {
             let behind = found
                 .passed
                 .iter()
-                .map(|(reading, felt)| (reading.target - reading.displacement, *felt));
+                .map(|(reading, actual)| (reading.target - reading.displacement, *actual));
             found.lag = lag(behind, resolution);
             let mut speed = Speed::default();
-            for (step, foretold) in foretold.iter().enumerate() {
-                speed = found.speed(speed, *foretold, 1);
-                found.passed[step].1 = speed.felt;
+            for (step, predicted) in predicted.iter().enumerate() {
+                speed = found.speed(speed, *predicted, 1);
+                found.passed[step].1 = speed.actual;
             }
         }
         found.damping = damping(&found.at_rest(), &found.velocities().collect::<Vec<f64>>());
         found
     }
 
-    /// The readings as if the specimen had stood where it was read.
+    /// The readings as of the specimen at rest at each position.
     pub fn at_rest(&self) -> Vec<Reading> {
         let at_rest = |(reading, velocity): &(Reading, f64)| Reading {
-            target: self.place(reading.target, *velocity),
+            target: self.position(reading.target, *velocity),
             force: reading.force - self.damping * velocity,
             ..*reading
         };
         self.passed.iter().map(at_rest).collect()
     }
 
-    /// Once a target is passed for which a velocity (m/s) is foretold: ẋ = (d − x)/τ, the foretold one even from step to step, of which
-    /// there are `finer` for each of the record.
-    pub fn speed(&self, before: Speed, foretold: f64, finer: u8) -> Speed {
+    /// Velocities at a target for which `predicted` \[m/s\] is known: ẋ = (d − x)/τ, with the predicted velocity linear from step to step, of
+    /// which there are `finer` for each of the record.
+    pub fn speed(&self, before: Speed, predicted: f64, finer: u8) -> Speed {
         if self.lag <= 0.0 {
             return Speed {
-                foretold,
-                felt: foretold,
+                predicted,
+                actual: predicted,
             };
         }
         let time_step = self.time_step / f64::from(finer);
-        let slower = (foretold - before.foretold) / time_step * self.lag;
-        let fading = (before.felt - before.foretold + slower) * (-time_step / self.lag).exp();
+        let slower = (predicted - before.predicted) / time_step * self.lag;
+        let fading = (before.actual - before.predicted + slower) * (-time_step / self.lag).exp();
         Speed {
-            foretold,
-            felt: foretold - slower + fading,
+            predicted,
+            actual: predicted - slower + fading,
         }
     }
 
-    /// Of the specimen, m/s.
+    /// Velocities of the specimen \[m/s\].
     pub fn velocities(&self) -> impl Iterator<Item = f64> {
         self.passed.iter().map(|(_, velocity)| *velocity)
     }
 
-    /// Standard deviation of the forces that are told without their velocity, N, of a specimen of `stiffness` (N/m): the place that τ
-    /// tells is not quite where it was read, beyond what its quantum of `resolution` (m) makes of it, and ẋ = (d − x)/τ.
-    pub fn unsure(&self, stiffness: f64, resolution: f64) -> f64 {
+    /// Standard deviation of the forces at rest \[N\] for a specimen of `stiffness` \[N/m\]: the position by τ differs from the measured one
+    /// beyond the quantization of `resolution` \[m\], and ẋ = (d − x)/τ.
+    pub fn force_uncertainty(&self, stiffness: f64, resolution: f64) -> f64 {
         if self.lag <= 0.0 {
             return 0.0;
         }
         let off = |(reading, velocity): &(Reading, f64)| {
-            (reading.displacement - self.place(reading.target, *velocity)).powi(2)
+            (reading.displacement - self.position(reading.target, *velocity)).powi(2)
         };
         #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
         let mean = self.passed.iter().map(off).sum::<f64>() / self.passed.len() as f64;
@@ -157,18 +157,18 @@ impl UnderWay {
             * (mean - resolution * resolution / 12.0).max(0.0).sqrt()
     }
 
-    /// Where the specimen turned between the reading at `step` and the next, m; None if it did not.
+    /// Position of a reversal between the reading at `step` and the next \[m\]; None without one.
     pub fn turned(&self, step: usize) -> Option<f64> {
         let at = |step: usize| {
             self.passed
                 .get(step)
-                .map(|(reading, velocity)| (self.place(reading.target, *velocity), *velocity))
+                .map(|(reading, velocity)| (self.position(reading.target, *velocity), *velocity))
         };
         self.turn_between(at(step)?, at(step + 1)?, 1)
     }
 
-    /// Where it turns between two places (m) with their velocities (m/s), a step apart, of which there are `finer` for each of the
-    /// record. What is nearer to it tells more of it.
+    /// Position of a reversal between two positions \[m\] with their velocities \[m/s\], a step apart, of which there are `finer` for each of
+    /// the record. The nearer end has the larger weight.
     pub fn turn_between(
         &self,
         (from, before): (f64, f64),
@@ -186,40 +186,44 @@ impl UnderWay {
         })
     }
 
-    /// Where the specimen is as the actuator passes a target (m), itself with a velocity (m/s).
-    pub fn place(&self, target: f64, velocity: f64) -> f64 {
+    /// Position of the specimen \[m\] as the actuator passes a target \[m\], at its velocity \[m/s\].
+    pub fn position(&self, target: f64, velocity: f64) -> f64 {
         target - self.lag * velocity
     }
 
-    /// What is read where at rest it would be `force`, and `recorded` at the place of the reading of `step`, N. At the
-    /// recorded place and velocity it is the recorded force, to the bit.
+    /// Force in motion \[N\], for `force` at rest here and `recorded` at rest at the position of the reading of `step`. At the recorded
+    /// position and velocity it is the recorded force, bit-identical.
     pub fn force(&self, step: usize, (force, recorded): (f64, f64), velocity: f64) -> f64 {
         let (reading, passed_with) = self.passed[step];
         reading.force + (force - recorded) + self.damping * (velocity - passed_with)
     }
 
-    /// As it was read.
+    /// The recorded reading of a step.
     pub fn reading(&self, step: usize) -> &Reading {
         &self.passed[step].0
     }
 }
 
-/// How long the specimen is behind, of how far it is behind (m) at which velocity (m/s); s.
+/// Lag τ \[s\] from pairs of distance behind the target \[m\] and velocity \[m/s\]; 0 where it is not significant.
 pub fn lag(behind: impl Iterator<Item = (f64, f64)>, resolution: f64) -> f64 {
     let (both, own) = behind.fold((0.0, 0.0), |(both, own), (behind, velocity)| {
         (both + behind * velocity, own + velocity * velocity)
     });
-    let unsure = resolution / 12.0_f64.sqrt() / own.sqrt();
+    let force_uncertainty = resolution / 12.0_f64.sqrt() / own.sqrt();
     let lag = both / own;
-    if lag.abs() > SURE * unsure { lag } else { 0.0 }
+    if lag.abs() > SURE * force_uncertainty {
+        lag
+    } else {
+        0.0
+    }
 }
 
-/// What the force gains with the velocity beside what it gains with the place, N·s/m.
+/// Damping c: derivative of the force by the velocity at constant position \[N·s/m\]; 0 where it is not significant.
 fn damping(readings: &[Reading], velocities: &[f64]) -> f64 {
-    // Of each few increments: c (N·s/m), and what it tells (m²/s²).
-    let mut told: Vec<(f64, f64)> = Vec::new();
-    for (begin, end, _) in stretches_of(velocities.iter().copied()) {
-        // The increment in which it turned has two tangents.
+    // For each group: c [N·s/m] and its weight [m²/s²].
+    let mut slopes: Vec<(f64, f64)> = Vec::new();
+    for (begin, end, _) in branches_of(velocities.iter().copied()) {
+        // The increment with the reversal has two tangents.
         let mut first = if begin == 0 { 0 } else { begin + 1 };
         while first + TOGETHER <= end {
             let increments = || {
@@ -247,30 +251,33 @@ fn damping(readings: &[Reading], velocities: &[f64]) -> f64 {
                 (both + beside * r, own + beside * beside)
             });
             if own > 0.0 {
-                told.push((both / own, own));
+                slopes.push((both / own, own));
             }
             first += TOGETHER;
         }
     }
-    let Some(middle) = weighted_median(&mut told) else {
+    let Some(middle) = weighted_median(&mut slopes) else {
         return 0.0;
     };
-    let (all, squares) = told.iter().fold((0.0, 0.0), |(all, squares), (_, weight)| {
-        (all + weight, squares + weight * weight)
-    });
-    let mut off: Vec<(f64, f64)> = told
+    let (all, squares) = slopes
+        .iter()
+        .fold((0.0, 0.0), |(all, squares), (_, weight)| {
+            (all + weight, squares + weight * weight)
+        });
+    let mut off: Vec<(f64, f64)> = slopes
         .iter()
         .map(|(found, weight)| ((found - middle).abs(), *weight))
         .collect();
-    let unsure = OF_MEDIAN * weighted_median(&mut off).unwrap_or(0.0) * squares.sqrt() / all;
-    if middle.abs() > SURE * unsure {
+    let force_uncertainty =
+        OF_MEDIAN * weighted_median(&mut off).unwrap_or(0.0) * squares.sqrt() / all;
+    if middle.abs() > SURE * force_uncertainty {
         middle
     } else {
         0.0
     }
 }
 
-/// The value that half the weight is below; None of none.
+/// Weighted median; None for an empty list.
 fn weighted_median(weighed: &mut [(f64, f64)]) -> Option<f64> {
     weighed.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
     let half = 0.5 * weighed.iter().map(|(_, weight)| weight).sum::<f64>();
@@ -291,8 +298,8 @@ mod tests {
     const DAMPING: f64 = 9.0;
     const LAG: f64 = 4e-3;
 
-    /// Two swings that fade, from rest: place, velocity and acceleration of the specimen, 2 ms a step.
-    fn way() -> Vec<[f64; 3]> {
+    /// Two decaying oscillations from rest: position, velocity and acceleration of the specimen, every 2 ms.
+    fn motion() -> Vec<[f64; 3]> {
         let at = |time: f64| {
             let of = |size: f64, frequency: f64| {
                 let (sine, cosine) = (frequency * time).sin_cos();
@@ -313,33 +320,33 @@ mod tests {
     const FADES: f64 = 0.3;
     const TIME_STEP: f64 = 2e-3;
 
-    /// Targets ahead of the specimen by τẋ, what was read there, and the velocities foretold for them.
-    fn read(model: &mut impl RestoringForce, damping: f64, noise: f64) -> UnderWay {
-        let way = way();
-        let reading = |(step, [place, velocity, _]): (usize, &[f64; 3])| {
+    /// Targets ahead of the specimen by τẋ, the readings there, and the velocities predicted for them.
+    fn read(model: &mut impl RestoringForce, damping: f64, noise: f64) -> ContinuousReadings {
+        let motion = motion();
+        let reading = |(step, [position, velocity, _]): (usize, &[f64; 3])| {
             let sign = if step % 7 < 3 || step % 5 == 1 {
                 noise
             } else {
                 -noise
             };
-            let force = model.move_to(*place) + damping * velocity + sign;
+            let force = model.move_to(*position) + damping * velocity + sign;
             Reading {
-                target: place + LAG * velocity,
-                displacement: (place / 1e-6).round() * 1e-6,
+                target: position + LAG * velocity,
+                displacement: (position / 1e-6).round() * 1e-6,
                 force,
             }
         };
-        let readings = way.iter().enumerate().map(reading).collect();
-        let foretold: Vec<f64> = way
+        let readings = motion.iter().enumerate().map(reading).collect();
+        let predicted: Vec<f64> = motion
             .iter()
             .map(|[_, velocity, acceleration]| velocity + LAG * acceleration)
             .collect();
-        UnderWay::of(readings, &foretold, TIME_STEP, 1e-6)
+        ContinuousReadings::of(readings, &predicted, TIME_STEP, 1e-6)
     }
 
-    /// An elastic and a yielding specimen, exactly and with noise: τ by 1 µm of quantum, c by hand.
+    /// An elastic and a yielding specimen, exact and with noise: τ with a resolution of 1 µm, c in closed form.
     #[test]
-    fn lag_and_damper_are_found_whatever_the_specimen_does() {
+    fn lag_and_damping_are_identified_for_any_specimen() {
         for (yield_force, noise, within) in [
             (1e9, 0.0, 5e-3),
             (20.0, 0.0, 5e-3),
@@ -360,9 +367,8 @@ mod tests {
         }
     }
 
-    /// What noise alone shows is no damper.
     #[test]
-    fn noise_is_no_damper() {
+    fn noise_is_not_taken_for_damping() {
         assert_eq!(
             read(&mut Bilinear::new(STIFFNESS, 20.0, 0.1), 0.0, 0.5).damping,
             0.0
@@ -370,14 +376,14 @@ mod tests {
     }
 
     #[test]
-    fn without_its_velocity_a_reading_is_that_of_the_specimen_and_with_it_what_was_read() {
+    fn readings_at_rest_are_those_of_the_specimen_and_in_motion_the_recorded_ones() {
         let found = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), DAMPING, 0.0);
         let mut largest = 0.0_f64;
         for (step, (at_rest, (reading, velocity))) in
             found.at_rest().iter().zip(&found.passed).enumerate()
         {
             largest = largest.max((at_rest.force - STIFFNESS * at_rest.target).abs());
-            assert_eq!(found.place(reading.target, *velocity), at_rest.target);
+            assert_eq!(found.position(reading.target, *velocity), at_rest.target);
             assert_eq!(
                 found.force(step, (at_rest.force, at_rest.force), *velocity),
                 reading.force
@@ -389,14 +395,14 @@ mod tests {
 
     /// ½·a·t² of an even velocity, from either side; where it keeps its direction, none.
     #[test]
-    fn a_turn_between_two_readings_is_where_the_velocity_vanishes() {
-        let way = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), 0.0, 0.0);
+    fn a_reversal_between_two_readings_is_where_the_velocity_is_zero() {
+        let motion = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), 0.0, 0.0);
         for turn in [1e-4, 1e-3, 1.9e-3] {
-            let place = |time: f64| 0.5 * -3.0 * (time - turn).powi(2);
-            let at = |time: f64| (place(time), -3.0 * (time - turn));
-            let found = way.turn_between(at(0.0), at(TIME_STEP), 1).unwrap();
+            let position = |time: f64| 0.5 * -3.0 * (time - turn).powi(2);
+            let at = |time: f64| (position(time), -3.0 * (time - turn));
+            let found = motion.turn_between(at(0.0), at(TIME_STEP), 1).unwrap();
             assert!(found.abs() < 1e-15, "{found} m");
         }
-        assert_eq!(way.turn_between((0.0, 1.0), (1e-3, 2.0), 1), None);
+        assert_eq!(motion.turn_between((0.0, 1.0), (1e-3, 2.0), 1), None);
     }
 }

@@ -15,7 +15,7 @@ pub const fn nearest(step: usize, finer: u8) -> usize {
 
 /// The way as it is taken again.
 #[derive(Clone, Debug)]
-pub struct Again<'a> {
+pub struct Retrace<'a> {
     path: &'a RecordedPath,
     /// Steps for each of the record.
     finer: u8,
@@ -29,7 +29,7 @@ pub struct Again<'a> {
     /// Where it turned at the end of each branch, m; those to come as they were.
     turns: Vec<f64>,
     /// The last place, in metres of the record.
-    place: f64,
+    position: f64,
     /// With which it passed there, in metres of the record.
     speed: Speed,
     aside: Option<Aside>,
@@ -40,7 +40,7 @@ pub struct Again<'a> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Shift {
     /// m
-    place: f64,
+    position: f64,
     /// N
     force: f64,
 }
@@ -57,14 +57,14 @@ struct Aside {
     direction: f64,
 }
 
-impl<'a> Again<'a> {
+impl<'a> Retrace<'a> {
     pub(super) fn new(path: &'a RecordedPath, finer: u8) -> Self {
         let turns = path
             .branches
             .iter()
             .map(|branch| branch.turn.target)
             .collect();
-        let place = path.readings[0].target;
+        let position = path.readings[0].target;
         let shifts = vec![Shift::default(); path.branches.len()];
         Self {
             path,
@@ -74,7 +74,7 @@ impl<'a> Again<'a> {
             piece: 0,
             shifts,
             turns,
-            place,
+            position,
             speed: Speed::default(),
             aside: None,
             departed: false,
@@ -85,7 +85,7 @@ impl<'a> Again<'a> {
     #[must_use]
     pub fn start(&self) -> (f64, f64, f64) {
         let (displacement, force) = self.read();
-        (self.place, displacement, force)
+        (self.position, displacement, force)
     }
 
     /// Displacement (m) and force (N) read at the target of the next step, m.
@@ -97,20 +97,18 @@ impl<'a> Again<'a> {
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let speed = self
             .path
-            .under_way
+            .continuous
             .as_ref()
             .map(|it| it.speed(self.speed, velocity, self.finer))
             .unwrap_or_default();
-        let place = self
-            .path
-            .under_way
-            .as_ref()
-            .map_or(target, |under_way| under_way.place(target, speed.felt));
+        let position = self.path.continuous.as_ref().map_or(target, |continuous| {
+            continuous.position(target, speed.actual)
+        });
         let before = self.step;
         self.own_step += 1;
         self.step = nearest(self.own_step, self.finer);
-        self.go(place, speed.felt, before);
-        (self.place, self.speed) = (place, speed);
+        self.go(position, speed.actual, before);
+        (self.position, self.speed) = (position, speed);
         self.read()
     }
 
@@ -135,33 +133,37 @@ impl<'a> Again<'a> {
     }
 
     /// Goes on to a place (m), to be there with a velocity (m/s), from where it was at the step `before` of the record.
-    fn go(&mut self, place: f64, velocity: f64, before: usize) {
+    fn go(&mut self, position: f64, velocity: f64, before: usize) {
         let path = self.path;
         if let Some(aside) = self.aside {
             let branch = self.branch();
-            if (place - aside.from) * aside.direction <= 0.0 {
+            if (position - aside.from) * aside.direction <= 0.0 {
                 self.aside = None;
             } else if branch + 1 < path.branches.len() && path.branches[branch].end < self.step {
                 // The record has turned by now: it was that turn.
                 self.aside = None;
                 self.turn(aside.from);
             } else {
-                self.leaves_by(place - aside.from);
+                self.leaves_by(position - aside.from);
                 return;
             }
         } else {
-            let under_way = path.under_way.as_ref();
-            let moved = if under_way.is_some() {
+            let continuous = path.continuous.as_ref();
+            let moved = if continuous.is_some() {
                 velocity
             } else {
-                place - self.place
+                position - self.position
             };
             let against = moved * path.branches[self.branch()].direction < 0.0;
             if against {
-                let between = under_way.and_then(|it| {
-                    it.turn_between((self.place, self.speed.felt), (place, velocity), self.finer)
+                let between = continuous.and_then(|it| {
+                    it.turn_between(
+                        (self.position, self.speed.actual),
+                        (position, velocity),
+                        self.finer,
+                    )
                 });
-                let from = between.unwrap_or(self.place);
+                let from = between.unwrap_or(self.position);
                 if self.matched(before) {
                     self.turn(from);
                 } else {
@@ -172,23 +174,23 @@ impl<'a> Again<'a> {
                         force,
                         direction: moved.signum(),
                     });
-                    self.leaves_by(place - from);
+                    self.leaves_by(position - from);
                     return;
                 }
             } else if self.missed() {
                 self.skip();
             }
         }
-        self.rejoin(place);
+        self.rejoin(position);
     }
 
     /// Goes on to the piece on which a turn's place is passed.
-    fn rejoin(&mut self, place: f64) {
+    fn rejoin(&mut self, position: f64) {
         let path = self.path;
         let branch = path.branches[self.branch()];
         while self.piece < branch.last_piece
             && let Some(left) = path.pieces[self.piece + 1].rejoins
-            && (place - self.turns[left]) * branch.direction > 0.0
+            && (position - self.turns[left]) * branch.direction > 0.0
         {
             self.piece += 1;
         }
@@ -250,13 +252,13 @@ impl<'a> Again<'a> {
 
     /// Turns at `place` (m) onto the next branch: a curve that retraces the one it came from lies as that does, another one keeps its shape.
     /// One that closed no loop goes back to the line that it settled on.
-    fn turn(&mut self, place: f64) {
+    fn turn(&mut self, position: f64) {
         let path = self.path;
         let branch = self.branch();
         let next = branch + 1;
         let turn = path.branches[branch].turn;
         let before = self.shift();
-        let at = place - before.place;
+        let at = position - before.position;
         let mut shift = before;
         if !path.branches[next].retraces {
             // Readings so near each other tell noise.
@@ -269,24 +271,24 @@ impl<'a> Again<'a> {
             let piece = path.pieces[path.branches[next].first_piece];
             let (first, settled) = (piece.start_tangent, piece.end_tangent);
             let mut own = Shift {
-                place: off,
+                position: off,
                 force: rise,
             };
             if path.branches[next].drifts.is_some() && settled.abs() < SETTLED * first.abs() {
                 let along = (first * off - rise) / (first - settled);
                 own = Shift {
-                    place: along,
+                    position: along,
                     force: settled * along,
                 };
             }
             shift = Shift {
-                place: own.place + before.place,
+                position: own.position + before.position,
                 force: own.force + before.force,
             };
             self.shifts_by(off);
         }
         self.shifts[next] = shift;
-        self.turns[branch] = place;
+        self.turns[branch] = position;
         self.piece = path.branches[next].first_piece;
     }
 
@@ -304,32 +306,32 @@ impl<'a> Again<'a> {
     fn recorded(&self) -> (f64, f64) {
         let path = self.path;
         if let Some(aside) = self.aside {
-            let back = self.place - aside.from;
+            let back = self.position - aside.from;
             return (
                 aside.displacement + back,
                 aside.force + path.pieces[0].start_tangent * back,
             );
         }
-        self.at(self.place)
+        self.at(self.position)
     }
 
     /// The same at a place (m) on the curve that it is on.
-    fn at(&self, place: f64) -> (f64, f64) {
+    fn at(&self, position: f64) -> (f64, f64) {
         let shift = self.shift();
-        let at = place - shift.place;
+        let at = position - shift.position;
         let (displacement, force) = self.path.at(self.piece, self.looked_from(), at);
-        (displacement + (place - at), force + shift.force)
+        (displacement + (position - at), force + shift.force)
     }
 
     fn read(&self) -> (f64, f64) {
         let (displacement, force) = self.recorded();
         let step = self.looked_from();
         let recorded = self.path.readings[step].force;
-        let felt = self
+        let actual = self
             .path
-            .under_way
+            .continuous
             .as_ref()
-            .map(|under_way| under_way.force(step, (force, recorded), self.speed.felt));
-        (displacement, felt.unwrap_or(force))
+            .map(|continuous| continuous.force(step, (force, recorded), self.speed.actual));
+        (displacement, actual.unwrap_or(force))
     }
 }

@@ -19,9 +19,9 @@ const TARGETS: [f64; 9] = [0.0, 0.0, 0.1, 0.3, 0.35, 0.2, 0.05, 0.1, 0.4];
 #[test]
 fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
     let path = path(|x| 1000.0 * x + 5.0 * (1e3 * x).sin(), &TARGETS);
-    let mut again = path.again(1);
+    let mut retrace = path.retrace(1);
     assert_eq!(
-        again.start(),
+        retrace.start(),
         (
             TARGETS[0],
             path.readings[0].displacement,
@@ -30,7 +30,7 @@ fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
     );
     for (target, reading) in TARGETS.iter().zip(&path.readings).skip(1) {
         assert_eq!(
-            again.move_to(*target),
+            retrace.move_to(*target),
             (reading.displacement, reading.force)
         );
     }
@@ -40,10 +40,10 @@ fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
 #[test]
 fn an_elastic_way_taken_off_its_targets_is_elastic() {
     let path = path(|x| 1000.0 * x, &TARGETS);
-    let mut again = path.again(1);
+    let mut retrace = path.retrace(1);
     for (step, target) in (0..).zip(TARGETS.iter().chain(&[0.5, 0.6, -0.2])).skip(1) {
         let off = target + 0.02 * f64::from(step).cos();
-        let (displacement, force) = again.move_to(off);
+        let (displacement, force) = retrace.move_to(off);
         assert!((force - 1000.0 * off).abs() < 1e-9, "step {step}: {force}");
         assert!((displacement - off - 1e-4).abs() < 1e-12);
     }
@@ -78,16 +78,16 @@ fn turned_elsewhere_a_yielding_specimen_comes_back_on_its_own_line() {
         .to_vec();
     let path = RecordedPath::new(readings, 1000.0, 0.0, 0.0).unwrap();
     for turned in [0.49, 0.5, 0.51, 0.53] {
-        let mut again = path.again(1);
+        let mut retrace = path.retrace(1);
         for target in [0.21, 0.41, turned] {
             assert!(
-                (again.move_to(target).1 - loading(target)).abs() < 1e-9,
+                (retrace.move_to(target).1 - loading(target)).abs() < 1e-9,
                 "{turned}"
             );
         }
         for target in [0.46, 0.39] {
             let by_hand = loading(turned) - 1000.0 * (turned - target);
-            let (_, force) = again.move_to(target);
+            let (_, force) = retrace.move_to(target);
             assert!(
                 (force - by_hand).abs() < 1e-9,
                 "{turned}: {force} {by_hand}"
@@ -109,23 +109,23 @@ fn noise_makes_no_tangent() {
         }
     };
     let path = RecordedPath::new((0..200).map(readings).collect(), 1000.0, 1.0, 0.0).unwrap();
-    let mut again = path.again(1);
+    let mut retrace = path.retrace(1);
     for step in 1..200 {
-        again.move_to(1e-3 * f64::from(step));
+        retrace.move_to(1e-3 * f64::from(step));
     }
-    let (_, force) = again.move_to(0.3);
+    let (_, force) = retrace.move_to(0.3);
     assert!((force - 300.0).abs() < 12.0, "{force}");
 }
 
 /// Steps of `step` (m) from turn to turn.
-fn way(turns: &[f64], step: f64) -> Vec<f64> {
+fn motion(turns: &[f64], step: f64) -> Vec<f64> {
     let mut places = vec![turns[0]];
     for ends in turns.windows(2) {
         let count = ((ends[1] - ends[0]).abs() / step).round();
-        let mut taken = 0.0;
-        while taken < count {
-            taken += 1.0;
-            places.push(ends[0] + (ends[1] - ends[0]) * taken / count);
+        let mut selected = 0.0;
+        while selected < count {
+            selected += 1.0;
+            places.push(ends[0] + (ends[1] - ends[0]) * selected / count);
         }
     }
     places
@@ -142,11 +142,11 @@ fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
 
 /// The largest force that the way taken again reads wrongly.
 fn worst(path: &RecordedPath, mut model: impl RestoringForce, targets: &[f64]) -> f64 {
-    let mut again = path.again(1);
+    let mut retrace = path.retrace(1);
     model.move_to(targets[0]);
     targets[1..]
         .iter()
-        .map(|target| (again.move_to(*target).1 - model.move_to(*target)).abs())
+        .map(|target| (retrace.move_to(*target).1 - model.move_to(*target)).abs())
         .fold(0.0, f64::max)
 }
 
@@ -162,13 +162,13 @@ const STEP: f64 = 2e-3;
 fn elements_side_by_side_are_told_wherever_they_are_turned() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
     let cut = 0.5 * 1000.0 * STEP;
-    let path = recorded(bilinear(), &way(&LOOPS, STEP));
+    let path = recorded(bilinear(), &motion(&LOOPS, STEP));
     assert!(path.keeps_masing);
-    let off = worst(&path, bilinear(), &way(&MOVED, STEP));
+    let off = worst(&path, bilinear(), &motion(&MOVED, STEP));
     assert!(off < 1e-9, "{off} N");
     let multilinear = || Multilinear::new(&[[0.1, 100.0], [0.25, 200.0], [0.7, 300.0]]);
-    let path = recorded(multilinear(), &way(&LOOPS, STEP));
-    let off = worst(&path, multilinear(), &way(&MOVED, STEP));
+    let path = recorded(multilinear(), &motion(&LOOPS, STEP));
+    let off = worst(&path, multilinear(), &motion(&MOVED, STEP));
     assert!(off <= cut, "{off} N");
 }
 
@@ -178,9 +178,9 @@ fn finer_steps_cut_less() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
     for step in [7e-3, 1.9e-3, 5.3e-4] {
         let off = worst(
-            &recorded(bilinear(), &way(&LOOPS, step)),
+            &recorded(bilinear(), &motion(&LOOPS, step)),
             bilinear(),
-            &way(&MOVED, step),
+            &motion(&MOVED, step),
         );
         assert!(
             off > 1e-3 * 1000.0 * step && off <= 0.5 * 1000.0 * step,
@@ -193,15 +193,15 @@ fn finer_steps_cut_less() {
 #[test]
 fn turns_are_its_own() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
-    let path = recorded(bilinear(), &way(&[0.0, 0.4, 0.38, 0.6, 0.5], STEP));
-    let straight = way(&[0.0, 0.61, 0.5], STEP);
+    let path = recorded(bilinear(), &motion(&[0.0, 0.4, 0.38, 0.6, 0.5], STEP));
+    let straight = motion(&[0.0, 0.61, 0.5], STEP);
     let off = worst(&path, bilinear(), &straight);
     assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
     for turn in [0.39, 0.41] {
         let off = worst(
             &path,
             bilinear(),
-            &way(&[0.0, turn, turn - 0.02, 0.6, 0.5], STEP),
+            &motion(&[0.0, turn, turn - 0.02, 0.6, 0.5], STEP),
         );
         assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
     }
@@ -211,15 +211,15 @@ fn turns_are_its_own() {
 #[test]
 fn a_turn_that_was_not_recorded_is_told() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
-    let path = recorded(bilinear(), &way(&[0.0, 0.6], STEP));
-    let targets = way(&[0.0, 0.4, 0.35, 0.6], STEP);
+    let path = recorded(bilinear(), &motion(&[0.0, 0.6], STEP));
+    let targets = motion(&[0.0, 0.4, 0.35, 0.6], STEP);
     let off = worst(&path, bilinear(), &targets);
     assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
-    let mut again = path.again(1);
+    let mut retrace = path.retrace(1);
     for target in &targets {
-        again.move_to(*target);
+        retrace.move_to(*target);
     }
-    assert!(again.departed() && !path.again(1).departed());
+    assert!(retrace.departed() && !path.retrace(1).departed());
 }
 
 /// Sixty turns forth and back that grow and fade, `more` of them larger, m.
@@ -283,19 +283,19 @@ fn a_record_says_whether_it_keeps_masings_rule() {
             (vec![0.0, 0.6, -0.4], vec![0.0, 0.61, -0.4]),
             (swings(0.0), swings(0.02)),
         ] {
-            let path = recorded(model.clone(), &way(&turns, STEP));
+            let path = recorded(model.clone(), &motion(&turns, STEP));
             assert_eq!(path.keeps_masing, keeps, "{model:?}");
             let departed = |turns: &[f64]| {
-                let mut again = path.again(1);
-                way(turns, STEP)[1..].iter().for_each(|target| {
-                    again.move_to(*target);
+                let mut retrace = path.retrace(1);
+                motion(turns, STEP)[1..].iter().for_each(|target| {
+                    retrace.move_to(*target);
                 });
-                again.departed()
+                retrace.departed()
             };
             assert!(!departed(&turns), "{model:?}");
             assert_eq!(departed(&elsewhere), !keeps, "{model:?}");
         }
     }
-    let curved = path(|x| 1000.0 * x + 800.0 * x.powi(3), &way(&LOOPS, STEP));
+    let curved = path(|x| 1000.0 * x + 800.0 * x.powi(3), &motion(&LOOPS, STEP));
     assert!(curved.keeps_masing);
 }

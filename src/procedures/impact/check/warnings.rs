@@ -4,7 +4,7 @@
 use super::time_step::{predicted_critical, time_step_before_the_run};
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{specimens, whole as fault};
-use crate::physics::structure::portal_limit::mechanism_limit;
+use crate::physics::structure::portal::limit::mechanism_limit;
 use crate::plan::formula::NoResults;
 use crate::plan::{Behaviour, Contact, Impact, Specimen, Striker};
 use crate::text::source::Span;

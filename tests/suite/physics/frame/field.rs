@@ -1,9 +1,9 @@
-//! What the field has published of these integrators: HHT-α, and what an actuator that misses its target does to a run.
+//! Published results on these integrators: HHT-α, and the effect of an actuator that misses its target.
 
-use psd::physics::frame::{
-    Damping, FrameInput, FrameMatrices, FrameSolver, FrameState, SymmetricBand, damping_matrix,
-    modes,
-};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::solver::FrameSolver;
+use psd::physics::integrator::state::FrameState;
+use psd::physics::structure::{Damping, FrameMatrices, SymmetricBand, damping_matrix, modes};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform};
@@ -43,7 +43,7 @@ fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
         &found,
     )
     .expect("ratios");
-    let dense = |band: &psd::physics::frame::SymmetricBand| {
+    let dense = |band: &psd::physics::structure::SymmetricBand| {
         std::array::from_fn::<[f64; 3], 3, _>(|i| std::array::from_fn(|j| band.entry(i, j)))
     };
     let (m, c, k) = (
@@ -125,8 +125,7 @@ fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
     }
 }
 
-/// Where an actuator ends that was sent from its last target (m) or place to a new target, all three as (target before,
-/// place before, target).
+/// Position of an actuator after a command \[m\], from (last target, last position, target).
 type Miss = fn(f64, f64, f64) -> f64;
 
 /// Period 0.5 s, steps of 0.01 s, ten cycles from a displacement of 1 m at rest: the largest |d| of the last cycle.
@@ -208,7 +207,7 @@ fn a_missed_target_feeds_or_drains_a_run_as_published() {
 }
 
 /// Ten cycles of 0.5 s in steps of 0.01 s by α-OS, from `start` (m) at rest: the largest |d| of each degree of freedom in the last
-/// cycle over its first. `miss` gives the place of an axis, from its number, the last target and the target.
+/// cycle over its first. `miss` gives the position of an axis, from its number, the last target and the target.
 fn growth(
     frame: &FrameMatrices,
     start: &[f64],

@@ -1,11 +1,14 @@
 //! Frames on ground that moves: a harmonic motion against its exact solution, and an elastic–plastic building under a record
 //! against exact arcs between yields and unloadings.
 
-use psd::physics::frame::{
-    Damping, FrameInput, FrameMatrices, FrameSolver, SymmetricBand, Tangents, damping_matrix,
-    drifts, floor_forces, modes, storey_stiffness,
-};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::solver::FrameSolver;
+use psd::physics::integrator::tangents::Tangents;
 use psd::physics::specimen::{Bilinear, RestoringForce};
+use psd::physics::structure::{
+    Damping, FrameMatrices, SymmetricBand, damping_matrix, drifts, floor_forces, modes,
+    storey_stiffness,
+};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform, uniform_frequency, uniform_shape};
@@ -122,7 +125,7 @@ fn yielding_frame() -> FrameMatrices {
 }
 
 /// The exact motion: while no storey changes its branch the frame is linear and the load a straight line, so that the state
-/// [x, v, 1, t] goes on by the exponential of a constant matrix, summed as a series.
+/// [x, v, 1, t] follows by the exponential of a constant matrix, summed as a series.
 struct Exact {
     damping: [[f64; 2]; 2],
     state: [f64; 6],
@@ -341,7 +344,7 @@ fn a_yielding_building_converges_to_the_exact_motion() {
         );
         assert!(fine < 2e-5 * peak, "{integrator:?}: {fine} of {peak} m");
     }
-    // The tangent form foretells the force by K_t: with K0 on a yielding storey it errs in every step and is of first order.
+    // The tangent form predicts the force by K_t: with K0 on a yielding storey it errs in every step and is of first order.
     let stale = [64, 128].map(|steps| worst(Integrator::Tangent, Tangents::Initial, steps, &exact));
     assert!(
         ((stale[0] / stale[1]).log2() - 1.0).abs() < 0.1,

@@ -1,9 +1,11 @@
-//! A blow on one floor: one degree of freedom is the impact of old, many close their energy and tend to what mechanics says.
+//! An impact on one floor: one storey equals one degree of freedom; many close their energy balance and converge to closed forms.
 
 use psd::physics::contact::NeedsTangent;
 use psd::physics::contact::state::ContactLaw;
-use psd::physics::frame::{FrameInput, FrameMatrices, SymmetricBand, Tangents, storey_stiffness};
-use psd::physics::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactState, Striking};
+use psd::physics::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactSetup, ImpactState};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::tangents::Tangents;
+use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::plan::Integrator;
 
 use super::super::support::{impact, run};
@@ -16,7 +18,7 @@ const LIMIT: ContactLaw = ContactLaw::Limit { force: 1500.0 };
 /// balance.
 fn strike(input: &Struck) -> (Vec<ImpactState>, FrameImpactSolver, f64) {
     let order = input.frame.matrices.order();
-    let mut solver = FrameImpactSolver::on(&input.frame, &input.striking).expect("an impact");
+    let mut solver = FrameImpactSolver::on(&input.frame, &input.setup).expect("an impact");
     let mut force = vec![0.0; order];
     let (mut states, mut worst) = (vec![*solver.state()], 0.0_f64);
     while !solver.finished() && solver.structure().time < 10.0 {
@@ -32,13 +34,13 @@ fn strike(input: &Struck) -> (Vec<ImpactState>, FrameImpactSolver, f64) {
 /// A frame and what strikes it.
 struct Struck<'a> {
     frame: FrameInput<'a>,
-    striking: Striking,
+    setup: ImpactSetup,
 }
 
-fn blow(frame: FrameInput, struck: usize, law: ContactLaw) -> Struck {
+fn impact_on(frame: FrameInput, struck: usize, law: ContactLaw) -> Struck {
     Struck {
         frame,
-        striking: Striking {
+        setup: ImpactSetup {
             struck,
             mass: 10.0,
             velocity: 1.0,
@@ -57,7 +59,7 @@ fn single(mass: f64, stiffness: f64) -> FrameMatrices {
     }
 }
 
-/// Every number of every step of both to the last bit, whatever the law and the integrator, with a damper and a weight that falls
+/// Every number of every step of both is bit-identical for every contact law and integrator, with a damper and a weight that falls
 /// before it hits.
 #[test]
 fn one_floor_is_one_degree_of_freedom() {
@@ -100,7 +102,7 @@ fn one_floor_is_one_degree_of_freedom() {
                 ..impact(mass, stiffness, law, time_step)
             });
             let tangents = Tangents::Storeys { largest_ratio: 2.0 };
-            let input = blow(
+            let input = impact_on(
                 FrameInput {
                     tangents,
                     ..at(&frame, integrator, time_step, &[0.0])
@@ -109,10 +111,10 @@ fn one_floor_is_one_degree_of_freedom() {
                 law,
             );
             let (states, _, worst) = strike(&Struck {
-                striking: Striking {
+                setup: ImpactSetup {
                     gravity,
                     gap,
-                    ..input.striking
+                    ..input.setup
                 },
                 ..input
             });
@@ -128,7 +130,7 @@ fn one_floor_is_one_degree_of_freedom() {
     }
 }
 
-/// A first blow takes ½(1 − e²)μu² with μ of the struck floor's own mass, whatever stands on it.
+/// A first impact dissipates ½(1 − e²)μu² with μ of the struck floor's own mass, whatever it carries.
 #[test]
 fn a_blow_on_one_floor_meets_that_floor_s_mass() {
     let frame = uniform(5, 4.0, 3e4);
@@ -137,8 +139,8 @@ fn a_blow_on_one_floor_meets_that_floor_s_mass() {
         (ContactLaw::Restitution { coefficient: 0.3 }, 0.3),
         (ContactLaw::Restitution { coefficient: 1.0 }, 1.0),
     ] {
-        let input = blow(at(&frame, Integrator::Tangent, 1e-7, &[0.0; 5]), 2, law);
-        let mut solver = FrameImpactSolver::on(&input.frame, &input.striking).expect("an impact");
+        let input = impact_on(at(&frame, Integrator::Tangent, 1e-7, &[0.0; 5]), 2, law);
+        let mut solver = FrameImpactSolver::on(&input.frame, &input.setup).expect("an impact");
         for _ in 0..2 {
             let target = solver.predict().to_vec();
             let mut force = [0.0; 5];
@@ -166,14 +168,17 @@ fn a_blow_on_one_floor_meets_that_floor_s_mass() {
     }
 }
 
-/// The same blow through every integrator, and its energy.
+/// The same impact by every integrator, and its energy.
 #[test]
 fn every_integrator_tends_to_the_same_blow() {
     let frame = uniform(3, 4.0, 3e4);
     for law in [RIGID, ContactLaw::Limit { force: 800.0 }] {
         let peak = |integrator, time_step| {
-            let (states, _, worst) =
-                strike(&blow(at(&frame, integrator, time_step, &[0.0; 3]), 1, law));
+            let (states, _, worst) = strike(&impact_on(
+                at(&frame, integrator, time_step, &[0.0; 3]),
+                1,
+                law,
+            ));
             (
                 states
                     .into_iter()
@@ -211,8 +216,8 @@ fn every_integrator_tends_to_the_same_blow() {
 fn what_is_no_impact_on_a_frame_is_refused() {
     let frame = uniform(2, 4.0, 3e4);
     let refused = |integrator, struck, law| {
-        let input = blow(at(&frame, integrator, 1e-3, &[0.0; 2]), struck, law);
-        FrameImpactSolver::on(&input.frame, &input.striking).expect_err("no impact")
+        let input = impact_on(at(&frame, integrator, 1e-3, &[0.0; 2]), struck, law);
+        FrameImpactSolver::on(&input.frame, &input.setup).expect_err("no impact")
     };
     let hertz = ContactLaw::Hertz {
         stiffness: 1e8,
@@ -221,7 +226,7 @@ fn what_is_no_impact_on_a_frame_is_refused() {
     };
     assert_eq!(
         refused(Integrator::Tangent, 2, RIGID),
-        ImpactError::NoSuchPlace {
+        ImpactError::NoSuchDegreeOfFreedom {
             struck: 2,
             order: 2
         }

@@ -1,9 +1,9 @@
-//! Frames of many degrees of freedom: modes, integrators, loads, blows, each against what is known of it otherwise.
+//! Frames of many degrees of freedom: modes, integrators, loads and impacts, compared with independent solutions.
 
-mod blow;
 mod field;
 mod ground;
 mod impact;
 mod modes;
 mod order;
+mod storey_impact;
 mod support;

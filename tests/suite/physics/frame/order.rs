@@ -1,9 +1,11 @@
-//! The integrators on linear frames: order of convergence, the stability limit, the energy balance, and what a storey's own
+//! The integrators on linear frames: order of convergence, the stability limit, the energy balance, and the effect of a storey's own
 //! tangent changes (nothing).
 
-use psd::physics::frame::{
-    Damping, FrameInput, FrameMatrices, FrameSolver, FrameState, Tangents, damping_matrix, modes,
-};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::solver::FrameSolver;
+use psd::physics::integrator::state::FrameState;
+use psd::physics::integrator::tangents::Tangents;
+use psd::physics::structure::{Damping, FrameMatrices, damping_matrix, modes};
 use psd::plan::Integrator;
 
 use super::support::{at, run_linear, uniform, uniform_frequency, uniform_shape};

@@ -1,8 +1,10 @@
 //! Frames to test on, and runs of them on ideal specimens.
 
-use psd::physics::frame::{
-    FrameInput, FrameMatrices, FrameSolver, FrameState, SymmetricBand, Tangents, storey_stiffness,
-};
+use psd::physics::integrator::input::FrameInput;
+use psd::physics::integrator::solver::FrameSolver;
+use psd::physics::integrator::state::FrameState;
+use psd::physics::integrator::tangents::Tangents;
+use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::plan::Integrator;
 
 /// Storeys of one mass (kg) and one stiffness (N/m), undamped.
@@ -55,7 +57,7 @@ pub fn at<'a>(
     }
 }
 
-/// So many steps on an ideal linear specimen under `load`, from the given displacement at rest; told every state.
+/// `steps` steps on an ideal linear specimen under `load`, from the given displacement at rest; every state is passed on.
 pub fn run_linear(
     input: &FrameInput,
     displacement: &[f64],

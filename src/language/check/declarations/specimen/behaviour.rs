@@ -113,7 +113,7 @@ fn part<'a>(
                         yield_force,
                         hardening,
                     },
-                    Some(deterioration) => Behaviour::WearingBilinear {
+                    Some(deterioration) => Behaviour::DeterioratingBilinear {
                         stiffness,
                         yield_force,
                         hardening,

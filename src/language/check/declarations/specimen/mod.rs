@@ -13,7 +13,7 @@ use super::striker::uncertainty;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{frames, names as message, specimens};
 use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::physics::structure::portal_limit::mechanism_limit;
+use crate::physics::structure::portal::limit::mechanism_limit;
 use crate::plan::formula::{Formula, Function, Stated};
 use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
 use crate::schema::{FieldType, Kind, specimen as fields};

@@ -1,0 +1,497 @@
+//! An impact, step by step, on one degree of freedom or on one floor of many: prediction, the force read back, the striker, the
+//! energies. In: a structure, a striker, readings. Out: targets, and the end of each step. It commands no rig: the caller moves the
+//! specimen to the targets and returns the readings.
+
+use super::energy::Energies;
+use super::{ImpactError, ImpactInput, ImpactSetup, ImpactState, Sink, Until};
+use crate::contact::state::StepState;
+use crate::contact::{Advance, AnyContact, Approaching, Decided, ImpulseContact, Start};
+use crate::integrator::Integrator;
+use crate::integrator::input::SolverInput;
+use crate::integrator::solver::Solver;
+use crate::integrator::state::State;
+use crate::integrator::step_form::StepForm;
+use crate::integrator::substep::{Striker, Substep, Workspace};
+use crate::integrator::tangents::Tangents;
+use crate::structure::matrix::{Factor, Matrix, Vector};
+
+/// A pseudo-dynamic impact test: `predict`, command, read, `complete`.
+#[derive(Clone, Debug)]
+pub struct ImpactSolver<V: Vector = f64> {
+    structure: Solver<V>,
+    law: AnyContact,
+    striker: Striker,
+    decided: Decided,
+    /// The step in progress, for a law that divides the step.
+    passed: Option<Advance>,
+    workspace: Workspace<V>,
+    reach: Option<Reach<V>>,
+    unloaded: V,
+    /// ½ Ms V0², J.
+    striker_energy: f64,
+    /// [`ImpactState::input`] without the work of a weight \[J\].
+    first_input: f64,
+    state: ImpactState,
+    striker_stopped: bool,
+}
+
+/// That on one floor of a frame.
+pub type FrameImpactSolver = ImpactSolver<Vec<f64>>;
+
+/// How far and how fast a structure can still move its struck degree of freedom with the energy that it has.
+#[derive(Clone, Debug)]
+struct Reach<V: Vector> {
+    stiffness: <V::Matrix as Matrix>::Factor,
+    /// e_sᵀK⁻¹e_s, m/N
+    compliance: f64,
+    /// e_sᵀM⁻¹e_s, 1/kg
+    mobility: f64,
+}
+
+impl<V: Vector> Reach<V> {
+    /// None where the structure does not resist.
+    fn new(form: &StepForm<V>, struck: usize) -> Option<Self> {
+        let unit = |factor: &<V::Matrix as Matrix>::Factor| {
+            let mut unit = V::zero(form.matrices.mass.rows());
+            unit.as_mut_slice()[struck] = 1.0;
+            factor.solve(&mut unit);
+            unit.as_slice()[struck]
+        };
+        let stiffness = Factor::of(&form.matrices.stiffness).ok()?;
+        let (compliance, mobility) = (unit(&stiffness), unit(form.mass_factor()));
+        Some(Self {
+            stiffness,
+            compliance,
+            mobility,
+        })
+    }
+
+    /// ½RᵀK⁻¹R: elastic energy of a structure under these forces \[N\], in \[J\].
+    fn stored(&self, force: &V) -> f64 {
+        let mut bent = force.clone();
+        self.stiffness.solve(&mut bent);
+        0.5 * bent.dot(force)
+    }
+
+    /// Largest speed (m/s) and least displacement (m) of the struck degree of freedom from here on, as far as the structure is
+    /// elastic.
+    fn bounds(&self, state: &State<V>, struck: usize) -> (f64, f64) {
+        let mut bent = state.restoring_force.clone();
+        self.stiffness.solve(&mut bent);
+        let stored = bent.dot(&state.restoring_force).max(0.0);
+        let twice_energy = 2.0 * state.energies.kinetic + stored;
+        let rest = state.displacement.as_slice()[struck] - bent.as_slice()[struck];
+        (
+            (twice_energy * self.mobility).sqrt(),
+            rest - (twice_energy * self.compliance).sqrt(),
+        )
+    }
+}
+
+impl ImpactSolver {
+    /// An impact on one degree of freedom. R₀ is read once before the first step; M Ẍ₀ = −CẊ₀ − R₀ with the structure at rest.
+    ///
+    /// # Errors
+    /// The structure is none that can be stepped, or law and integrator do not go together.
+    pub fn new(
+        input: &ImpactInput,
+        initial_displacement: f64,
+        initial_restoring_force: f64,
+    ) -> Result<Self, ImpactError> {
+        let structure = SolverInput {
+            matrices: &input.matrices(),
+            operator_stiffness: &input.operator_stiffness,
+            integrator: input.integrator,
+            i_modification: input.i_modification,
+            tangents: Tangents::Storeys {
+                largest_ratio: input.max_tangent_ratio,
+            },
+            time_step: input.time_step,
+            initial_displacement,
+            initial_restoring_force,
+            initial_load: 0.0,
+            force_noise: input.force_noise,
+            resolution: input.resolution,
+        };
+        Self::on(&structure, &input.setup())
+    }
+}
+
+impl<V: Vector> ImpactSolver<V> {
+    /// An impact on one degree of freedom of a structure, under its initial load throughout.
+    ///
+    /// # Errors
+    /// The structure is none that can be stepped, the struck degree of freedom is not in it, or law and integrator do not go
+    /// together.
+    pub fn on(input: &SolverInput<V>, setup: &ImpactSetup) -> Result<Self, ImpactError> {
+        let ImpactSetup {
+            struck,
+            mass,
+            velocity,
+            gap,
+            gravity,
+            law,
+        } = *setup;
+        let order = input.matrices.mass.rows();
+        if struck >= order {
+            return Err(ImpactError::NoSuchDegreeOfFreedom { struck, order });
+        }
+        let mut structure = Solver::new(input)?;
+        structure.form.strike(struck);
+        let reach = Reach::new(&structure.form, struck);
+        let struck_mass = structure
+            .form
+            .struck()
+            .map_or(f64::NAN, |(_, push)| 1.0 / push.as_slice()[struck]);
+        let time_step = input.time_step;
+        let approaching = Approaching {
+            mass: struck_mass,
+            striker_mass: mass,
+            velocity,
+            time_step,
+        };
+        let law = AnyContact::new(law, input.integrator, approaching)?;
+        let striker_energy = 0.5 * mass * velocity * velocity;
+        let stored = reach.as_ref().map_or(0.0, |reach| {
+            reach.stored(&structure.state().restoring_force)
+        });
+        let first_input = striker_energy + stored;
+        let advance = Advance {
+            striker_displacement: structure.state().displacement.as_slice()[struck] - gap,
+            striker_velocity: velocity,
+            state: StepState::Free,
+            contact_force: 0.0,
+            indentation: 0.0,
+            contact_loss: 0.0,
+            damping_work: 0.0,
+            indentation_work: 0.0,
+            contacts: 0,
+        };
+        let energies = Energies {
+            striker: striker_energy,
+            ..Energies::default()
+        };
+        Ok(Self {
+            state: state(&structure, struck, &advance, energies, first_input),
+            workspace: Workspace::new(&structure.form),
+            unloaded: structure.state().load.clone(),
+            structure,
+            law,
+            striker: Striker {
+                struck,
+                mass,
+                gravity,
+                time_step,
+            },
+            decided: Decided::FREE,
+            passed: None,
+            reach,
+            striker_energy,
+            first_input,
+            striker_stopped: false,
+        })
+    }
+
+    #[inline]
+    fn start(&self) -> Start {
+        let state = &self.state;
+        Start {
+            displacement: state.displacement,
+            velocity: state.velocity,
+            striker_displacement: state.striker_displacement,
+            striker_velocity: state.striker_velocity,
+            contact_force: state.contact_force,
+            touching: state.state != StepState::Free,
+            indentation: state.indentation,
+        }
+    }
+
+    /// Before the first step: where the structure was measured, m.
+    pub fn measured_at_start(&mut self, measured_displacement: V::View<'_>) {
+        self.structure.measured_at_start(measured_displacement);
+        self.state.measured_displacement =
+            self.structure.state().measured_displacement.as_slice()[self.striker.struck];
+    }
+
+    /// Displacements to command in this step, m. Asked again before `complete`, they are the same.
+    #[inline]
+    pub fn predict(&mut self) -> V::View<'_> {
+        let start = self.start();
+        let Self {
+            structure,
+            law,
+            striker,
+            decided,
+            passed,
+            workspace,
+            unloaded,
+            ..
+        } = self;
+        match law {
+            AnyContact::Impulse(law) => {
+                structure.predict_with(unloaded.view(), |free, compliance| {
+                    *decided = law.decide(striker, &start, free, compliance);
+                    decided.force
+                })
+            }
+            AnyContact::Hertz(law) => {
+                structure.predict_by(unloaded.view(), |form, from, load_end, to| {
+                    let Some((mut substep, mut scratch)) =
+                        Substep::new(form, &from, load_end, workspace)
+                    else {
+                        return 0.0;
+                    };
+                    passed
+                        .insert(law.pass(&mut substep, striker, &start, &mut scratch, to))
+                        .damping_work
+                })
+            }
+            AnyContact::Restitution(law) => {
+                structure.predict_by(unloaded.view(), |form, from, load_end, to| {
+                    let Some((mut substep, mut scratch)) =
+                        Substep::new(form, &from, load_end, workspace)
+                    else {
+                        return 0.0;
+                    };
+                    passed
+                        .insert(law.pass(&mut substep, striker, &start, &mut scratch, to))
+                        .damping_work
+                })
+            }
+        }
+    }
+
+    /// Velocities that the step is predicted to end with, m/s, and whether a contact force has its share in them: exact under
+    /// `tangent`; under the others the structure keeps its own acceleration, of an impact only the half of the impulse that this step
+    /// still has is added, and a limit force lasts.
+    pub fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {
+        self.predict();
+        self.structure.predicted_velocity(velocity);
+        let before = self.state.contact_force;
+        match &self.law {
+            AnyContact::Impulse(law) if self.structure.form.integrator != Integrator::Tangent => {
+                let over = if before >= law.force_limit() {
+                    0.0
+                } else {
+                    0.5
+                };
+                let mut change = V::zero(velocity.len());
+                self.structure
+                    .form
+                    .push(-over * self.striker.time_step * before, &mut change);
+                for (velocity, change) in velocity.iter_mut().zip(change.as_slice()) {
+                    *velocity += change;
+                }
+                before > 0.0
+            }
+            AnyContact::Impulse(_) => before > 0.0 || self.structure.form.contact_force() > 0.0,
+            AnyContact::Hertz(_) | AnyContact::Restitution(_) => {
+                before > 0.0 || self.passed.is_some_and(|passed| passed.contact_force > 0.0)
+            }
+        }
+    }
+
+    /// Ends the step with the readings at the targets.
+    #[inline]
+    pub fn complete(
+        &mut self,
+        measured_displacement: V::View<'_>,
+        restoring_force: V::View<'_>,
+    ) -> &ImpactState {
+        if !self.structure.is_predicted() {
+            self.predict();
+        }
+        let start = self.start();
+        let Self {
+            structure,
+            law,
+            striker,
+            decided,
+            ..
+        } = self;
+        structure.complete_with(
+            measured_displacement,
+            restoring_force,
+            |free, compliance| {
+                if let AnyContact::Impulse(law) = law {
+                    *decided = law.decide(striker, &start, free, compliance);
+                }
+                decided.force
+            },
+        );
+        self.follow(&start);
+        &self.state
+    }
+
+    /// The striker, and the energies of both.
+    #[inline]
+    fn follow(&mut self, start: &Start) {
+        let passed = self.passed.take();
+        let Self {
+            structure,
+            striker,
+            decided,
+            ..
+        } = &*self;
+        let (after, struck) = (structure.state(), striker.struck);
+        let advance = passed.unwrap_or_else(|| {
+            let end = [
+                after.displacement.as_slice()[struck],
+                after.velocity.as_slice()[struck],
+            ];
+            ImpulseContact::advance(striker, start, *decided, end)
+        });
+        let (balance, before) = (&after.energies, &self.state.energies);
+        let fallen = advance.striker_displacement - start.striker_displacement;
+        let mut energies = Energies {
+            striker: 0.5 * striker.mass * advance.striker_velocity * advance.striker_velocity,
+            structure: balance.kinetic,
+            restoring: balance.restoring,
+            damping: balance.damping,
+            contact_loss: before.contact_loss + advance.contact_loss,
+            indentation: before.indentation + advance.indentation_work,
+            weight: before.weight + striker.mass * striker.gravity * fallen,
+            error: 0.0,
+        };
+        energies.error = self.striker_energy + energies.weight + balance.input
+            - (energies.striker
+                + energies.structure
+                + energies.restoring
+                + energies.damping
+                + energies.contact_loss);
+        let input = self.state.input.max(self.first_input + energies.weight);
+        let contacts = self.state.contacts + u64::from(advance.contacts);
+        self.state = ImpactState {
+            contacts,
+            ..state(structure, struck, &advance, energies, input)
+        };
+        self.striker_stopped |= self.state.striker_velocity <= 0.0;
+    }
+
+    /// Effective forces r* \[N\] at these targets for these readings \[m\], \[N\].
+    #[must_use]
+    pub fn effective_force_at(
+        &self,
+        target: V::View<'_>,
+        measured: V::View<'_>,
+        force: V::View<'_>,
+    ) -> V {
+        self.structure.effective_force_at(target, measured, force)
+    }
+
+    /// Effective forces r* at the targets of the last step \[N\].
+    #[must_use]
+    pub fn effective_force(&self) -> V::View<'_> {
+        self.structure.effective_force()
+    }
+
+    /// The struck degree of freedom and the striker at the end of the last step.
+    #[must_use]
+    pub const fn state(&self) -> &ImpactState {
+        &self.state
+    }
+
+    /// The whole structure there.
+    #[must_use]
+    pub const fn structure(&self) -> &State<V> {
+        self.structure.state()
+    }
+
+    /// Whether some step has ended with Ẋs ≤ 0.
+    #[must_use]
+    pub const fn striker_stopped(&self) -> bool {
+        self.striker_stopped
+    }
+
+    /// Whether striker and structure are apart for good, as far as the structure is elastic and unloaded from here on: the striker
+    /// moves back, and either faster than the energy of the structure can ever move the struck degree of freedom,
+    /// `|Ẋ_s| ≤ √(2E e_sᵀM⁻¹e_s)`, or from behind where it can get to, `√(2E e_sᵀK⁻¹e_s)` from its rest. A striker that falls
+    /// always comes back.
+    #[must_use]
+    pub fn rebounded(&self) -> bool {
+        let state = &self.state;
+        let (gap, back) = (
+            state.striker_displacement - state.displacement,
+            -state.striker_velocity,
+        );
+        let apart = state.state == StepState::Free && gap < state.indentation && back > 0.0;
+        if state.step == 0 || self.striker.gravity > 0.0 || !apart {
+            return false;
+        }
+        let Some(reach) = &self.reach else {
+            return false;
+        };
+        let (fastest, farthest) = reach.bounds(self.structure.state(), self.striker.struck);
+        back >= fastest || state.striker_displacement < farthest + state.indentation
+    }
+
+    /// Whether the run has ended before its duration.
+    #[must_use]
+    pub fn over(&self, until: Until) -> bool {
+        until.reached(|| self.finished(), || self.rebounded())
+    }
+
+    /// Whether the last step ended with Ẋs ≤ 0 and Ẋ ≤ 0.
+    #[must_use]
+    pub fn finished(&self) -> bool {
+        let state = &self.state;
+        state.step > 0 && state.striker_velocity <= 0.0 && state.velocity <= 0.0
+    }
+
+    /// The impact to its end, `steps` steps at most, on whatever `read` finds: it is given the solver whose step is predicted, and
+    /// gives displacement (m) and force (N) there. The steps are those of `predict` and `complete`.
+    #[inline]
+    pub fn run<K: Sink<V>>(
+        &mut self,
+        until: Option<Until>,
+        steps: u64,
+        mut read: impl FnMut(&mut Self) -> [V; 2],
+        sink: &mut K,
+    ) {
+        for _ in 0..steps {
+            self.predict();
+            let [displacement, force] = read(self);
+            self.complete(displacement.view(), force.view());
+            let over = until.is_some_and(|until| self.over(until));
+            sink.push(self.structure.state(), &self.state, over);
+            if over {
+                break;
+            }
+        }
+    }
+}
+
+/// The struck degree of freedom and the striker.
+#[inline]
+fn state<V: Vector>(
+    structure: &Solver<V>,
+    struck: usize,
+    advance: &Advance,
+    energies: Energies,
+    input: f64,
+) -> ImpactState {
+    let state = structure.state();
+    let at = |vector: &V| vector.as_slice()[struck];
+    let followed = state.storey_stiffness.as_slice().get(struck).copied();
+    ImpactState {
+        step: state.step,
+        time: state.time,
+        displacement: at(&state.displacement),
+        target: at(&state.target),
+        measured_displacement: at(&state.measured_displacement),
+        velocity: at(&state.velocity),
+        acceleration: at(&state.acceleration),
+        restoring_force: at(&state.restoring_force),
+        force_at_computed: at(&state.force_at_computed),
+        contact_force: advance.contact_force,
+        striker_displacement: advance.striker_displacement,
+        striker_velocity: advance.striker_velocity,
+        tangent_stiffness: followed
+            .unwrap_or_else(|| structure.form.matrices.stiffness.at(struck, struck)),
+        indentation: advance.indentation,
+        state: advance.state,
+        energies,
+        input,
+        contacts: u64::from(advance.contacts),
+    }
+}

@@ -1,0 +1,37 @@
+//! Mass, damping and stiffness of a structure. In: numbers, or bands. Out: loads of a ground motion. It integrates nothing.
+
+use super::matrix::{SymmetricBand, Vector};
+
+/// M, C and K of a structure, of one order: kg, N·s/m, N/m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matrices<V: Vector> {
+    pub mass: V::Matrix,
+    pub damping: V::Matrix,
+    /// The initial one.
+    pub stiffness: V::Matrix,
+}
+
+/// Those of a frame.
+pub type FrameMatrices = Matrices<Vec<f64>>;
+
+impl FrameMatrices {
+    /// Degrees of freedom.
+    #[must_use]
+    pub const fn order(&self) -> usize {
+        self.mass.order()
+    }
+
+    /// Load −M ι `ü_g` of a ground acceleration \[m/s²\] on displacements relative to the ground \[N\].
+    pub fn ground_load(&self, acceleration: f64, load: &mut [f64]) {
+        if self.mass.half_bandwidth() == 0 {
+            for (load, mass) in load.iter_mut().zip(self.mass.band(0)) {
+                *load = mass * -acceleration;
+            }
+            return;
+        }
+        SymmetricBand::row_sums(&self.mass, load);
+        for load in load {
+            *load *= -acceleration;
+        }
+    }
+}

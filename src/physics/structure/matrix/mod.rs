@@ -1,0 +1,479 @@
+//! Numbers of a structure: one degree of freedom is a number and its matrices are numbers, many are a vector and symmetric
+//! bands. In: the operations of an integrator. Out: the same arithmetic for both; for one degree of freedom it compiles to
+//! plain floating-point code. It knows no equation of motion.
+
+mod band;
+mod factor;
+
+use std::fmt::Debug;
+
+pub use band::{RowsError, SymmetricBand};
+pub use factor::{BandFactor, NotPositiveDefinite};
+
+use crate::integrator::tangents::{FollowedTangents, StoreyTangent, StoreyTangents};
+use crate::integrator::tridiagonal;
+
+/// One quantity of every degree of freedom.
+pub trait Vector: Clone + Debug + Default + PartialEq {
+    type Matrix: Matrix<Vector = Self>;
+    /// How callers give and take it: a number, or a slice.
+    type View<'a>: Copy + Debug
+    where
+        Self: 'a;
+    type Tangents: FollowedTangents<Vector = Self>;
+
+    #[must_use]
+    fn zero(order: usize) -> Self;
+
+    #[must_use]
+    fn view(&self) -> Self::View<'_>;
+
+    #[must_use]
+    fn order_of(view: Self::View<'_>) -> usize;
+
+    /// One entry a degree of freedom, as callers take it.
+    #[must_use]
+    fn slice_of<'a>(view: &'a Self::View<'_>) -> &'a [f64];
+
+    /// One entry a degree of freedom, as callers give it.
+    #[must_use]
+    fn view_of(slice: &[f64]) -> Self::View<'_>;
+
+    /// Becomes a copy of `view`, in its own memory.
+    fn set(&mut self, view: Self::View<'_>);
+
+    /// One entry a degree of freedom.
+    #[must_use]
+    fn as_slice(&self) -> &[f64];
+
+    #[must_use]
+    fn as_mut_slice(&mut self) -> &mut [f64];
+
+    /// Each entry becomes what `entry` makes of it and of the same entry of the others.
+    fn update<const N: usize>(&mut self, others: [&Self; N], entry: impl Fn(f64, [f64; N]) -> f64);
+
+    /// xᵀ y.
+    #[must_use]
+    fn dot(&self, other: &Self) -> f64;
+
+    /// (x₀ + x₁)ᵀ (y₁ ± y₀), as `join` says.
+    #[must_use]
+    fn trapezoid(x: [&Self; 2], y: [&Self; 2], join: impl Fn(f64, f64) -> f64) -> f64;
+
+    /// F₁ − R − C(Ẋ + ½ΔtẌ) − `K_t`(ΔtẊ + ¼Δt²Ẍ) into `push`; C is `None` where there is no damping.
+    fn set_out(step: &SetOut<Self>, push: &mut Self, glide: &mut Self, drift: &mut Self) {
+        set_out_by_products(step, push, glide, drift);
+    }
+
+    /// Eqs. (2c) and (2d): Ẋ₁ = Ẋ + ½Δt(Ẍ + Ẍ₁), X₁ = X + ½Δt(Ẋ + Ẋ₁); from (X, Ẋ, Ẍ).
+    fn travel(
+        time_step: f64,
+        from: [&Self; 3],
+        acceleration: &Self,
+        velocity: &mut Self,
+        displacement: &mut Self,
+    );
+}
+
+/// A step in tangent form as it sets out.
+#[derive(Clone, Copy, Debug)]
+pub struct SetOut<'a, V: Vector> {
+    /// s
+    pub time_step: f64,
+    /// Ẋ, m/s, and Ẍ, m/s².
+    pub velocity: &'a V,
+    pub acceleration: &'a V,
+    /// R, N.
+    pub force: &'a V,
+    /// F₁, N.
+    pub load_end: &'a V,
+    pub damping: Option<&'a V::Matrix>,
+    /// `K_t`
+    pub stiffness: &'a V::Matrix,
+}
+
+/// [`Vector::set_out`] for matrices of any band.
+#[inline]
+pub(crate) fn set_out_by_products<V: Vector>(
+    step: &SetOut<V>,
+    push: &mut V,
+    glide: &mut V,
+    drift: &mut V,
+) {
+    let (time_step, half) = (step.time_step, 0.5 * step.time_step);
+    push.update([step.load_end, step.force], |_, [load, force]| load - force);
+    if let Some(damping) = step.damping {
+        glide.update(
+            [step.velocity, step.acceleration],
+            |_, [velocity, acceleration]| velocity + half * acceleration,
+        );
+        damping.mul_add(-1.0, glide, push);
+    }
+    drift.update(
+        [step.velocity, step.acceleration],
+        |_, [velocity, acceleration]| time_step * (velocity + 0.5 * half * acceleration),
+    );
+    step.stiffness.mul_add(-1.0, drift, push);
+}
+
+/// A symmetric matrix over the degrees of freedom.
+pub trait Matrix: Clone + Debug + PartialEq {
+    type Vector: Vector<Matrix = Self>;
+    type Factor: Factor<Matrix = Self>;
+
+    #[must_use]
+    fn zero_of(order: usize) -> Self;
+    #[must_use]
+    fn rows(&self) -> usize;
+    /// (row, column), from 0.
+    #[must_use]
+    fn at(&self, row: usize, column: usize) -> f64;
+    /// Adds to a diagonal entry.
+    fn add_at(&mut self, place: usize, value: f64);
+    fn become_copy(&mut self, other: &Self);
+    fn multiply(&mut self, factor: f64);
+    /// Adds `factor` times the other.
+    fn add_scaled(&mut self, other: &Self, factor: f64);
+    #[must_use]
+    fn vanishes(&self) -> bool;
+    /// y = A x.
+    fn product(&self, x: &Self::Vector, y: &mut Self::Vector);
+    /// y ← y + factor · A x.
+    fn mul_add(&self, factor: f64, x: &Self::Vector, y: &mut Self::Vector);
+    /// xᵀ A x; `scratch` is a vector of the same order.
+    #[must_use]
+    fn quadratic(&self, x: &Self::Vector, scratch: &mut Self::Vector) -> f64;
+}
+
+/// What solves A x = b.
+pub trait Factor: Clone + Debug {
+    type Matrix: Matrix<Factor = Self>;
+
+    /// # Errors
+    /// If the matrix is not positive definite.
+    fn of(matrix: &Self::Matrix) -> Result<Self, NotPositiveDefinite>;
+
+    /// The factor of another matrix of the same band, in the same memory.
+    ///
+    /// # Errors
+    /// If the matrix is not positive definite.
+    fn replace(&mut self, matrix: &Self::Matrix) -> Result<(), NotPositiveDefinite>;
+
+    /// x ← A⁻¹ x.
+    fn solve(&self, x: &mut <Self::Matrix as Matrix>::Vector);
+}
+
+/// The matrix of one degree of freedom as its own factor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pivot(f64);
+
+impl Vector for f64 {
+    type Matrix = f64;
+    type View<'a> = f64;
+    type Tangents = StoreyTangent;
+
+    #[inline]
+    fn zero(_: usize) -> Self {
+        0.0
+    }
+
+    #[inline]
+    fn view(&self) -> f64 {
+        *self
+    }
+
+    #[inline]
+    fn order_of(_: f64) -> usize {
+        1
+    }
+
+    #[inline]
+    fn slice_of(view: &f64) -> &[f64] {
+        std::slice::from_ref(view)
+    }
+
+    #[inline]
+    fn view_of(slice: &[f64]) -> f64 {
+        slice[0]
+    }
+
+    #[inline]
+    fn set(&mut self, view: f64) {
+        *self = view;
+    }
+
+    #[inline]
+    fn as_slice(&self) -> &[f64] {
+        std::slice::from_ref(self)
+    }
+
+    #[inline]
+    fn as_mut_slice(&mut self) -> &mut [f64] {
+        std::slice::from_mut(self)
+    }
+
+    #[inline]
+    fn update<const N: usize>(&mut self, others: [&Self; N], entry: impl Fn(f64, [f64; N]) -> f64) {
+        *self = entry(*self, others.map(|other| *other));
+    }
+
+    #[inline]
+    fn dot(&self, other: &Self) -> f64 {
+        self * other
+    }
+
+    #[inline]
+    fn trapezoid(x: [&Self; 2], y: [&Self; 2], join: impl Fn(f64, f64) -> f64) -> f64 {
+        (x[0] + x[1]) * join(*y[1], *y[0])
+    }
+
+    #[inline]
+    fn travel(
+        time_step: f64,
+        from: [&Self; 3],
+        acceleration: &Self,
+        velocity: &mut Self,
+        displacement: &mut Self,
+    ) {
+        let half = 0.5 * time_step;
+        *velocity = from[1] + half * (from[2] + acceleration);
+        *displacement = from[0] + half * (from[1] + *velocity);
+    }
+}
+
+impl Matrix for f64 {
+    type Vector = f64;
+    type Factor = Pivot;
+
+    #[inline]
+    fn zero_of(_: usize) -> Self {
+        0.0
+    }
+
+    #[inline]
+    fn rows(&self) -> usize {
+        1
+    }
+
+    #[inline]
+    fn at(&self, _: usize, _: usize) -> f64 {
+        *self
+    }
+
+    #[inline]
+    fn add_at(&mut self, _: usize, value: f64) {
+        *self += value;
+    }
+
+    #[inline]
+    fn become_copy(&mut self, other: &Self) {
+        *self = *other;
+    }
+
+    #[inline]
+    fn multiply(&mut self, factor: f64) {
+        *self *= factor;
+    }
+
+    #[inline]
+    fn add_scaled(&mut self, other: &Self, factor: f64) {
+        *self += factor * other;
+    }
+
+    #[inline]
+    fn vanishes(&self) -> bool {
+        *self == 0.0
+    }
+
+    #[inline]
+    fn product(&self, x: &f64, y: &mut f64) {
+        *y = self * x;
+    }
+
+    #[inline]
+    fn mul_add(&self, factor: f64, x: &f64, y: &mut f64) {
+        *y += factor * (self * x);
+    }
+
+    #[inline]
+    fn quadratic(&self, x: &f64, _: &mut f64) -> f64 {
+        self * x * x
+    }
+}
+
+impl Factor for Pivot {
+    type Matrix = f64;
+
+    #[inline]
+    fn of(matrix: &f64) -> Result<Self, NotPositiveDefinite> {
+        let mut factor = Self(1.0);
+        factor.replace(matrix)?;
+        Ok(factor)
+    }
+
+    #[inline]
+    fn replace(&mut self, matrix: &f64) -> Result<(), NotPositiveDefinite> {
+        self.0 = *matrix;
+        if *matrix > 0.0 && matrix.is_finite() {
+            Ok(())
+        } else {
+            Err(NotPositiveDefinite { row: 0 })
+        }
+    }
+
+    #[inline]
+    fn solve(&self, x: &mut f64) {
+        *x /= self.0;
+    }
+}
+
+impl Vector for Vec<f64> {
+    type Matrix = SymmetricBand;
+    type View<'a> = &'a [f64];
+    type Tangents = StoreyTangents;
+
+    fn zero(order: usize) -> Self {
+        vec![0.0; order]
+    }
+
+    fn view(&self) -> &[f64] {
+        self
+    }
+
+    fn order_of(view: &[f64]) -> usize {
+        view.len()
+    }
+
+    fn slice_of<'a>(view: &'a &[f64]) -> &'a [f64] {
+        view
+    }
+
+    fn view_of(slice: &[f64]) -> &[f64] {
+        slice
+    }
+
+    fn set(&mut self, view: &[f64]) {
+        if self.len() == view.len() {
+            self.copy_from_slice(view);
+        } else {
+            view.clone_into(self);
+        }
+    }
+
+    fn as_slice(&self) -> &[f64] {
+        self
+    }
+
+    fn as_mut_slice(&mut self) -> &mut [f64] {
+        self
+    }
+
+    #[inline]
+    fn update<const N: usize>(&mut self, others: [&Self; N], entry: impl Fn(f64, [f64; N]) -> f64) {
+        tridiagonal::update(self, others.map(Vec::as_slice), entry);
+    }
+
+    fn dot(&self, other: &Self) -> f64 {
+        tridiagonal::dot(self, other)
+    }
+
+    fn trapezoid(x: [&Self; 2], y: [&Self; 2], join: impl Fn(f64, f64) -> f64) -> f64 {
+        tridiagonal::trapezoid(x.map(Vec::as_slice), y.map(Vec::as_slice), join)
+    }
+
+    fn set_out(step: &SetOut<Self>, push: &mut Self, glide: &mut Self, drift: &mut Self) {
+        match step.damping {
+            Some(damping)
+                if damping.half_bandwidth() == 1 && step.stiffness.half_bandwidth() == 1 =>
+            {
+                tridiagonal::set_out_tridiagonal(step, damping, push);
+            }
+            _ => set_out_by_products(step, push, glide, drift),
+        }
+    }
+
+    fn travel(
+        time_step: f64,
+        from: [&Self; 3],
+        acceleration: &Self,
+        velocity: &mut Self,
+        displacement: &mut Self,
+    ) {
+        tridiagonal::travel(
+            time_step,
+            from.map(Vec::as_slice),
+            acceleration,
+            velocity,
+            displacement,
+        );
+    }
+}
+
+impl Matrix for SymmetricBand {
+    type Vector = Vec<f64>;
+    type Factor = BandFactor;
+
+    fn zero_of(order: usize) -> Self {
+        Self::zero(order, 0)
+    }
+
+    fn rows(&self) -> usize {
+        self.order()
+    }
+
+    fn at(&self, row: usize, column: usize) -> f64 {
+        self.entry(row, column)
+    }
+
+    fn add_at(&mut self, place: usize, value: f64) {
+        self.band_mut(0)[place] += value;
+    }
+
+    fn become_copy(&mut self, other: &Self) {
+        self.copy_from(other);
+    }
+
+    fn multiply(&mut self, factor: f64) {
+        self.scale(factor);
+    }
+
+    fn add_scaled(&mut self, other: &Self, factor: f64) {
+        self.add(other, factor);
+    }
+
+    fn vanishes(&self) -> bool {
+        self.is_zero()
+    }
+
+    fn product(&self, x: &Vec<f64>, y: &mut Vec<f64>) {
+        self.mul_into(x, y);
+    }
+
+    fn mul_add(&self, factor: f64, x: &Vec<f64>, y: &mut Vec<f64>) {
+        Self::mul_add(self, factor, x, y);
+    }
+
+    fn quadratic(&self, x: &Vec<f64>, scratch: &mut Vec<f64>) -> f64 {
+        if self.half_bandwidth() == 0 {
+            return tridiagonal::weighed(x, self.band(0));
+        }
+        self.mul_into(x, scratch);
+        tridiagonal::dot(scratch, x)
+    }
+}
+
+impl Factor for BandFactor {
+    type Matrix = SymmetricBand;
+
+    fn of(matrix: &SymmetricBand) -> Result<Self, NotPositiveDefinite> {
+        Self::new(matrix)
+    }
+
+    fn replace(&mut self, matrix: &SymmetricBand) -> Result<(), NotPositiveDefinite> {
+        self.renew(matrix)
+    }
+
+    fn solve(&self, x: &mut Vec<f64>) {
+        self.solve_in_place(x);
+    }
+}

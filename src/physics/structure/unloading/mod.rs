@@ -1,0 +1,255 @@
+//! Unloading of a frame. In: the initial stiffness, then displacements and forces of the floors. Out: the distance of each floor from its
+//! unloaded position. It moves nothing.
+//!
+//! In a shear building each storey's shear is a function of its own drift, so that the system falls apart: storey j is off by
+//! −Vⱼ/kⱼ, and kⱼ is the secant that a move showed. Any other frame takes K⁻¹ of the initial stiffness throughout.
+
+mod path;
+
+pub use path::UnloadingPath;
+
+use super::matrix::{BandFactor, NotPositiveDefinite, SymmetricBand};
+use super::shear_building::{drifts, shears, storeys_of};
+
+/// A stiffness shown by a move is believed within this factor of the expected one.
+pub(super) const BELIEVED: f64 = 16.0;
+
+/// What is known of how the forces fall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unloading {
+    slopes: Slopes,
+    /// Largest sum of a row of |K|, N/m.
+    stiffest: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Slopes {
+    /// Of each storey, N/m: expected, and as the last move showed it.
+    Storeys {
+        expected: Vec<f64>,
+        shown: Vec<f64>,
+    },
+    Whole(BandFactor),
+}
+
+/// Places (m) and restoring forces (N) of the floors.
+#[derive(Clone, Copy, Debug)]
+pub struct Loaded<'a> {
+    pub displacement: &'a [f64],
+    pub force: &'a [f64],
+}
+
+impl Unloading {
+    /// # Errors
+    /// If the initial stiffness is not positive definite.
+    pub fn of(stiffness: &SymmetricBand) -> Result<Self, NotPositiveDefinite> {
+        let factor = BandFactor::new(stiffness)?;
+        let order = stiffness.order();
+        let row = |row: usize| {
+            (0..order)
+                .map(|column| stiffness.entry(row, column).abs())
+                .sum()
+        };
+        let stiffest = (0..order).map(row).fold(0.0, f64::max);
+        let slopes = match storeys_of(stiffness) {
+            Some(expected) => Slopes::Storeys {
+                shown: expected.clone(),
+                expected,
+            },
+            None => Slopes::Whole(factor),
+        };
+        Ok(Self { slopes, stiffest })
+    }
+
+    /// One degree of freedom, K > 0 in N/m.
+    #[must_use]
+    pub fn of_one(stiffness: f64) -> Self {
+        let expected = vec![stiffness];
+        Self {
+            slopes: Slopes::Storeys {
+                shown: expected.clone(),
+                expected,
+            },
+            stiffest: stiffness,
+        }
+    }
+
+    /// Force by a displacement resolution `quantum` \[m\] at every floor \[N\]: a smaller force is not distinguished from zero.
+    #[must_use]
+    pub const fn force_of(&self, quantum: f64) -> f64 {
+        self.stiffest * quantum
+    }
+
+    /// By how much each floor is to move (m) for these forces (N) to vanish.
+    #[must_use]
+    pub fn moves(&self, force: &[f64]) -> Vec<f64> {
+        match &self.slopes {
+            Slopes::Storeys { shown, .. } => {
+                let mut moves = vec![0.0; force.len()];
+                shears(force, &mut moves);
+                let mut below = 0.0;
+                for (moves, stiffness) in moves.iter_mut().zip(shown) {
+                    below -= *moves / stiffness;
+                    *moves = below;
+                }
+                moves
+            }
+            Slopes::Whole(factor) => {
+                let mut moves: Vec<f64> = force.iter().map(|force| -force).collect();
+                factor.solve_in_place(&mut moves);
+                moves
+            }
+        }
+    }
+
+    /// The stiffness that is expected of each storey, N/m; None of a frame that is no shear building.
+    #[must_use]
+    pub fn storeys(&self) -> Option<&[f64]> {
+        match &self.slopes {
+            Slopes::Storeys { expected, .. } => Some(expected),
+            Slopes::Whole(_) => None,
+        }
+    }
+
+    /// The secant of each storey, N/m, where a move let it drift, and none where there are no storeys.
+    #[must_use]
+    pub fn secants(&self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
+        let [moved, changed] = between(from, to);
+        let secant = |(moved, changed): (f64, f64)| {
+            (moved != 0.0 && self.storeys().is_some()).then(|| changed / moved)
+        };
+        moved.into_iter().zip(changed).map(secant).collect()
+    }
+
+    /// Takes what a move showed, where `sure` of a storey, from 0, the stiffness that is expected of it (N/m) and its change of drift (m).
+    pub fn learn_where(
+        &mut self,
+        from: Loaded<'_>,
+        to: Loaded<'_>,
+        sure: &dyn Fn(usize, f64, f64) -> bool,
+    ) {
+        self.learn_within(BELIEVED, from, to, sure);
+    }
+
+    /// The same, believing a stiffness within another factor of the expected one.
+    pub(super) fn learn_within(
+        &mut self,
+        believed: f64,
+        from: Loaded<'_>,
+        to: Loaded<'_>,
+        sure: &dyn Fn(usize, f64, f64) -> bool,
+    ) {
+        let secants = self.secants(from, to);
+        let [moved, _] = between(from, to);
+        let Slopes::Storeys { expected, shown } = &mut self.slopes else {
+            return;
+        };
+        for (storey, ((shown, expected), secant)) in
+            shown.iter_mut().zip(expected).zip(&secants).enumerate()
+        {
+            if let Some(secant) = secant.filter(|_| sure(storey, *expected, moved[storey])) {
+                *shown = secant.clamp(*expected / believed, believed * *expected);
+            }
+        }
+    }
+}
+
+/// Change of drift (m) and of shear (N) of each storey.
+fn between(from: Loaded<'_>, to: Loaded<'_>) -> [Vec<f64>; 2] {
+    let (mut moved, mut changed) = (vec![0.0; from.force.len()], vec![0.0; from.force.len()]);
+    let less = |to: &[f64], from: &[f64]| -> Vec<f64> {
+        to.iter().zip(from).map(|(to, from)| to - from).collect()
+    };
+    drifts(&less(to.displacement, from.displacement), &mut moved);
+    shears(&less(to.force, from.force), &mut changed);
+    [moved, changed]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::shear_building::{floor_forces, storey_stiffness};
+    use super::*;
+
+    /// Storeys of 3 and 2 N/m under forces 1 and 4 N of their floors: shears 5 and 4 N, drifts 5/3 and 2 m.
+    #[test]
+    fn a_shear_building_falls_apart_into_its_storeys() {
+        let stiffness = storey_stiffness(&[3.0, 2.0]);
+        let unloading = Unloading::of(&stiffness).unwrap();
+        let moves = unloading.moves(&[1.0, 4.0]);
+        assert!(
+            (moves[0] + 5.0 / 3.0).abs() < 1e-15 && (moves[1] + 5.0 / 3.0 + 2.0).abs() < 1e-15,
+            "{moves:?}"
+        );
+        // Rows of |K|: 5 + 2 and 2 + 2.
+        assert!((unloading.force_of(0.5) - 3.5).abs() < 1e-15);
+    }
+
+    /// The same by K⁻¹, of a frame with a spring from its top to the ground: no shear building.
+    #[test]
+    fn any_other_frame_is_solved_as_a_whole() {
+        let stiffness = SymmetricBand::from_dense(&[vec![5.0, -2.0], vec![-2.0, 6.0]]).unwrap();
+        let braced = SymmetricBand::from_dense(&[vec![5.0, -6.0], vec![-6.0, 9.0]]).unwrap();
+        for matrix in [stiffness, braced] {
+            let unloading = Unloading::of(&matrix).unwrap();
+            let displacements = [0.25, -0.5];
+            let mut force = [0.0; 2];
+            matrix.mul_into(&displacements, &mut force);
+            for (moves, displacement) in unloading.moves(&force).iter().zip(displacements) {
+                assert!((moves + displacement).abs() < 1e-14);
+            }
+        }
+    }
+
+    /// A storey that unloads at half its stiffness is off by twice as much; a secant of noise is not believed.
+    #[test]
+    fn each_storey_is_off_by_the_stiffness_that_it_shows() {
+        let mut unloading = Unloading::of(&storey_stiffness(&[3.0, 2.0])).unwrap();
+        let softer = storey_stiffness(&[1.5, 2.0]);
+        let force_at = |displacements: &[f64]| {
+            let mut force = [0.0; 2];
+            softer.mul_into(displacements, &mut force);
+            force
+        };
+        let (displacements, next) = ([1.0, 1.5], [0.7, 1.1]);
+        let (force, force_of) = (force_at(&displacements), force_at(&next));
+        let [from, to] =
+            [(&displacements, &force), (&next, &force_of)].map(|(displacement, force)| Loaded {
+                displacement,
+                force,
+            });
+        assert!(
+            unloading
+                .secants(from, to)
+                .into_iter()
+                .zip([1.5, 2.0])
+                .all(|(one, other)| (one.unwrap() - other).abs() < 1e-12)
+        );
+        unloading.learn_where(from, to, &|_, _, _| true);
+        assert!(
+            unloading
+                .moves(&force_of)
+                .iter()
+                .zip(next)
+                .all(|(moves, displacement)| (moves + displacement).abs() < 1e-14)
+        );
+        let mut noisy = [0.0; 2];
+        floor_forces(&[100.0, -100.0], &mut noisy);
+        let [from, to] = [([0.0, 0.0], [0.0, 0.0]), ([1e-3, 2e-3], noisy)];
+        let [from, to] = [&from, &to].map(|(displacement, force)| Loaded {
+            displacement,
+            force,
+        });
+        assert!(
+            unloading
+                .secants(from, to)
+                .iter()
+                .all(|secant| secant.is_some_and(|secant| secant.abs() > 9e4))
+        );
+        unloading.learn_where(from, to, &|_, _, _| true);
+        let moves = unloading.moves(&[0.0, 12.0]);
+        assert!(
+            (moves[0] + 0.25).abs() < 1e-12 && (moves[1] + 0.25 + 96.0).abs() < 1e-12,
+            "{moves:?}"
+        );
+    }
+}

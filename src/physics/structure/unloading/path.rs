@@ -1,0 +1,406 @@
+//! The moves that unload a frame, one after the other, without loading it in the opposite direction. In: the expected slopes, then
+//! displacements and forces of the floors. Out: the next move of each floor. It moves nothing.
+//!
+//! A specimen may come back stiffer than it was loaded, softer, or first by the jump of its friction. A first short move shows the slope;
+//! then each move takes most of the load that is left, by the slope that was shown or the expected one, whichever is stiffer. Once little
+//! is left and the slope was no stiffer than the one before it, a move takes the rest. Where the unloading branch softens, as specimens do, no move
+//! passes the unloaded position.
+
+use super::super::shear_building::{drifts, shears};
+use super::{BELIEVED, Loaded, Unloading};
+use crate::integrator::tangent::NOISE_MULTIPLE;
+
+/// Part of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
+const FIRST: f64 = 1.0 / BELIEVED;
+/// Part that every further move removes: the error of a slope by noise then has a ninth of its effect, at most.
+const FURTHER: f64 = 0.9;
+/// A slope that exceeds the one before it by less is no stiffer.
+const STIFFER: f64 = 1.1;
+/// The factor within which older versions believed a stiffness.
+const OF_OLDER: f64 = 4.0;
+/// Of the load at the start: so little is taken off in one move where its slope is known.
+const LITTLE: f64 = 0.3;
+/// And so little by the slope that was shown, also where a stiffer one was expected.
+const LEAST: f64 = 0.1;
+
+/// State of the unloading, storey by storey; of all floors as one for a frame that is not a shear building.
+#[derive(Clone, Debug)]
+pub struct UnloadingPath {
+    unloading: Unloading,
+    parts: Vec<Part>,
+    at_once: bool,
+}
+
+/// A storey. All floors as one have the largest force for their load and count the move in loads: their expected slope is 1.
+#[derive(Clone, Debug)]
+struct Part {
+    /// N/m
+    expected: f64,
+    /// By the last move that determined it \[N/m\].
+    slope: f64,
+    /// Whether that slope was no stiffer than the one before.
+    falls: bool,
+    moved: bool,
+    /// Load where it began, N.
+    start: f64,
+    /// Drift \[m\] and load \[N\] from which the slope is determined.
+    told_from: (f64, f64),
+    /// Noise of the load, N, and of the drift, m.
+    noise: (f64, f64),
+}
+
+impl UnloadingPath {
+    /// `force` (N) and `place` (m): standard deviation of a reading of one floor.
+    #[must_use]
+    pub fn new(unloading: Unloading, (force, displacement): (f64, f64), at: Loaded<'_>) -> Self {
+        let part = |expected: f64, told_from: (f64, f64), noise: (f64, f64)| Part {
+            expected,
+            slope: expected,
+            falls: false,
+            moved: false,
+            start: told_from.1,
+            told_from,
+            noise,
+        };
+        let parts = match unloading.storeys() {
+            Some(expected) => {
+                let floors = expected.len();
+                let of_storey = |(storey, (expected, read)): (usize, (&f64, (f64, f64)))| {
+                    #[expect(clippy::cast_precision_loss, reason = "some storeys")]
+                    let above = (floors - storey) as f64;
+                    let ends = if storey == 0 { 1.0 } else { 2.0_f64 };
+                    part(
+                        *expected,
+                        read,
+                        (force * above.sqrt(), displacement * ends.sqrt()),
+                    )
+                };
+                expected
+                    .iter()
+                    .zip(of_storeys(at))
+                    .enumerate()
+                    .map(of_storey)
+                    .collect()
+            }
+            None => vec![part(
+                1.0,
+                (0.0, largest(at.force)),
+                (force, unloading.force_of(displacement)),
+            )],
+        };
+        Self {
+            unloading,
+            parts,
+            at_once: false,
+        }
+    }
+
+    /// As older versions went, whose records are played back so: every move to where the load would be none, by the last secant.
+    #[must_use]
+    pub fn at_once(self) -> Self {
+        Self {
+            at_once: true,
+            ..self
+        }
+    }
+
+    /// By how much each floor is to move next (m) under these forces (N).
+    #[must_use]
+    pub fn moves(&self, force: &[f64]) -> Vec<f64> {
+        if self.at_once {
+            return self.unloading.moves(force);
+        }
+        if self.unloading.storeys().is_none() {
+            let share = self.parts[0].moves(largest(force)).abs() / largest(force);
+            return self
+                .unloading
+                .moves(force)
+                .into_iter()
+                .map(|moves| share * moves)
+                .collect();
+        }
+        let mut moves = vec![0.0; force.len()];
+        shears(force, &mut moves);
+        let mut below = 0.0;
+        for (moves, part) in moves.iter_mut().zip(&self.parts) {
+            below += part.moves(*moves);
+            *moves = below;
+        }
+        moves
+    }
+
+    /// Largest load of a part, N: it falls with every move that leads on.
+    #[must_use]
+    pub fn left(&self, force: &[f64]) -> f64 {
+        if self.at_once {
+            largest(force)
+        } else {
+            largest(&self.loads(force))
+        }
+    }
+
+    /// Whether a part is loaded in the opposite direction by more than a little: a part held by friction is not moved to and fro.
+    #[must_use]
+    pub fn passed(&self, force: &[f64]) -> bool {
+        let most = LEAST
+            * self
+                .parts
+                .iter()
+                .fold(0.0, |most: f64, part| most.max(part.start.abs()));
+        let loads = self.loads(force);
+        !self.at_once
+            && self
+                .parts
+                .iter()
+                .zip(loads)
+                .any(|(part, load)| load * part.start < 0.0 && load.abs() > most)
+    }
+
+    fn loads(&self, force: &[f64]) -> Vec<f64> {
+        if self.unloading.storeys().is_none() {
+            return vec![largest(force)];
+        }
+        let mut loads = vec![0.0; force.len()];
+        shears(force, &mut loads);
+        loads
+    }
+
+    /// Takes what a move from one place to another showed; gives the secant of each storey, N/m, where it drifted, and none where there
+    /// are no storeys.
+    pub fn learn(&mut self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
+        if self.at_once {
+            self.unloading
+                .learn_within(OF_OLDER, from, to, &|_, _, _| true);
+        } else if self.unloading.storeys().is_none() {
+            let [before, after] = [from, to].map(|at| largest(at.force));
+            let went = self.parts[0].moves(before);
+            let part = &mut self.parts[0];
+            part.learn(part.told_from.0 + went, after);
+        } else {
+            for (part, (drift, shear)) in self.parts.iter_mut().zip(of_storeys(to)) {
+                part.learn(drift, shear);
+            }
+        }
+        self.unloading.secants(from, to)
+    }
+}
+
+impl Part {
+    /// How far it is to go (m) under this load (N).
+    fn moves(&self, load: f64) -> f64 {
+        let by_noise = load.abs() <= 2.0 * NOISE_MULTIPLE * self.noise.0;
+        let known_to = |part: f64| self.falls && load.abs() <= part * self.start.abs();
+        let share = match (by_noise || known_to(LITTLE), self.moved) {
+            (true, _) => 1.0,
+            (false, true) => FURTHER,
+            (false, false) => FIRST,
+        };
+        let slope = if known_to(LEAST) {
+            self.slope
+        } else {
+            self.slope.max(self.expected)
+        };
+        -share * load / slope
+    }
+
+    fn learn(&mut self, drift: f64, load: f64) {
+        self.moved = true;
+        let (from, loaded) = self.told_from;
+        let went = drift - from;
+        if went == 0.0
+            || went.abs() <= NOISE_MULTIPLE * self.noise.1.max(self.noise.0 / self.expected)
+        {
+            return;
+        }
+        let slope =
+            ((load - loaded) / went).clamp(self.expected / BELIEVED, BELIEVED * self.expected);
+        (self.falls, self.slope) = (slope <= STIFFER * self.slope, slope);
+        self.told_from = (drift, load);
+    }
+}
+
+/// Drift (m) and shear (N) of each storey.
+fn of_storeys(at: Loaded<'_>) -> Vec<(f64, f64)> {
+    let (mut drift, mut shear) = (vec![0.0; at.force.len()], vec![0.0; at.force.len()]);
+    drifts(at.displacement, &mut drift);
+    shears(at.force, &mut shear);
+    drift.into_iter().zip(shear).collect()
+}
+
+/// Largest size.
+fn largest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |largest, value| largest.max(value.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::structure::matrix::SymmetricBand;
+    use crate::structure::shear_building::storey_stiffness;
+
+    /// Places and forces of one degree of freedom from `start` (m) on, by its own curve, until it carries less than a thousandth.
+    fn followed(expected: f64, start: f64, force: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let mut at = (start, force(start));
+        let read = |at: &(f64, f64)| ([at.0], [at.1]);
+        let (x, r) = read(&at);
+        let mut path = UnloadingPath::new(
+            Unloading::of_one(expected),
+            (0.0, 0.0),
+            Loaded {
+                displacement: &x,
+                force: &r,
+            },
+        );
+        let mut all = vec![at];
+        while at.1.abs() > 1e-3 * all[0].1.abs() && all.len() < 40 {
+            let before = at;
+            let displacement = at.0 + path.moves(&[at.1])[0];
+            at = (displacement, force(displacement));
+            let ((x, r), (to_x, to_r)) = (read(&before), read(&at));
+            let [from, to] = [(&x, &r), (&to_x, &to_r)].map(|(displacement, force)| Loaded {
+                displacement,
+                force,
+            });
+            path.learn(from, to);
+            all.push(at);
+        }
+        all
+    }
+
+    #[test]
+    fn what_is_as_stiff_as_expected_needs_three_moves() {
+        let path = followed(1000.0, 0.02, |x| 1000.0 * (x - 0.005));
+        assert_eq!(path.len(), 4, "{path:?}");
+        assert!((path[3].0 - 0.005).abs() < 1e-15 && path.iter().all(|(_, force)| *force > -1e-12));
+    }
+
+    /// First eight times as stiff as expected, or by the jump of a friction, then softer and softer: never past no load, and always to the
+    /// same place.
+    #[test]
+    fn a_way_back_that_softens_is_never_passed() {
+        let bends = |x: f64| {
+            if x > 0.017 {
+                40.0 + 8e4 * (x - 0.017)
+            } else {
+                8e3 * (x - 0.012)
+            }
+        };
+        let jumps = |x: f64| if x >= 0.02 { 200.0 } else { 8e3 * (x - 0.012) };
+        for curve in [&bends as &dyn Fn(f64) -> f64, &jumps] {
+            for expected in [1e4, 2.5e4, 8e4, 1.2e5] {
+                let path = followed(expected, 0.02, curve);
+                let (displacement, force) = path[path.len() - 1];
+                assert!(
+                    path.iter().all(|(_, force)| *force > -1e-9),
+                    "by {expected} N/m: {path:?}"
+                );
+                assert!(
+                    force.abs() <= 1e-3 * path[0].1 && (displacement - 0.012).abs() < 4e-5,
+                    "by {expected} N/m: {path:?}"
+                );
+            }
+        }
+    }
+
+    /// One that stiffens as the load goes is not passed either where its stiffest slope was expected.
+    #[test]
+    fn a_way_back_that_stiffens_is_not_passed_by_its_stiffest_slope() {
+        let path = followed(1e6, 5e-3, |x| {
+            if x > 1e-3 {
+                1000.0 + 2.5e5 * (x - 1e-3)
+            } else {
+                1e6 * x
+            }
+        });
+        assert!(
+            path.iter().all(|(_, force)| *force > -1e-9) && path[path.len() - 1].1 <= 2.0,
+            "{path:?}"
+        );
+    }
+
+    /// Each storey by its own slope; all floors of another frame by the one that is stiffest.
+    #[test]
+    fn floors_come_to_rest_together() {
+        let braced = SymmetricBand::from_dense(&[vec![5.0, -6.0], vec![-6.0, 9.0]]).unwrap();
+        for (expected, truly) in [
+            (storey_stiffness(&[3.0, 2.0]), storey_stiffness(&[6.0, 1.0])),
+            (
+                braced.clone(),
+                SymmetricBand::from_dense(&[vec![15.0, -18.0], vec![-18.0, 27.0]]).unwrap(),
+            ),
+        ] {
+            let force_at = |displacements: &[f64]| {
+                let mut force = [0.0; 2];
+                truly.mul_into(displacements, &mut force);
+                force
+            };
+            let mut displacements = vec![1.0, 1.5];
+            let start = force_at(&displacements);
+            let at = Loaded {
+                displacement: &displacements,
+                force: &start,
+            };
+            let mut path = UnloadingPath::new(Unloading::of(&expected).unwrap(), (0.0, 0.0), at);
+            for _ in 0..12 {
+                let force = force_at(&displacements);
+                if largest(&force) < 1e-9 {
+                    break;
+                }
+                let next: Vec<f64> = displacements
+                    .iter()
+                    .zip(path.moves(&force))
+                    .map(|(displacement, moves)| displacement + moves)
+                    .collect();
+                let force_of = force_at(&next);
+                path.learn(
+                    Loaded {
+                        displacement: &displacements,
+                        force: &force,
+                    },
+                    Loaded {
+                        displacement: &next,
+                        force: &force_of,
+                    },
+                );
+                displacements = next;
+            }
+            assert!(largest(&displacements) < 1e-9, "{displacements:?}");
+        }
+    }
+
+    /// A load that noise nearly hides goes at once, by what is expected.
+    #[test]
+    fn noise_is_no_slope() {
+        let at = Loaded {
+            displacement: &[0.02],
+            force: &[15.0],
+        };
+        let path = UnloadingPath::new(Unloading::of_one(1000.0), (1.0, 0.0), at);
+        assert_eq!(path.moves(&[15.0]), [-0.015]);
+        let mut loaded = UnloadingPath::new(
+            Unloading::of_one(1000.0),
+            (1.0, 0.0),
+            Loaded {
+                force: &[400.0],
+                ..at
+            },
+        );
+        assert_eq!(loaded.moves(&[400.0]), [-0.025]);
+        loaded.learn(
+            Loaded {
+                force: &[400.0],
+                ..at
+            },
+            Loaded {
+                displacement: &[0.0195],
+                force: &[400.5],
+            },
+        );
+        assert!(
+            (loaded.moves(&[400.0])[0] + 0.36).abs() < 1e-12,
+            "half a millimetre shows nothing"
+        );
+    }
+}

@@ -1,0 +1,256 @@
+//! Impact series on a storey.
+
+use super::{close, rest};
+use crate::plan::formula::Formula::Constant;
+use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use crate::plan::{
+    Between, Comparison, Condition, Escalate, Impact, Plan, Procedure, ProcedureKind, Striker, Test,
+};
+use crate::record::{EscalateHistory, History, Outcome, Record};
+use crate::tests::testing::{as_of, list, number, run_unwatched, struck_frame};
+use crate::units::Dimension;
+
+fn drifts_below(limit: f64) -> Condition {
+    let all = Formula::Result(ResultReference {
+        procedure: ProcedureId(0),
+        name: "max_drift",
+        part: Part::Value,
+    });
+    let value = Formula::Call(crate::plan::formula::Function::Max, vec![all]);
+    let test = Test::Compare {
+        comparison: Comparison::Less,
+        limit: Constant(limit),
+    };
+    Condition {
+        text: String::new(),
+        value,
+        test,
+        dimension: Dimension::LENGTH,
+    }
+}
+
+fn impact() -> Impact {
+    match struck_frame().procedures.swap_remove(0).kind {
+        ProcedureKind::Impact(impact) => impact,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Blows that are over before the frame turns back, each followed by the next.
+pub(crate) fn rising(velocities: &[f64], between: Between) -> Plan {
+    let steps = Formula::Result(ResultReference {
+        procedure: ProcedureId(0),
+        name: "steps",
+        part: Part::Value,
+    });
+    let test = Test::Compare {
+        comparison: Comparison::Greater,
+        limit: Constant(0.0),
+    };
+    let goes_on = Condition {
+        text: String::new(),
+        value: steps,
+        test,
+        dimension: Dimension::NUMBER,
+    };
+    series(impact(), velocities, goes_on, between)
+}
+
+/// Blows that go on until the frame has turned back, until a storey drifts too far.
+fn within(velocities: &[f64], limit: f64) -> Plan {
+    let whole = Impact {
+        duration: Constant(4.0),
+        ..impact()
+    };
+    series(whole, velocities, drifts_below(limit), Between::Unload)
+}
+
+fn series(impact: Impact, velocities: &[f64], condition: Condition, between: Between) -> Plan {
+    let escalate = Escalate {
+        own: ProcedureId(0),
+        impact: impact,
+        velocities: velocities.iter().copied().map(Constant).collect(),
+        energies: None,
+        condition: vec![condition],
+        between,
+        inspect_between: false,
+    };
+    let mut plan = struck_frame();
+    plan.procedures[0].kind = ProcedureKind::Escalate(escalate);
+    plan
+}
+
+fn impacts(record: &Record) -> &EscalateHistory {
+    match &record.procedures[0].history {
+        History::Escalate(history) => history,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A series of impacts is impact, unloading, impact, … written out, to the last bit: every storey carries its damage on.
+#[test]
+fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
+    let velocities = [0.9, 1.2, 1.5];
+    let series = run_unwatched(&rising(&velocities, Between::Unload));
+    assert_eq!(series.outcome, Outcome::Completed);
+    let mut plan = struck_frame();
+    let first = plan.strikers[0].clone();
+    plan.strikers = velocities
+        .iter()
+        .map(|velocity| Striker {
+            velocity: *velocity,
+            ..first.clone()
+        })
+        .collect();
+    let written = (0..3).flat_map(|striker| {
+        [
+            ProcedureKind::Impact(Impact {
+                striker,
+                ..impact()
+            }),
+            rest(None),
+        ]
+    });
+    plan.procedures = written
+        .enumerate()
+        .map(|(index, kind)| Procedure {
+            name: format!("p{index}"),
+            kind,
+        })
+        .collect();
+    let apart = run_unwatched(&plan);
+    assert_eq!(apart.outcome, Outcome::Completed);
+    for (index, impact) in impacts(&series).blows.iter().enumerate() {
+        assert_eq!(
+            impact.results,
+            as_of(0, &apart.procedures[2 * index].results),
+            "impact {index}"
+        );
+        let rest = impact.rest.as_ref().unwrap();
+        assert_eq!(rest.drift(), list(&apart, 2 * index + 1, "residual_drift"));
+        // The next impact begins there, with nothing to spring back.
+        if let Some(next) = impacts(&series).blows.get(index + 1) {
+            let start = &next.storey().unwrap().floors[0];
+            close(&start.computed, &rest.displacement, 1e-15);
+            assert!(
+                start
+                    .restoring_force
+                    .iter()
+                    .all(|force| force.abs() < 1e-10),
+                "{start:?}"
+            );
+            assert!(rest.displacement.iter().any(|place| place.abs() > 1e-3));
+        }
+    }
+    // Largest over the impacts, where it was brought to last, and all that each storey took.
+    let last = impacts(&series).blows.last().unwrap();
+    assert_eq!(
+        list(&series, 0, "residual_drift"),
+        last.rest.as_ref().unwrap().drift()
+    );
+    for storey in 0..2 {
+        let of = |name: &str| {
+            impacts(&series)
+                .blows
+                .iter()
+                .map(|impact| impact.list(name).unwrap()[storey])
+                .collect::<Vec<f64>>()
+        };
+        assert_eq!(
+            list(&series, 0, "max_drift")[storey],
+            of("max_drift").into_iter().fold(0.0, f64::max)
+        );
+        assert_eq!(
+            list(&series, 0, "storey_energy")[storey],
+            of("storey_energy").iter().sum::<f64>()
+        );
+    }
+}
+
+/// After a series of impacts each cell's zero z leaves the drift of a storey off by −z/k for each floor above it, and Σ of the squares is
+/// u(`residual_drift`): of the last impact's rest, as its own results tell.
+#[test]
+fn the_residual_drift_of_a_series_has_the_uncertainty_of_the_zero_offsets() {
+    let mut plan = rising(&[0.9, 1.2], Between::Unload);
+    plan.rig.calibration.zero_uncertainty = 0.05;
+    let record = run_unwatched(&plan);
+    let result = record.procedures[0].result("residual_drift").unwrap();
+    let told = result.entry_uncertainties();
+    for (storey, stiffness) in [500.0, 300.0].into_iter().enumerate() {
+        let floors: f64 = if storey == 0 { 2.0 } else { 1.0 };
+        let by_hand = 0.05 * floors.sqrt() / stiffness;
+        assert!(
+            (told[storey].unwrap() / by_hand - 1.0).abs() < 1e-6,
+            "storey {storey}: {told:?}, by hand {by_hand}"
+        );
+    }
+    assert_eq!(
+        result.contributions,
+        impacts(&record)
+            .blows
+            .last()
+            .unwrap()
+            .rest
+            .as_ref()
+            .unwrap()
+            .doubts_of_drifts()
+    );
+}
+
+/// It ends with the first impact after which a storey has drifted too far, and after the last of the list.
+#[test]
+fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
+    let velocities = [0.2, 0.4, 0.6, 0.8];
+    let all = run_unwatched(&within(&velocities, 10.0));
+    assert!(
+        impacts(&all)
+            .blows
+            .iter()
+            .all(|impact| impact.held == Some(true)),
+        "each has its peak"
+    );
+    let peaks: Vec<f64> = impacts(&all)
+        .blows
+        .iter()
+        .map(|impact| {
+            impact
+                .list("max_drift")
+                .unwrap()
+                .iter()
+                .copied()
+                .fold(0.0, f64::max)
+        })
+        .collect();
+    assert!(
+        peaks.len() == 4 && peaks.windows(2).all(|pair| pair[0] < pair[1]),
+        "{peaks:?}"
+    );
+    let some = run_unwatched(&within(&velocities, 0.5 * (peaks[1] + peaks[2])));
+    assert_eq!(
+        impacts(&some)
+            .blows
+            .iter()
+            .map(|impact| impact.held)
+            .collect::<Vec<_>>(),
+        [Some(true), Some(true), Some(false)]
+    );
+    assert_eq!(number(&some, 0, "blows").0, Some(3.0));
+    assert_eq!(
+        number(&some, 0, "first_failed_energy").0,
+        Some(0.5 * 10.0 * 0.6 * 0.6)
+    );
+    // Home is where the first began; to stay is to begin under the load of the last.
+    let home = run_unwatched(&rising(&velocities, Between::Home));
+    assert!(
+        impacts(&home)
+            .blows
+            .iter()
+            .all(|impact| impact.rest.as_ref().unwrap().displacement == [0.0, 0.0])
+    );
+    let stay = run_unwatched(&rising(&velocities, Between::Stay));
+    let (first, next) = (&impacts(&stay).blows[0], &impacts(&stay).blows[1]);
+    assert_eq!(
+        first.rest.as_ref().unwrap().force,
+        next.storey().unwrap().floors[0].restoring_force
+    );
+}

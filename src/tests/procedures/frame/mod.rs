@@ -1,0 +1,87 @@
+//! Frames: unloading, and impact series on a storey.
+
+pub(crate) mod impact_series;
+mod unloading;
+
+use crate::plan::formula::Formula::Constant;
+use crate::plan::{Behaviour, Frame, FrameUnload, Plan, ProcedureKind, Storey};
+use crate::procedures::unload::run::{of_frame, to_rest};
+use crate::record::{Rest, UnloadStep};
+use crate::rig::virtual_rig;
+use crate::run::Unwatched;
+use crate::run::session::Session;
+use crate::tests::testing::elastic_plan;
+
+pub(super) const STIFFNESS: [f64; 3] = [4e6, 2e6, 1e6];
+pub(super) const YIELD: [f64; 3] = [40e3, 20e3, 10e3];
+
+pub(super) fn storey(index: usize, hardening: f64) -> Storey {
+    let (stiffness, yield_force) = (STIFFNESS[index], YIELD[index]);
+    Storey {
+        mass: 1000.0,
+        mass_uncertainty: 0.0,
+        stiffness_uncertainty: 0.0,
+        stiffness,
+        height: None,
+        behaviour: Behaviour::Bilinear {
+            stiffness,
+            yield_force,
+            hardening,
+        },
+        damping: 0.0,
+        coulomb: 0.0,
+    }
+}
+
+/// Three storeys that each yield at a drift of 10 mm.
+pub(crate) fn three(hardening: f64) -> Plan {
+    let mut plan = elastic_plan(1.0, vec![rest(None)]);
+    plan.specimens[0].frame = Some(Frame::of_storeys(
+        (0..3).map(|index| storey(index, hardening)).collect(),
+    ));
+    plan.specimens[0].behaviour = None;
+    plan
+}
+
+pub(super) fn rest(within: Option<f64>) -> ProcedureKind {
+    ProcedureKind::FrameUnload(FrameUnload {
+        specimen: 0,
+        within: within.map(Constant),
+        speed: None,
+    })
+}
+
+/// The floors pushed to these drifts (m) one after the other, then unloaded.
+pub(super) fn unloaded(
+    plan: &Plan,
+    drifts: [f64; 3],
+    within: Option<f64>,
+) -> (Rest, Vec<UnloadStep>) {
+    let mut rig = virtual_rig(plan);
+    let mut watched = Unwatched;
+    let mut session = Session::begin(plan, rig.as_mut(), &mut watched)
+        .unwrap_or_else(|_| panic!("the rig is refused"));
+    let mut place = 0.0;
+    let places: Vec<f64> = drifts
+        .iter()
+        .map(|drift| {
+            place += drift;
+            place
+        })
+        .collect();
+    session.go_to_all(&places, None).unwrap();
+    let unloading = of_frame(plan.specimens[0].frame.as_ref().unwrap()).unwrap();
+    let mut steps = Vec::new();
+    let rest = to_rest(unloading, within, None, 0, &mut session, &mut steps).unwrap();
+    (rest, steps)
+}
+
+pub(crate) fn close(found: &[f64], wanted: &[f64], within: f64) {
+    assert!(
+        found
+            .iter()
+            .zip(wanted)
+            .all(|(found, wanted)| (found - wanted).abs() <= within),
+        "{found:?}, not {wanted:?}"
+    );
+}

@@ -1,0 +1,204 @@
+//! Uncertainty of frames, compared with the scatter of many virtual runs.
+
+use super::{constant, entry, from, rebuilt, shake, shaken, storey, storeys};
+use crate::plan::{
+    Behaviour, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Stepping, Storey,
+    VirtualLink,
+};
+use crate::tests::testing::{Uniform, every, run_unwatched, scatter, struck_frame};
+use crate::uncertainty::{Source, combined};
+
+const RUNS: u32 = 150;
+
+/// The virtual rig run `RUNS` times with inputs as they may be, against what one run of `doubtful` foretells. The standard
+/// deviation of a standard deviation of normal numbers is 1/√(2(n − 1)) of it, and that of the foretold one 1/√(2·64) where it
+/// is drawn: three of both together.
+fn scatters_as_predicted(
+    doubtful: &Plan,
+    names: &[(&str, usize)],
+    drawn: bool,
+    draw: &mut dyn FnMut(&mut Uniform, u64) -> Plan,
+) {
+    let told = run_unwatched(doubtful);
+    let mut uniform = Uniform(20_060_102);
+    let mut found: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+    for run in 0..RUNS {
+        let record = run_unwatched(&draw(&mut uniform, u64::from(run)));
+        for (values, (name, place)) in found.iter_mut().zip(names) {
+            values.push(entry(&record, name, *place).0);
+        }
+    }
+    let within =
+        3.0 * (1.0 / (2.0 * f64::from(RUNS - 1)) + if drawn { 1.0 / 128.0 } else { 0.0 }).sqrt();
+    for (values, (name, place)) in found.iter().zip(names) {
+        let (_, parts) = entry(&told, name, *place);
+        let (scatter, u) = (scatter(values), combined(&parts).unwrap());
+        // Where the record leaves open how the storeys go on, the most of what they may do is told, and marked.
+        let sure = parts
+            .iter()
+            .all(|part| part.smooth || part.amount.abs() < 0.1 * u);
+        let most = if sure { within } else { 1.0 };
+        let told = u / scatter - 1.0;
+        assert!(
+            (-within..most).contains(&told),
+            "{name}[{place}]: {scatter} of runs, {u} foretold"
+        );
+    }
+}
+
+fn yielding(mass: f64, stiffness: f64, yield_force: f64) -> Storey {
+    Storey {
+        behaviour: Behaviour::Bilinear {
+            stiffness,
+            yield_force,
+            hardening: 0.1,
+        },
+        ..storey(mass, stiffness)
+    }
+}
+
+/// Two storeys that yield forth and back on shaking ground, with masses, damping and the factor of the ground as they may be.
+#[test]
+fn repeated_ground_motion_tests_scatter_as_predicted() {
+    let ground: Vec<f64> = (0..150)
+        .map(|step| 3.0 * (0.085 * f64::from(step)).sin() * (0.03 * f64::from(step)).sin())
+        .collect();
+    let with = |masses: [f64; 2], scale: f64, ratio: f64| {
+        let accelerations = ground
+            .iter()
+            .map(|acceleration| scale * acceleration)
+            .collect();
+        let mut plan = shaken(
+            vec![
+                yielding(masses[0], 900.0, 12.0),
+                yielding(masses[1], 700.0, 8.0),
+            ],
+            accelerations,
+            5e-3,
+        );
+        shake(&mut plan).damping = ShakeDamping::Rayleigh(constant(ratio));
+        plan
+    };
+    let mut doubtful = with([3.0, 2.0], 1.0, 0.05);
+    for storey in storeys(&mut doubtful) {
+        storey.mass_uncertainty = 0.01 * storey.mass;
+    }
+    doubtful.grounds[0].scale_uncertainty = 0.01;
+    shake(&mut doubtful).damping_uncertainty = 0.01;
+    let names = [
+        ("max_displacement", 0),
+        ("max_displacement", 1),
+        ("max_drift", 0),
+        ("max_drift", 1),
+        ("final_drift", 0),
+        ("max_base_shear", 0),
+    ];
+    scatters_as_predicted(&rebuilt(doubtful), &names, false, &mut |uniform, _| {
+        let masses = [3.0, 2.0].map(|mass: f64| mass * (1.0 + 0.01 * uniform.normal()));
+        let scale = 1.0 + 0.01 * uniform.normal();
+        with(masses, scale, 0.05 + 0.01 * uniform.normal())
+    });
+}
+
+/// A blow on the upper of two storeys that yield.
+#[test]
+fn repeated_impacts_on_a_storey_scatter_as_predicted() {
+    let with = |mass: f64, velocity: f64, striker: f64| {
+        let mut plan = struck_frame();
+        storeys(&mut plan)[1].mass = mass;
+        plan.strikers[0].velocity = velocity;
+        plan.strikers[0].mass = striker;
+        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
+            panic!()
+        };
+        blow.contact = Contact::Restitution {
+            coefficient: constant(0.0),
+        };
+        blow.stepping = Stepping {
+            max_tangent_ratio: constant(2.0),
+            ..every(2e-3)
+        };
+        rebuilt(plan)
+    };
+    let mut doubtful = with(1.0, 1.0, 10.0);
+    storeys(&mut doubtful)[1].mass_uncertainty = 0.02;
+    doubtful.strikers[0].velocity_uncertainty = 0.01;
+    doubtful.strikers[0].mass_uncertainty = 0.1;
+    let names = [
+        ("max_displacement", 0),
+        ("absorbed_energy", 0),
+        ("final_displacement", 0),
+        ("max_velocity", 0),
+        ("max_drift", 0),
+        ("max_drift", 1),
+        ("floor_displacement", 0),
+        ("final_drift", 0),
+        ("final_drift", 1),
+        ("storey_energy", 0),
+        ("storey_energy", 1),
+        ("max_base_shear", 0),
+    ];
+    scatters_as_predicted(&doubtful, &names, false, &mut |uniform, _| {
+        let mass = 1.0 + 0.02 * uniform.normal();
+        with(
+            mass,
+            1.0 + 0.01 * uniform.normal(),
+            10.0 + 0.1 * uniform.normal(),
+        )
+    });
+}
+
+/// Noise of the cells of an elastic frame: runs that differ in nothing but the seed.
+#[test]
+fn noise_of_the_load_cells_scatters_as_predicted() {
+    let with = |seed: u64| {
+        let mut plan = shaken(
+            vec![storey(3.0, 900.0), storey(2.0, 700.0)],
+            vec![1.0; 60],
+            5e-3,
+        );
+        plan.rig.link = Link::Virtual(VirtualLink {
+            noise: 0.3,
+            seed,
+            ..VirtualLink::default()
+        });
+        plan
+    };
+    let names = [
+        ("max_displacement", 0),
+        ("max_displacement", 1),
+        ("max_drift", 1),
+        ("final_drift", 0),
+    ];
+    scatters_as_predicted(&with(1), &names, true, &mut |_, run| with(run + 1));
+}
+
+/// Of a long record with many inputs the floors' and the axes' are drawn together: what they come to is the same, as far as so
+/// many draws tell, and a study costs no more.
+#[test]
+fn inputs_perturbed_together_have_the_sum_of_their_variances() {
+    let plan = |duration: f64| {
+        let ground: Vec<f64> = (0..600)
+            .map(|step| (0.085 * f64::from(step)).sin())
+            .collect();
+        let mut plan = shaken((0..8).map(|_| storey(2.0, 9000.0)).collect(), ground, 1e-3);
+        for storey in storeys(&mut plan) {
+            storey.mass_uncertainty = 0.02;
+        }
+        plan.rig.calibration.force_uncertainty = 0.01;
+        shake(&mut plan).duration = Some(constant(duration));
+        rebuilt(plan)
+    };
+    // 16 inputs, moved twice each at least, are 32 runs: of 300 steps of 8 floors one may have so many, of 2200 one may not.
+    for (duration, together) in [(0.3, false), (2.2, true)] {
+        let record = run_unwatched(&plan(duration));
+        let (value, parts) = entry(&record, "max_displacement", 7);
+        let drawn = parts
+            .iter()
+            .filter(|part| matches!(part.source, Source::Drawn { .. }))
+            .count();
+        assert_eq!(drawn > 0, together, "{} parts of {value}", parts.len());
+        let u = combined(&parts).unwrap();
+        assert!(u > 1e-3 * value && u < 0.05 * value, "{u} of {value}");
+    }
+}

@@ -1,0 +1,262 @@
+//! Impacts whose uncertainty is shared, large or not determined.
+
+use super::{
+    MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, from, plan, sticking,
+    without_the_time_step,
+};
+use crate::physics::impact::summary::ImpactSummary;
+use crate::plan::formula::ProcedureId;
+use crate::plan::{
+    Calibration, Contact, Impact, Integrator, Link, ProcedureKind, Stepping, Until, VirtualLink,
+};
+use crate::tests::testing::{elastic_plan, every, impact, number, result_of, run_unwatched};
+use crate::uncertainty::combined;
+
+/// A contact that yields at 60 N is struck a step sooner or later as the speed rises: the indentation jumps.
+#[test]
+fn a_discontinuous_result_is_not_treated_as_smooth() {
+    let summary = |velocity: f64| {
+        let mut plan = plan(Impact {
+            contact: Contact::Limit {
+                force: constant(60.0),
+            },
+            ..impact(constant(STIFFNESS))
+        });
+        plan.strikers[0].velocity = velocity;
+        plan.strikers[0].velocity_uncertainty = 0.002;
+        run_unwatched(&plan)
+    };
+    let mut rough = 0;
+    for step in 0..40 {
+        let record = summary(0.9 + 0.005 * f64::from(step));
+        let u = number(&record, 0, "indentation").1;
+        for part in contributions(&record, 0, "indentation")
+            .iter()
+            .filter(|part| !part.smooth)
+        {
+            rough += 1;
+            assert!(u.unwrap() >= part.amount.abs());
+        }
+    }
+    assert!(rough > 0, "none of them jumps");
+}
+
+/// A run that does not lead to what is recorded of it tells no uncertainty, and why.
+#[test]
+fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
+    use crate::plan::formula::ProcedureId;
+    use crate::procedures::impact::setting::Setting;
+    use crate::record::History;
+    use crate::rig::DeclaredNoise;
+    use crate::run::inputs::Inputs;
+    let plan = all_uncertain(plan(sticking(1e-3)));
+    let record = run_unwatched(&plan);
+    let ProcedureKind::Impact(blow) = &plan.procedures[0].kind else {
+        panic!()
+    };
+    let History::Impact(history) = &record.procedures[0].history else {
+        panic!()
+    };
+    let mut inputs = Inputs::new(&record, ProcedureId(0));
+    let noise = DeclaredNoise::default();
+    let point = blow.point().unwrap();
+    let setting = Setting::of_point(blow, point, &plan.strikers[0], &mut inputs, noise)
+        .ok()
+        .unwrap();
+    let doubts = crate::procedures::impact::uncertainty::ImpactUncertainty::new(
+        blow, point, &plan, &inputs, noise,
+    );
+    let summary = ImpactSummary {
+        max_displacement: 0.2,
+        time_of_max_displacement: 0.2,
+        stop_time: None,
+        final_displacement: 0.0,
+        max_velocity: 0.0,
+        max_contact_force: 0.0,
+        impulse: 0.0,
+        contacts: 1,
+        restitution: None,
+        indentation: 0.0,
+        indentation_energy: 0.0,
+        absorbed_energy: 0.0,
+        striker_energy: 5.0,
+        energy_error: 0.0,
+        still_rising: false,
+        last_blow_cut: false,
+    };
+    let mut results = record.procedures[0].results.clone();
+    let before = results.clone();
+    let found = doubts.propagate(
+        &setting,
+        &history.steps,
+        &summary,
+        &mut results,
+        &mut |_, _| Ok(()),
+    );
+    let Err(crate::uncertainty::engine::Unknown::Reason(reason)) = found else {
+        panic!("an uncertainty is told")
+    };
+    assert_eq!(
+        reason,
+        "the recorded way, taken again, does not lead to the recorded results"
+    );
+    assert_eq!(results, before);
+}
+
+/// The limit is kept by 3 %: with 1 % of uncertainty that passes, with 2 % nothing is decided, and with 1 % a limit missed by 3 % fails.
+#[test]
+fn a_guard_band_decides_nothing_where_the_impact_is_uncertain() {
+    use crate::plan::{Comparison, Condition, DecisionRule, Requirement, Test};
+    use crate::units::Dimension;
+    use crate::verdict::{Verdict, assess};
+    let largest = STRIKER / (STIFFNESS * (MASS + STRIKER)).sqrt();
+    let verdict = |limit: f64, uncertainty: f64, rule| {
+        let mut plan = plan(sticking(1e-3));
+        plan.strikers[0].velocity_uncertainty = uncertainty;
+        plan.decision_rule = rule;
+        let test = Test::Compare {
+            comparison: Comparison::LessEqual,
+            limit: constant(limit * largest),
+        };
+        let condition = Condition {
+            text: "as written".to_owned(),
+            value: result_of(0, "max_displacement"),
+            test,
+            dimension: Dimension::LENGTH,
+        };
+        plan.requirements = vec![Requirement {
+            label: "stays".to_owned(),
+            conditions: vec![condition],
+        }];
+        let record = run_unwatched(&plan);
+        let assessment = assess(&plan, &record);
+        let condition = &assessment.requirements[0].conditions[0];
+        let band = condition.guard_band.unwrap_or(0.0) / largest;
+        assert!(
+            (band - 2.0 * uncertainty).abs() < 1e-3 || rule == DecisionRule::Simple,
+            "{band}"
+        );
+        assessment.verdict
+    };
+    assert_eq!(verdict(1.03, 0.01, DecisionRule::Guarded), Verdict::Pass);
+    assert_eq!(
+        verdict(1.03, 0.02, DecisionRule::Guarded),
+        Verdict::Inconclusive
+    );
+    assert_eq!(
+        verdict(0.97, 0.02, DecisionRule::Guarded),
+        Verdict::Inconclusive
+    );
+    assert_eq!(verdict(0.97, 0.01, DecisionRule::Guarded), Verdict::Fail);
+    assert_eq!(verdict(1.03, 0.02, DecisionRule::Simple), Verdict::Pass);
+}
+
+/// Two blows of one striker and one cell share velocity and calibration, and no error of their readings.
+#[test]
+fn impacts_of_one_striker_share_its_uncertainty() {
+    use crate::plan::{Between, Escalate};
+    let rising = Escalate {
+        impact: Impact {
+            until: crate::plan::Until::StrikerStop,
+            ..sticking(1e-3)
+        },
+        velocities: vec![constant(0.5), constant(1.0)],
+        energies: None,
+        condition: Vec::new(),
+        own: crate::plan::formula::ProcedureId(0),
+        between: Between::Home,
+        inspect_between: false,
+    };
+    let run = |velocity: f64, noise: f64| {
+        let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Escalate(rising.clone())]);
+        plan.strikers[0].velocity_uncertainty = velocity;
+        plan.rig.link = Link::Virtual(VirtualLink {
+            noise,
+            seed: 5,
+            ..VirtualLink::default()
+        });
+        let record = run_unwatched(&plan);
+        let crate::record::History::Escalate(history) = &record.procedures[0].history else {
+            panic!()
+        };
+        let of_blows = history
+            .blows
+            .iter()
+            .map(|blow| {
+                blow.results
+                    .iter()
+                    .find(|result| result.name == "absorbed_energy")
+                    .unwrap()
+            })
+            .map(|result| &result.contributions)
+            .collect::<Vec<_>>();
+        // The list of all blows is as uncertain as they are.
+        let listed = record.procedures[0]
+            .result("absorbed_energies")
+            .unwrap()
+            .entry_uncertainties();
+        assert_eq!(
+            listed,
+            of_blows
+                .iter()
+                .map(|parts| combined(parts))
+                .collect::<Vec<_>>()
+        );
+        let u = |name| {
+            (
+                number(&record, 0, name).0,
+                combined(&without_the_time_step(contributions(&record, 0, name))),
+            )
+        };
+        let of_blows: Vec<f64> = of_blows
+            .iter()
+            .map(|parts| combined(&without_the_time_step(parts)).unwrap())
+            .collect();
+        (of_blows, u("absorbed_energy"), u("max_displacement"))
+    };
+    let (of_blows, (total, u), (largest, largest_u)) = run(0.01, 0.0);
+    // 1 % of V0 is 1 % of every speed, and so 2 % of every energy: the sum of the two, not its root of squares.
+    assert!(
+        (u.unwrap() - (of_blows[0] + of_blows[1])).abs() < 1e-9
+            && (u.unwrap() / total.unwrap() - 0.02).abs() < 1e-4
+    );
+    assert!((largest_u.unwrap() / largest.unwrap() - 0.01).abs() < 1e-4);
+    let (of_blows, (_, u), _) = run(0.0, 0.5);
+    assert!(
+        (u.unwrap() / of_blows[0].hypot(of_blows[1]) - 1.0).abs() < 1e-9,
+        "{u:?} of {of_blows:?}"
+    );
+}
+
+/// Explicit steps just below 2/ω are stable; of a cell that reads 2 % more, for a step of 2.01/ω, they are not, and what such a
+/// cell would make of the results is no uncertainty of them. A tenth of that is.
+#[test]
+fn a_diverging_path_is_reported_as_such() {
+    let with = |force_uncertainty: f64| {
+        let blow = Impact {
+            contact: Contact::Rigid,
+            stepping: Stepping {
+                integrator: Integrator::Explicit,
+                ..every(1.99 / 300.0_f64.sqrt())
+            },
+            duration: constant(30.0),
+            until: Until::Duration,
+            ..impact(constant(300.0))
+        };
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+        plan.strikers[0].mass = 0.5;
+        plan.rig.calibration = Calibration {
+            force_uncertainty,
+            ..Calibration::default()
+        };
+        let record = run_unwatched(&plan);
+        let grows = record
+            .events
+            .iter()
+            .any(|event| event.text.contains("grow without bound"));
+        (grows, number(&record, 0, "max_displacement").1)
+    };
+    assert_eq!(with(0.02), (true, None));
+    let (grows, u) = with(0.002);
+    assert!(!grows && u.is_some(), "{u:?}");
+}
