@@ -8,6 +8,7 @@ use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::frame::{Blow, Floors, FrameRun, StrikerOutcome};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::impact::OUTCOMES;
+use crate::physics::reintegration::perturbation::Perturbation;
 use crate::plan::{Impact, StoreyTarget, Striker};
 use crate::procedures::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::results::{Layout, give, values};

@@ -1,9 +1,8 @@
 //! Uncertainty of frames, compared with the scatter of many virtual runs.
 
-use super::{constant, entry, from, rebuilt, shake, shaken, storey, storeys};
+use super::{constant, entry, rebuilt, shake, shaken, storey, storeys};
 use crate::plan::{
-    Behaviour, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Stepping, Storey,
-    VirtualLink,
+    Behaviour, Contact, Link, Plan, ProcedureKind, ShakeDamping, Stepping, Storey, VirtualLink,
 };
 use crate::tests::testing::{Uniform, every, run_unwatched, scatter, struck_frame};
 use crate::uncertainty::{Source, combined};

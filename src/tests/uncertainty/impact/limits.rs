@@ -1,11 +1,10 @@
 //! Impacts whose uncertainty is shared, large or not determined.
 
 use super::{
-    MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, from, plan, sticking,
+    MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, plan, sticking,
     without_the_time_step,
 };
 use crate::physics::impact::summary::ImpactSummary;
-use crate::plan::formula::ProcedureId;
 use crate::plan::{
     Calibration, Contact, Impact, Integrator, Link, ProcedureKind, Stepping, Until, VirtualLink,
 };

@@ -1,8 +1,6 @@
 //! Uncertainty of an impact, compared with the scatter of many virtual runs.
 
-use super::{
-    MASS, STIFFNESS, constant, contributions, from, plan, sticking, without_the_time_step,
-};
+use super::{MASS, STIFFNESS, constant, contributions, plan, sticking, without_the_time_step};
 use crate::plan::formula::Formula;
 use crate::plan::{Behaviour, Impact, Link, ProcedureKind, VirtualLink};
 use crate::tests::testing::{
