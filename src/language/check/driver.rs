@@ -3,19 +3,12 @@
 
 use super::checker::Checker;
 use super::declared::Declared;
-use super::parsed_plan::ParsedPlan;
-use super::{Checked, Loader, Options, declarations, procedures, rig, warnings};
+use super::{Options, declarations, procedures, rig, warnings};
 use crate::plan::{Plan, PlanFile, Procedure};
 use crate::procedures as slices;
 use crate::schema::Kind;
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::{FileId, Sources, Span};
-
-/// Checks a plan and all it uses.
-#[must_use]
-pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> Checked {
-    ParsedPlan::parse(name, text, loader, options).check(loader)
-}
 
 /// Whether a check looks for warnings too.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -19,10 +19,9 @@ pub(crate) mod warnings;
 
 pub use checker::{DEEPEST_VALUES, MOST_TERMS};
 pub use declarations::ground::record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
-pub use driver::check;
 pub use expressions::literal::MOST_ENTRIES;
 pub use imports::{DEEPEST, MOST_FILES};
-pub use parsed_plan::ParsedPlan;
+pub use parsed_plan::{ParsedPlan, check};
 
 use crate::plan::Plan;
 use crate::text::diagnostic::Diagnostic;

@@ -16,6 +16,12 @@ use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{Sources, Span};
 use crate::units::Quantity;
 
+/// Checks a plan and all it uses.
+#[must_use]
+pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> Checked {
+    ParsedPlan::parse(name, text, loader, options).check(loader)
+}
+
 /// The syntax trees of a plan and its files, with everything else that does not change when a parameter does.
 pub struct ParsedPlan {
     name: String,
