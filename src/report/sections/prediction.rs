@@ -53,13 +53,13 @@ fn limit(limit: &PredictedLimit) -> Vec<Text> {
     let dimension = known.map_or(Dimension::NUMBER, |(.., dimension)| dimension);
     let value = |value: f64| number::text(value, dimension);
     let allowed = match (limit.low, limit.high) {
-        (Some(low), Some(high)) => wording::range(&value(low), &value(high)),
+        (Some(low), Some(high)) => wording::range(value(low), value(high)),
         (Some(low), None) => format!("≥ {}", value(low)),
         (None, Some(high)) => format!("≤ {}", value(high)),
         (None, None) => wording::ANY.to_owned(),
     };
     let reached = limit.reached.map_or_else(no_value, |[low, high]| {
-        wording::range(&value(low), &value(high))
+        wording::range(value(low), value(high))
     });
     let name = if limit.quantity == "nrms_error" {
         common::NRMS_TRACKING_ERROR.to_owned()

@@ -10,7 +10,7 @@ use crate::units::Dimension;
 use crate::units::display::si_unit;
 
 /// A limit with the range of the dry run.
-struct Reached {
+struct LimitRange {
     /// Name of the field.
     name: &'static str,
     allowed: Interval,
@@ -21,7 +21,7 @@ struct Reached {
 
 impl DryRun<'_> {
     /// Every limit with the range of the dry run.
-    fn reached(&self, limits: &Limits) -> [Reached; 8] {
+    fn reached(&self, limits: &Limits) -> [LimitRange; 8] {
         let range = |pick: fn(&Reach) -> Interval| {
             let moved = self.reaches.iter().filter(|reach| reach.moved).map(pick);
             moved.reduce(|a, b| Interval {
@@ -47,7 +47,7 @@ impl DryRun<'_> {
                 "tracking_error" => absolute(|reach| reach.tracking_error),
                 error => self.largest(error),
             };
-            Reached {
+            LimitRange {
                 name,
                 allowed,
                 dimension,
@@ -84,7 +84,7 @@ impl DryRun<'_> {
     pub(super) fn limits(&self) -> Vec<Vec<String>> {
         let mut rows = vec![row(["limit", "allowed", "reached", "margin"])];
         for limit in self.reached(&self.plan.limits) {
-            let Reached {
+            let LimitRange {
                 name,
                 allowed,
                 dimension,
