@@ -41,7 +41,7 @@ fn simple() -> impl Strategy<Value = Behaviour> {
     let falls = (prop::option::of(tires.clone()), prop::option::of(capped));
     let shape = (0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64);
     let wearing = (stiffness(), force(), hardening(), tires.clone()).prop_map(
-        |(stiffness, yield_force, hardening, deterioration)| Behaviour::WearingBilinear {
+        |(stiffness, yield_force, hardening, deterioration)| Behaviour::DeterioratingBilinear {
             stiffness,
             yield_force,
             hardening,
