@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use super::files::disk_space::NoRoom;
+use super::files::disk_space::DiskSpaceFault;
 use super::settings::Settings;
 use crate::rig::RigFault;
 use crate::text::diagnostic::excerpt::escape;
@@ -91,7 +91,7 @@ pub enum Failure {
     #[error("{0}")]
     Rig(#[from] crate::rig::RigFault),
     #[error(transparent)]
-    NoRoom(#[from] super::files::disk_space::NoRoom),
+    DiskSpaceFault(#[from] super::files::disk_space::DiskSpaceFault),
     #[error("{fault}")]
     NotOpened {
         fault: crate::rig::RigFault,
@@ -173,7 +173,7 @@ impl Failure {
             | Self::Stdout(_)
             | Self::Record(_)
             | Self::Journal(_)
-            | Self::NoRoom(_)
+            | Self::DiskSpaceFault(_)
             | Self::Refused(_)
             | Self::Signals(_) => Exit::Fault,
         }
@@ -185,7 +185,10 @@ impl Failure {
             Self::CommandLine { help, .. } | Self::File { help, .. } => {
                 ("error:".to_owned(), help.clone())
             }
-            Self::NoRoom(fault) => (format!("error[{}]", NoRoom::CODE), Some(fault.help())),
+            Self::DiskSpaceFault(fault) => (
+                format!("error[{}]", DiskSpaceFault::CODE),
+                Some(fault.help()),
+            ),
             Self::NotOpened {
                 fault: RigFault::Device(message),
                 ..

@@ -5,7 +5,6 @@ use crate::cli::files::provenance::{BUILD, recorded_id};
 use crate::cli::files::record_file::{ReadRecord, plan_of};
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, OLDEST_FORMAT, Recovered};
-use crate::rig::real::ReadBack;
 use crate::run::replay::{Header, Played, agrees};
 
 /// Holds a record against itself.
@@ -49,24 +48,7 @@ fn begins(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), Str
     if own && recovered.format() == OLDEST_FORMAT {
         return Err("the program that it names writes no records of version 1".to_owned());
     }
-    if own && lacks_introduction(played, plan) {
-        return Err(
-            "it does not hold the bytes in which the rig said who it is, and the program that it names writes them".to_owned()
-        );
-    }
     Ok(())
-}
-
-fn lacks_introduction(played: &Played, plan: &Plan) -> bool {
-    let replies = plan
-        .rig
-        .link
-        .as_real()
-        .map_or(0, |link| ReadBack::of(&plan.rig, link).introductions());
-    played
-        .rig
-        .as_ref()
-        .is_some_and(|rig| rig.said.len() < replies)
 }
 
 /// What is told of a record that stands, and makes it no worse.

@@ -46,8 +46,8 @@ pub enum Guarding {
     PanicHook,
     /// So does a program that hangs.
     HostWatchdog,
-    /// Whether a disk has room for the whole run.
-    Room,
+    /// The least free space of the disk before a run.
+    DiskSpace,
 }
 
 /// Whether the guard is on.

@@ -13,7 +13,6 @@ pub(crate) mod session;
 mod shutdown;
 pub mod start;
 pub(crate) mod stop;
-pub mod storage_bound;
 pub(crate) mod zero_drift;
 
 pub use crate::record::remote::{Parting, Request};

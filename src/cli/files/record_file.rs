@@ -88,15 +88,12 @@ pub fn texts(plan: &Plan) -> Vec<String> {
     plan.files.iter().map(|file| file.text.clone()).collect()
 }
 
-/// Opens the record of a run before it begins; the disk must have space for all of it.
+/// Opens the run log of a run that is about to begin, if its disk has enough free space.
 pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     let path = journal_of(folder);
     // A run that did not begin leaves no file, and its empty folder is removed.
     let storage = FileStorage::create(&path).inspect_err(|_| drop(std::fs::remove_dir(folder)))?;
-    // The number of requests of a client is not known.
-    if header.served.is_none()
-        && let Err(failure) = disk_space::enough(folder, &storage, plan, 0)
-    {
+    if let Err(failure) = disk_space::check(folder, &storage) {
         drop(storage);
         let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(folder));
         return Err(failure);

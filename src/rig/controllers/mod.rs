@@ -5,7 +5,6 @@ mod composite;
 mod line_client;
 mod load_cell;
 mod open;
-mod raw_decode;
 mod request_reply;
 mod stream;
 mod unsequenced;
@@ -28,7 +27,6 @@ pub use modbus::driver::Modbus;
 pub use native::driver::{NativeDevice, SIMULATED, native_identity};
 pub use nees::driver::Nees;
 pub use open::open;
-pub use raw_decode::{Heard, Teller};
 pub use scpi::driver::ScpiDevice;
 
 /// Who a device says it is.

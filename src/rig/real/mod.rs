@@ -8,7 +8,6 @@ mod motion;
 mod open;
 mod path;
 mod poll;
-mod raw_decode;
 mod settle;
 mod stroke;
 mod validity;
@@ -26,7 +25,6 @@ use super::{
 };
 use coordinate::Coordinate;
 pub use open::commands_only;
-pub use raw_decode::ReadBack;
 use validity::Judge;
 
 /// What six decimals of a millimetre cannot say, m.

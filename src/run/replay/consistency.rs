@@ -1,7 +1,6 @@
-//! What a record says twice, held against itself: each record is one that psd writes and nothing more; its times and the
-//! numbers of its targets run on; the bytes that were sent and heard say the numbers beside them. In: the lines of a
-//! journal, what counts of them, the plan. Out: the first record that contradicts itself. What a replay finds it does not
-//! look for.
+//! The consistency of a run log with itself: each entry is one that psd writes and nothing more, times increase, targets
+//! are numbered without gaps, the datum is that of the plan, and a virtual rig has no raw bytes. In: the lines of a run
+//! log, those that count, the plan. Out: the first entry that contradicts another. Replay finds the other differences.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -10,9 +9,8 @@ use super::entry::{
     AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
     RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
 };
-use super::raw_bytes::Bytes;
 use super::replayed::{Played, body};
-use crate::plan::Plan;
+use crate::plan::{Datum, Plan};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Line, Recovered};
 use crate::rig::Tally;
@@ -39,11 +37,60 @@ pub fn agrees(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(),
         .into_iter()
         .try_for_each(|part| runs_on(part.iter()))?;
     counts_on(played)?;
-    let mut bytes = Bytes::of(plan);
-    recovered
-        .lines
-        .iter()
-        .try_for_each(|line| bytes.agree(line).map_err(|reason| at(line, reason)))
+    let mut datum = None;
+    recovered.lines.iter().try_for_each(|line| {
+        is_of_the_plans_rig(line, plan, &mut datum).map_err(|reason| at(line, reason))
+    })
+}
+
+/// Whether an entry can be of the plan's rig: one datum throughout, which is zero where the plan says so, and no raw bytes of a
+/// virtual rig. `first_datum`: that of the first RIG entry, m, one an axis.
+fn is_of_the_plans_rig(
+    line: &Line,
+    plan: &Plan,
+    first_datum: &mut Option<Vec<f64>>,
+) -> Result<(), String> {
+    let unread = |fault: super::Unplayable| fault.to_string();
+    let link = plan.rig.link.as_real();
+    match (line.kind, link) {
+        (EntryKind::Rig, Some(link)) => {
+            let rig: RigBody = body(line).map_err(unread)?;
+            // Run logs of older versions do not have it: their datum is the zero of the rig.
+            let datum = rig.datum.unwrap_or_else(|| vec![0.0; rig.axes]);
+            let at_zero = datum.iter().all(|position| *position == 0.0);
+            if datum.len() != rig.axes || link.datum == Datum::Machine && !at_zero {
+                return Err(format!("a datum at {datum:?} m is not the plan's"));
+            }
+            if first_datum.get_or_insert_with(|| datum.clone()) != &datum {
+                return Err(format!(
+                    "a datum at {datum:?} m is another than the run began with"
+                ));
+            }
+            Ok(())
+        }
+        (EntryKind::Rig, None) => {
+            let rig: RigBody = body(line).map_err(unread)?;
+            without_bytes(rig.said.is_empty(), "a virtual rig says nothing in bytes")
+        }
+        (EntryKind::Intent, None) => {
+            let intent: IntentBody = body(line).map_err(unread)?;
+            without_bytes(intent.wire.is_none(), "nothing is sent to a virtual rig")
+        }
+        (EntryKind::Sample, None) => {
+            let sample: SampleBody = body(line).map_err(unread)?;
+            without_bytes(sample.raw.is_empty(), "a virtual rig answers in no bytes")
+        }
+        (EntryKind::Held, None) => Err("a virtual rig is not held".to_owned()),
+        _ => Ok(()),
+    }
+}
+
+fn without_bytes(silent: bool, reason: &str) -> Result<(), String> {
+    if silent {
+        Ok(())
+    } else {
+        Err(reason.to_owned())
+    }
 }
 
 fn at(line: &Line, reason: impl Into<String>) -> Contradiction {

@@ -15,7 +15,6 @@ mod held_tests;
 mod measured;
 mod observer;
 mod path;
-mod raw_bytes;
 mod replayed;
 mod resume_decision;
 #[cfg(test)]

@@ -12,7 +12,6 @@ pub(crate) mod remote_control;
 pub(crate) mod rig_faults;
 pub(crate) mod sequence;
 pub(crate) mod settled_hold;
-pub(crate) mod storage_bound;
 pub(crate) mod sweep_lag;
 pub(crate) mod tracking;
 pub(crate) mod unload;

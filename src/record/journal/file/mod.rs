@@ -17,8 +17,8 @@ use crate::record::failpoint::{Guarding, on};
 pub use ballast::is_part_of_one as is_part_of_a_reserve;
 pub use fault::FileFault;
 
-/// The largest journal that is read back, bytes: of some five million steps. What proves it holds all of it in memory.
-pub const MOST_BYTES: u64 = crate::plan::MOST_RECORD_BYTES;
+/// Largest run log that is read back, bytes. The commands that verify it keep all of it in memory.
+pub const MOST_BYTES: u64 = 4 << 30;
 
 /// Who may read and write what lies here: the operator.
 const MODE: u32 = 0o600;
@@ -143,14 +143,17 @@ impl FileStorage {
             .map_err(FileFault::of("cut back", &self.path))
     }
 
-    /// Bytes the disk still takes, for who asks whether the whole run will fit.
+    /// Free space of the disk, bytes.
     ///
     /// # Errors
-    /// The file system does not say.
-    pub fn room(&self) -> Result<u64, FileFault> {
-        let told = rustix::fs::fstatvfs(&self.file).map_err(io::Error::from);
-        let told = told.map_err(FileFault::of("asked for its disk's room", &self.path))?;
-        Ok(told.f_bavail.saturating_mul(told.f_frsize))
+    /// The file system does not report it.
+    pub fn free_space(&self) -> Result<u64, FileFault> {
+        let statistics = rustix::fs::fstatvfs(&self.file).map_err(io::Error::from);
+        let statistics = statistics.map_err(FileFault::of(
+            "asked for the free space of its disk",
+            &self.path,
+        ))?;
+        Ok(statistics.f_bavail.saturating_mul(statistics.f_frsize))
     }
 
     /// There is none without the lock: what it removes when it goes is its own.

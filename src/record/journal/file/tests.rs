@@ -193,7 +193,7 @@ fn reading_back_is_bounded() {
         b"0123456789!",
         "reading does not move where it writes"
     );
-    assert!(storage.room().unwrap() > 0);
+    assert!(storage.free_space().unwrap() > 0);
 }
 
 #[test]

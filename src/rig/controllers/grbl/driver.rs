@@ -236,17 +236,6 @@ pub(crate) fn introduced(said: &[u8]) -> Option<DeviceIdentity> {
     })
 }
 
-/// Where the axis is by the first status of a line.
-pub(crate) fn decoded(line: Vec<u8>) -> Option<Sample> {
-    let status = grbl::codec::words(&line)
-        .into_iter()
-        .find_map(|word| match word {
-            Word::Status(status) => Some(status),
-            _ => None,
-        })?;
-    Some(sample_of(status, line))
-}
-
 fn sample_of(status: Status, raw: Vec<u8>) -> Sample {
     let moving = Some(status.state.is_moving());
     Sample {

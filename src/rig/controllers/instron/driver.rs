@@ -341,22 +341,6 @@ fn meant_by(said: f64, target: f64) -> f64 {
     }
 }
 
-/// Whether these are the bytes of a ramp to this place (m), the position's full scale being `full_scale`, and of its start. What
-/// speed it is depends on where it begins, which stands in no byte.
-pub(crate) fn sends(wire: &[u8], target: f64, full_scale: f64) -> bool {
-    let lines: Vec<Vec<u8>> = wire
-        .split_inclusive(|byte| *byte == b'\n')
-        .map(<[u8]>::to_vec)
-        .collect();
-    let Some((fraction, seconds)) = instron::codec::said(&lines) else {
-        return false;
-    };
-    let again = instron::codec::ramp(fraction, seconds)
-        .map(|ramp| [ramp, instron::codec::start()].concat().concat());
-    again.is_some_and(|again| again == wire)
-        && meant_by(fraction * full_scale, target).to_bits() == target.to_bits()
-}
-
 fn no_reading(raw: Vec<u8>, reason: &str) -> DeviceFault {
     DeviceFault::NoReading {
         raw,

@@ -276,18 +276,6 @@ const fn direction(side: Side) -> &'static [u8] {
     }
 }
 
-/// Whether these are the bytes of a move to this place (m) at this speed (m/s), by either side, set off or left where it is.
-pub(crate) fn sends(wire: &[u8], target: f64, speed: f64) -> bool {
-    [Side::Lower, Side::Upper].into_iter().any(|side| {
-        settings(target, speed, side).is_some_and(|going| {
-            let said = going.targets[0].to_bits() == target.to_bits()
-                && going.speed.to_bits() == speed.to_bits();
-            let rest = wire.strip_prefix(going.frames.concat().as_slice());
-            said && rest.is_some_and(|rest| rest.is_empty() || rest == direction(side))
-        })
-    })
-}
-
 pub(crate) fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
     match mark10::codec::force(answer) {
         Some(mark10::codec::Force::Newtons(newtons)) => Ok(Force::Newtons(newtons)),

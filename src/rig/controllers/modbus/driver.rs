@@ -262,15 +262,6 @@ fn frames_saying(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, Devic
     Ok(going)
 }
 
-/// Whether these are the bytes of a move to this place (m) at this speed (m/s).
-pub(crate) fn sends(wire: &[u8], map: &ModbusMap, target: f64, speed: f64) -> bool {
-    frames_saying(map, target, speed).is_ok_and(|going| {
-        let said = going.targets[0].to_bits() == target.to_bits()
-            && going.speed.to_bits() == speed.to_bits();
-        said && going.frames.concat() == wire
-    })
-}
-
 fn target_frame(map: &ModbusMap, target: f64) -> Result<(Vec<u8>, f64), DeviceFault> {
     let register = map
         .target
@@ -325,49 +316,6 @@ fn value_of(number: ModbusNumber, words: &[u16], unit: f64, bound: f64) -> Optio
     modbus::codec::from_words(number, words)
         .map(|value| value * unit)
         .filter(|value| plausible(*value, bound))
-}
-
-/// What an answer of this unit says as a position (m); None: it is no answer that holds a number. The second None: no number
-/// that can be.
-#[expect(
-    clippy::option_option,
-    reason = "no answer and no number are different things here"
-)]
-pub(crate) fn position_in(map: &ModbusMap, answer: &[u8]) -> Option<Option<f64>> {
-    let words = words_in(map, answer, modbus::codec::width(map.number))?;
-    Some(value_of(
-        map.number,
-        &words,
-        map.length_unit,
-        IMPLAUSIBLE_POSITION,
-    ))
-}
-
-/// The same as a force, N.
-#[expect(
-    clippy::option_option,
-    reason = "no answer and no number are different things here"
-)]
-pub(crate) fn force_in(map: &ModbusMap, answer: &[u8]) -> Option<Option<f64>> {
-    let words = words_in(map, answer, modbus::codec::width(map.number))?;
-    Some(value_of(
-        map.number,
-        &words,
-        map.force_unit,
-        IMPLAUSIBLE_FORCE,
-    ))
-}
-
-/// Whether it is an answer of this unit that holds a status.
-pub(crate) fn is_status(map: &ModbusMap, answer: &[u8]) -> bool {
-    words_in(map, answer, 1).is_some()
-}
-
-/// So many registers of an answer, whichever of the two tables they are from. Which they are it does not say itself.
-fn words_in(map: &ModbusMap, answer: &[u8], count: u16) -> Option<Vec<u16>> {
-    let asked =
-        |table| modbus::codec::answer(&modbus::codec::read(map.unit, table, 0, count), answer).ok();
-    asked(Table::Holding).or_else(|| asked(Table::Input))
 }
 
 /// One question or order and its answer, after the silence that ends whatever came before.

@@ -321,14 +321,6 @@ fn measured(fields: &[String], control_point: &str) -> Option<(f64, f64)> {
     at.displacement.zip(at.force)
 }
 
-/// The same from the reply itself.
-pub(crate) fn decoded(reply: &[u8], control_point: &str) -> Option<(f64, f64)> {
-    match nees::codec::reply(reply) {
-        Reply::Done(fields) => measured(&fields, control_point),
-        Reply::Refused { .. } => None,
-    }
-}
-
 /// The reading of all control points, from displacement (m) and force (N) of each.
 pub(crate) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
     let mut channels = points.iter().map(|(displacement, force)| Channel {
@@ -349,26 +341,6 @@ pub(crate) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
         raw,
         ..Sample::default()
     }
-}
-
-/// Whether these are the bytes of a proposal of these places (m), and of its execution.
-pub(crate) fn sends(wire: &[u8], control_points: &[String], targets: &[f64]) -> bool {
-    let Some(transaction) = nees::codec::transaction(
-        wire.split_inclusive(|byte| *byte == b'\n')
-            .next()
-            .unwrap_or_default(),
-    ) else {
-        return false;
-    };
-    let points: Vec<(&str, f64)> = control_points
-        .iter()
-        .map(String::as_str)
-        .zip(targets.iter().copied())
-        .collect();
-    let again = nees::codec::propose(transaction, &points);
-    again.is_some_and(|(proposal, said)| {
-        said == targets && [proposal, nees::codec::execute(transaction)].concat() == wire
-    })
 }
 
 /// Proposal, execution and name of a transaction.

@@ -311,20 +311,6 @@ fn a_drive_with_its_words_the_other_way_round_is_told_no_speed() {
         )
         .unwrap();
         assert!(turned.abs() < 1e-38, "{speed} m/s is {turned} mm/s to it");
-        assert!(sends(
-            &going.frames.concat(),
-            &MAP,
-            going.targets[0],
-            going.speed
-        ));
-        // A record of an older version says the speed to the last of its digits.
-        let older = frames_saying(&MAP, 1e-4, speed).unwrap();
-        assert!(sends(
-            &older.frames.concat(),
-            &MAP,
-            older.targets[0],
-            older.speed
-        ));
     }
 }
 
