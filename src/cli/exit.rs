@@ -100,7 +100,7 @@ pub enum Failure {
     #[error("no rehearsal: {0}")]
     Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
     #[error("the run cannot go on: {0}")]
-    Refused(#[from] crate::run::replay::Refusal),
+    Refused(#[from] crate::run::replay::ResumeRefusal),
     #[error("not resumed, and nothing moved: {reason}")]
     NotReleased { reason: String },
     #[error("signals cannot be caught, so that a run could not be stopped: {0}")]

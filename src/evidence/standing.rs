@@ -1,18 +1,19 @@
-//! Whether a record stands by itself: what it says twice agrees, its id is the one of its plan and its circumstances, and it
+//! Whether a record stands by itself: what it says twice check_consistency, its id is the one of its plan and its circumstances, and it
 //! says all that the program which it names writes. In: a record as it was read. Out: the first fault. It plays nothing back.
 
 use crate::cli::files::provenance::{BUILD, recorded_id};
 use crate::cli::files::record_file::{ReadRecord, plan_of};
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, OLDEST_FORMAT, Recovered};
-use crate::run::replay::{Header, Played, agrees};
+use crate::run::replay::{Header, LoggedRun, check_consistency};
 
 /// Holds a record against itself.
 ///
 /// # Errors
 /// What is wrong with it.
 pub fn stands(read: &ReadRecord) -> Result<(), String> {
-    agrees(&read.recovered, &read.played, &read.plan).map_err(|fault| fault.to_string())?;
+    check_consistency(&read.recovered, &read.played, &read.plan)
+        .map_err(|fault| fault.to_string())?;
     match read
         .recovered
         .lines
@@ -23,7 +24,7 @@ pub fn stands(read: &ReadRecord) -> Result<(), String> {
         Some(amended) => {
             let mut first = read.recovered.clone();
             first.lines.truncate(amended);
-            let played = Played::of(&first).map_err(|fault| fault.to_string())?;
+            let played = LoggedRun::of(&first).map_err(|fault| fault.to_string())?;
             let plan =
                 plan_of(&played).map_err(|fault| format!("before it was amended: {fault}"))?;
             begins(&first, &played, &plan)?;
@@ -36,7 +37,7 @@ pub fn stands(read: &ReadRecord) -> Result<(), String> {
 }
 
 /// Of a record as its run began: its id, and what this program would have written too.
-fn begins(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), String> {
+fn begins(recovered: &Recovered, played: &LoggedRun, plan: &Plan) -> Result<(), String> {
     let header = &played.header;
     let id = recorded_id(header, plan);
     if header.run_id != id {

@@ -68,7 +68,7 @@ const EXCEPTIONS: &[(&str, &str)] = &[
 ];
 
 /// Files in circles of uses, at most. The number may only fall; the goal is under 20.
-const IN_CYCLES: usize = 76;
+const IN_CYCLES: usize = 71;
 
 /// Files beside the dispatch file that still tell procedures or histories apart. The list may only shrink.
 const TELL_APART: &[&str] = &[
@@ -76,7 +76,6 @@ const TELL_APART: &[&str] = &[
     "language/check/warnings/tracking.rs",
     "run/rehearsal.rs",
     "run/replay/compatibility.rs",
-    "run/replay/measured.rs",
     "verdict/unfinished_peaks.rs",
 ];
 

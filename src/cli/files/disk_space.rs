@@ -1,10 +1,8 @@
-//! The least free space of a disk before anything moves. In: the run folder and its open run log. Out: nothing, or a
+//! The least free space of a disk before anything moves. In: the run folder and its free space. Out: nothing, or a
 //! [`DiskSpaceFault`] with both amounts. It frees nothing.
 
 use std::path::{Path, PathBuf};
 
-use crate::cli::exit::Failure;
-use crate::record::journal::FileStorage;
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::text::diagnostic::Code;
 
@@ -30,15 +28,11 @@ impl DiskSpaceFault {
     }
 }
 
-/// Checks the disk of a run log that is about to be written.
+/// Compares the free space of a disk \[bytes\] with [`LEAST_FREE_BYTES`].
 ///
 /// # Errors
-/// Its free space is below [`LEAST_FREE_BYTES`], or the file system does not report it.
-pub fn check(folder: &Path, storage: &FileStorage) -> Result<(), Failure> {
-    Ok(compare(folder, storage.free_space()?)?)
-}
-
-fn compare(folder: &Path, free: u64) -> Result<(), DiskSpaceFault> {
+/// It is less.
+pub fn compare(folder: &Path, free: u64) -> Result<(), DiskSpaceFault> {
     if free >= LEAST_FREE_BYTES || !on(Guarding::DiskSpace) {
         Ok(())
     } else {
@@ -103,7 +97,7 @@ mod tests {
         let plan = elastic_plan(1e5, vec![ProcedureKind::StiffnessRamp(ramp(1e-4))]);
         compare(Path::new("runs/beam-1"), free)?;
         let disk = Small(usize::try_from(free).unwrap());
-        let mut journal = Journal::create(Box::new(disk), Durability::EveryPromise);
+        let mut journal = Journal::create(Box::new(disk), Durability::EverySyncPoint);
         replay::begin(
             &mut journal,
             &crate::tests::testing::header(),

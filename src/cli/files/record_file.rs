@@ -17,7 +17,7 @@ use crate::report::{Build, Provenance, RealRun};
 use crate::rig::Rig;
 use crate::run::rehearsal;
 use crate::run::replay;
-use crate::run::replay::{Header, HeaderFile, Played, RULES};
+use crate::run::replay::{Header, HeaderFile, LoggedRun, RULES};
 use crate::text::digest::sha256;
 
 /// Name of the journal in its run folder.
@@ -69,7 +69,7 @@ pub fn header(
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
         equipment: Some(Equipment::of(plan, device)),
-        rehearsal: rehearsal::told(plan).is_some(),
+        rehearsal: rehearsal::rehearsed_plan(plan).is_some(),
         served,
         date: settings.date.clone(),
         operator,
@@ -88,12 +88,20 @@ pub fn texts(plan: &Plan) -> Vec<String> {
     plan.files.iter().map(|file| file.text.clone()).collect()
 }
 
+/// Checks the disk of a run log that is about to be written.
+///
+/// # Errors
+/// Its free space is too small, or the file system does not report it.
+pub fn check_disk_space(folder: &Path, storage: &FileStorage) -> Result<(), Failure> {
+    Ok(disk_space::compare(folder, storage.free_space()?)?)
+}
+
 /// Opens the run log of a run that is about to begin, if its disk has enough free space.
 pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     let path = journal_of(folder);
     // A run that did not begin leaves no file, and its empty folder is removed.
     let storage = FileStorage::create(&path).inspect_err(|_| drop(std::fs::remove_dir(folder)))?;
-    if let Err(failure) = disk_space::check(folder, &storage) {
+    if let Err(failure) = check_disk_space(folder, &storage) {
         drop(storage);
         let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(folder));
         return Err(failure);
@@ -108,7 +116,7 @@ pub fn begin_nowhere(plan: &Plan, header: &Header) -> Result<Journal, Failure> {
 
 fn begin_in(storage: Box<dyn Storage>, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     let durability = if plan.rig.link.as_real().is_some() {
-        Durability::EveryPromise
+        Durability::EverySyncPoint
     } else {
         Durability::Buffered
     };
@@ -137,7 +145,7 @@ impl Storage for Nowhere {
 /// A record as it was read.
 pub struct ReadRecord {
     pub recovered: Recovered,
-    pub played: Played,
+    pub played: LoggedRun,
     pub plan: Plan,
     pub provenance: Provenance,
 }
@@ -154,7 +162,7 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     let damaged = |reason: String| Failure::file(path, reason);
     let recovered =
         recover(bytes).map_err(|damage| damaged(format!("the record is damaged: {damage}")))?;
-    let played = Played::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
+    let played = LoggedRun::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
     for (file, text) in played.header.files.iter().zip(&played.texts) {
         if sha256(text.as_bytes()) != file.sha256 {
             return Err(damaged(format!(
@@ -186,7 +194,7 @@ pub fn journal_of(run: &Path) -> PathBuf {
 }
 
 /// The plan of a record, checked again from the record alone.
-pub fn plan_of(played: &Played) -> Result<Plan, String> {
+pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
     let header = &played.header;
     let files = Files {
         header,
@@ -221,7 +229,7 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
 }
 
 /// Whether the equipment of the header is that of plan and rig: a changed calibration is found.
-fn fits(played: &Played, plan: &Plan) -> Result<(), String> {
+fn fits(played: &LoggedRun, plan: &Plan) -> Result<(), String> {
     let (Some(told), Some(rig)) = (&played.header.equipment, &played.rig) else {
         return Ok(());
     };

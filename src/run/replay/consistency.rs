@@ -9,16 +9,16 @@ use super::entry::{
     AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
     RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
 };
-use super::replayed::{Played, body};
+use super::logged_run::{LoggedRun, body};
 use crate::plan::{Datum, Plan};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Line, Recovered};
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 
-/// Of a run that goes on the time is a sum of two clocks.
+/// In a resumed run the time is a sum of two clocks.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A record that says two things.
+/// An entry that contradicts another.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("record {seq} contradicts itself: {reason}")]
 pub struct Contradiction {
@@ -26,31 +26,35 @@ pub struct Contradiction {
     pub reason: String,
 }
 
-/// Holds a record against itself.
+/// Checks a run log for consistency with itself.
 ///
 /// # Errors
 /// The first of its lines that does not agree with itself or with those before it.
-pub fn agrees(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), Contradiction> {
+pub fn check_consistency(
+    recovered: &Recovered,
+    logged: &LoggedRun,
+    plan: &Plan,
+) -> Result<(), Contradiction> {
     recovered.lines.iter().try_for_each(is_ours)?;
     let parts = recovered.lines.split(|line| line.kind == EntryKind::Resume);
     parts
         .into_iter()
         .try_for_each(|part| runs_on(part.iter()))?;
-    counts_on(played)?;
+    counts_on(logged)?;
     let mut datum = None;
     recovered.lines.iter().try_for_each(|line| {
         is_of_the_plans_rig(line, plan, &mut datum).map_err(|reason| at(line, reason))
     })
 }
 
-/// Whether an entry can be of the plan's rig: one datum throughout, which is zero where the plan says so, and no raw bytes of a
-/// virtual rig. `first_datum`: that of the first RIG entry, m, one an axis.
+/// Whether an entry can belong to the plan's rig: one datum throughout, which is zero if the plan says so, and no raw bytes
+/// for a virtual rig. `first_datum`: that of the first RIG entry \[m\], one per axis.
 fn is_of_the_plans_rig(
     line: &Line,
     plan: &Plan,
     first_datum: &mut Option<Vec<f64>>,
 ) -> Result<(), String> {
-    let unread = |fault: super::Unplayable| fault.to_string();
+    let unread = |fault: super::UnreadableLog| fault.to_string();
     let link = plan.rig.link.as_real();
     match (line.kind, link) {
         (EntryKind::Rig, Some(link)) => {
@@ -114,7 +118,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
         EntryKind::Event => written::<Event>(line, &[]),
         EntryKind::Fault => written::<FaultBody>(line, &[]),
         EntryKind::Held => written::<HeldBody>(line, &[]),
-        EntryKind::Tally => written::<Tally>(line, &[]),
+        EntryKind::Tally => written::<LineStatistics>(line, &[]),
         EntryKind::Recover => written::<RecoverBody>(line, &[]),
         EntryKind::Amend => written::<AmendBody>(line, &[]),
         EntryKind::Resume => written::<ResumeBody>(line, &[]),
@@ -162,11 +166,11 @@ fn runs_on<'a>(lines: impl Iterator<Item = &'a Line>) -> Result<(), Contradictio
     Ok(())
 }
 
-/// Of the records that count: a target has the next number, and the time of the record before it.
-fn counts_on(played: &Played) -> Result<(), Contradiction> {
+/// For the entries that count: a target has the next number, and the time of the entry before it.
+fn counts_on(logged: &LoggedRun) -> Result<(), Contradiction> {
     let mut targets = 0;
-    let mut time = played.rig.as_ref().map_or(0.0, |rig| rig.t);
-    for line in &played.lines {
+    let mut time = logged.rig.as_ref().map_or(0.0, |rig| rig.t);
+    for line in &logged.lines {
         if line.kind == EntryKind::Intent {
             let intent: IntentBody = body(line).map_err(|fault| at(line, fault.to_string()))?;
             targets += 1;
@@ -188,5 +192,5 @@ fn counts_on(played: &Played) -> Result<(), Contradiction> {
         }
         time = line.time().unwrap_or(time);
     }
-    runs_on(played.lines.iter())
+    runs_on(logged.lines.iter())
 }

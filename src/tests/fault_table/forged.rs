@@ -8,7 +8,7 @@ use super::two_axes::shaken;
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, Recovered};
 use crate::run::replay;
-use crate::run::replay::Played;
+use crate::run::replay::LoggedRun;
 
 /// The record with the `nth` record of a kind altered; what `psd verify` finds first.
 pub(super) fn found(
@@ -30,8 +30,8 @@ pub(super) fn found(
 }
 
 pub(super) fn judged(plan: &Plan, forged: &Recovered) -> Result<(), String> {
-    let played = Played::of(forged).map_err(|fault| fault.to_string())?;
-    replay::agrees(forged, &played, plan).map_err(|fault| fault.to_string())?;
+    let played = LoggedRun::of(forged).map_err(|fault| fault.to_string())?;
+    replay::check_consistency(forged, &played, plan).map_err(|fault| fault.to_string())?;
     let replayed = replay::replay(plan, played);
     replayed
         .mismatch

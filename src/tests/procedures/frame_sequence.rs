@@ -469,7 +469,7 @@ fn what_stays_after_a_row_is_as_uncertain_as_the_zeros_above() {
             .rest
             .as_ref()
             .unwrap()
-            .doubts_of_drifts()
+            .drift_contributions()
     );
 }
 
