@@ -52,23 +52,23 @@ fn begun(storage: Box<dyn Storage>, durability: Durability) -> Journal {
     journal
 }
 
-fn append(bencher: divan::Bencher, mut journal: Journal, promise: bool) {
+fn append(bencher: divan::Bencher, mut journal: Journal, sync_point: bool) {
     bencher.counter(ItemsCount::new(1_u8)).bench_local(|| {
         journal
             .append(EntryKind::Sample, divan::black_box(&SAMPLE))
             .expect("the record is taken");
-        if promise {
-            journal.promise().expect("the record is safe");
+        if sync_point {
+            journal.sync_point().expect("the record is safe");
         }
     });
 }
 
-#[divan::bench(args = [Durability::Buffered, Durability::EveryPromise])]
+#[divan::bench(args = [Durability::Buffered, Durability::EverySyncPoint])]
 fn append_to_memory(bencher: divan::Bencher, durability: Durability) {
     append(bencher, begun(Box::new(Nowhere), durability), false);
 }
 
-#[divan::bench(args = [Durability::Buffered, Durability::EveryPromise])]
+#[divan::bench(args = [Durability::Buffered, Durability::EverySyncPoint])]
 fn append_to_a_file(bencher: divan::Bencher, durability: Durability) {
     let folder = tempfile::tempdir().expect("a folder");
     let storage = FileStorage::create(&folder.path().join("journal")).expect("a new file");
@@ -81,7 +81,7 @@ fn append_and_promise_to_a_file(bencher: divan::Bencher) {
     let storage = FileStorage::create(&folder.path().join("journal")).expect("a new file");
     append(
         bencher,
-        begun(Box::new(storage), Durability::EveryPromise),
+        begun(Box::new(storage), Durability::EverySyncPoint),
         true,
     );
 }

@@ -16,7 +16,7 @@ use psd::language::check::{LoadError, Loader, Options, check};
 use psd::plan::{Plan, RealLink};
 use psd::record::journal::{Durability, EntryKind, Journal, Storage};
 use psd::record::{History, Outcome, Record};
-use psd::rig::Wish;
+use psd::rig::StopRequest;
 use psd::rig::controllers;
 use psd::rig::controllers::Device;
 use psd::rig::real::RealRig;
@@ -106,7 +106,7 @@ fn device(plan: &Plan, port: Box<dyn Port>, clock: Box<dyn Clock>) -> Box<dyn De
         &link(plan).actuator,
         port,
         clock,
-        Wish::default(),
+        StopRequest::default(),
         plan.rig.settle.timeout,
     )
 }
@@ -227,10 +227,10 @@ fn run(plan: &Plan, line: &AtOnce) -> Record {
         actuator,
         None,
         Box::new(line.clone()),
-        Wish::default(),
+        StopRequest::default(),
     )
     .expect("it opens");
-    let mut journal = Journal::create(Box::new(Nowhere), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(Nowhere), Durability::EverySyncPoint);
     journal
         .append(EntryKind::Header, &serde_json::json!({}))
         .expect("the header is taken");

@@ -9,7 +9,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
 use psd::remote::{Protocol, serve};
-use psd::rig::{Guard, VirtualRig, Wish};
+use psd::rig::{Guard, StopRequest, VirtualRig};
 use psd::run::Unwatched;
 use psd::run::remote_control::Specimen;
 
@@ -54,7 +54,7 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
             &protocol,
             &mut specimen,
             true,
-            &Wish::default(),
+            &StopRequest::default(),
             &mut |_| (),
         )
         .expect("it listens");

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 
 use super::settings::Settings;
+use crate::files::failure::DiskSpaceFault;
 pub use crate::files::failure::Failure;
-use crate::files::failure::NoRoom;
 use crate::rig::RigFault;
 use crate::text::diagnostic::excerpt::escape;
 use crate::verdict::Verdict;
@@ -81,7 +81,7 @@ impl Failure {
             | Self::Stdout(_)
             | Self::Record(_)
             | Self::Journal(_)
-            | Self::NoRoom(_)
+            | Self::DiskSpace(_)
             | Self::Refused(_)
             | Self::Signals(_) => Exit::Fault,
         }
@@ -93,7 +93,10 @@ impl Failure {
             Self::CommandLine { help, .. } | Self::File { help, .. } => {
                 ("error:".to_owned(), help.clone())
             }
-            Self::NoRoom(fault) => (format!("error[{}]", NoRoom::CODE), Some(fault.help())),
+            Self::DiskSpace(fault) => (
+                format!("error[{}]", DiskSpaceFault::CODE),
+                Some(fault.help()),
+            ),
             Self::NotOpened {
                 fault: RigFault::Device(message),
                 ..

@@ -5,15 +5,15 @@ use crate::files::provenance::{BUILD, recorded_id};
 use crate::files::recorded_run::{ReadRecord, plan_of};
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, OLDEST_FORMAT, Recovered};
-use crate::rig::real::ReadBack;
-use crate::run::replay::{Header, Played, agrees};
+use crate::run::replay::{self, Header, LoggedRun};
 
 /// Compares the entries of a run log with each other.
 ///
 /// # Errors
 /// The first contradiction.
 pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
-    agrees(&read.recovered, &read.played, &read.plan).map_err(|fault| fault.to_string())?;
+    replay::check_consistency(&read.recovered, &read.played, &read.plan)
+        .map_err(|fault| fault.to_string())?;
     match read
         .recovered
         .lines
@@ -24,7 +24,7 @@ pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
         Some(amended) => {
             let mut first = read.recovered.clone();
             first.lines.truncate(amended);
-            let played = Played::of(&first).map_err(|fault| fault.to_string())?;
+            let played = LoggedRun::of(&first).map_err(|fault| fault.to_string())?;
             let plan =
                 plan_of(&played).map_err(|fault| format!("before it was amended: {fault}"))?;
             begins(&first, &played, &plan)?;
@@ -37,7 +37,7 @@ pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
 }
 
 /// The run log as its run began: its run id, and the entries that this program would have written.
-fn begins(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), String> {
+fn begins(recovered: &Recovered, played: &LoggedRun, plan: &Plan) -> Result<(), String> {
     let header = &played.header;
     let id = recorded_id(header, plan);
     if header.run_id != id {
@@ -49,24 +49,7 @@ fn begins(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), Str
     if own && recovered.format() == OLDEST_FORMAT {
         return Err("the program that it names writes no records of version 1".to_owned());
     }
-    if own && lacks_introduction(played, plan) {
-        return Err(
-            "it does not hold the bytes in which the rig said who it is, and the program that it names writes them".to_owned()
-        );
-    }
     Ok(())
-}
-
-fn lacks_introduction(played: &Played, plan: &Plan) -> bool {
-    let replies = plan
-        .rig
-        .link
-        .as_real()
-        .map_or(0, |link| ReadBack::of(&plan.rig, link).introductions());
-    played
-        .rig
-        .as_ref()
-        .is_some_and(|rig| rig.said.len() < replies)
 }
 
 /// Remarks on a consistent run log.

@@ -28,7 +28,7 @@ fn played(journal: &[u8]) -> Result<(), String> {
         .map_err(|failure| failure.to_string())?;
     let consistent = consistency::check_consistency(&read);
     // A refusal is as good as none.
-    let no_rig = || Err(replay::Refusal::NothingRecorded);
+    let no_rig = || Err(replay::ResumeRefusal::NothingRecorded);
     let _ = replay::resume(
         &read.plan,
         &read.played,

@@ -36,7 +36,7 @@ pub enum Failure {
     #[error("{0}")]
     Rig(#[from] crate::rig::RigFault),
     #[error(transparent)]
-    NoRoom(#[from] NoRoom),
+    DiskSpace(#[from] DiskSpaceFault),
     #[error("{fault}")]
     NotOpened {
         fault: crate::rig::RigFault,
@@ -45,7 +45,7 @@ pub enum Failure {
     #[error("no rehearsal: {0}")]
     Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
     #[error("the run cannot go on: {0}")]
-    Refused(#[from] crate::run::replay::Refusal),
+    Refused(#[from] crate::run::replay::ResumeRefusal),
     #[error("not resumed, and nothing moved: {reason}")]
     NotReleased { reason: String },
     #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
@@ -98,30 +98,29 @@ impl Failure {
     }
 }
 
-/// The disk is too small for what the run may write.
+/// Free space that a run needs before it begins, bytes. A disk that fills up later holds the rig, and the run can be resumed.
+pub const LEAST_FREE_BYTES: u64 = 200_000_000;
+
+/// The disk has less free space than a run needs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: the run may write {}, and its disk has {} left; nothing has moved", folder.display(), amount(*need), amount(*room))]
-pub struct NoRoom {
+#[error("{}: its disk has {} of free space, and a run begins with at least {}; nothing has moved", folder.display(), amount(*free), amount(LEAST_FREE_BYTES))]
+pub struct DiskSpaceFault {
     pub folder: PathBuf,
-    /// Bytes.
-    pub need: u64,
-    pub room: u64,
+    /// Free space, bytes.
+    pub free: u64,
 }
 
-impl NoRoom {
-    pub const CODE: Code = Code::NoRoom;
+impl DiskSpaceFault {
+    pub const CODE: Code = Code::DiskSpace;
 
-    /// What to do.
+    /// The action that corrects it.
     pub fn help(&self) -> String {
-        let lacking = amount(self.need - self.room);
-        format!(
-            "free {lacking}, or name a folder on another disk with `--out`; `psd explain {}` says what is reckoned",
-            Self::CODE
-        )
+        let lacking = amount(LEAST_FREE_BYTES - self.free);
+        format!("free {lacking}, or name a folder on another disk with `--out`")
     }
 }
 
-/// Bytes for people: `12.4 MB`.
+/// Bytes in a readable unit: `12.4 MB`.
 pub fn amount(bytes: u64) -> String {
     const UNITS: [&str; 4] = ["kB", "MB", "GB", "TB"];
     #[expect(clippy::cast_precision_loss, reason = "three digits are shown")]

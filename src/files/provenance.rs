@@ -173,7 +173,7 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
         part(date);
     }
     // A rehearsal has an id different from that of its run.
-    if rehearsal::told(plan).is_some() {
+    if rehearsal::rehearsed_plan(plan).is_some() {
         digest.update(rehearsal::REHEARSAL);
     }
     hex(&digest.finalize())[..16].to_owned()

@@ -11,7 +11,7 @@ use crate::record::journal::{Line, OLDEST_FORMAT, Recovered, recover};
 use crate::report::{Build, Provenance, RealRun};
 use crate::run::rehearsal;
 use crate::run::replay;
-use crate::run::replay::{Header, Played};
+use crate::run::replay::{Header, LoggedRun};
 use crate::text::digest::sha256;
 
 /// Name of the journal in its run folder.
@@ -20,7 +20,7 @@ pub const JOURNAL: &str = "journal.psdj";
 /// A record as it was read.
 pub struct ReadRecord {
     pub recovered: Recovered,
-    pub played: Played,
+    pub played: LoggedRun,
     pub plan: Plan,
     pub provenance: Provenance,
 }
@@ -37,7 +37,7 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     let damaged = |reason: String| Failure::file(path, reason);
     let recovered =
         recover(bytes).map_err(|damage| damaged(format!("the record is damaged: {damage}")))?;
-    let played = Played::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
+    let played = LoggedRun::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
     for (file, text) in played.header.files.iter().zip(&played.texts) {
         if sha256(text.as_bytes()) != file.sha256 {
             return Err(damaged(format!(
@@ -69,7 +69,7 @@ pub fn journal_of(run: &Path) -> PathBuf {
 }
 
 /// The plan of a record, checked again from the record alone.
-pub fn plan_of(played: &Played) -> Result<Plan, String> {
+pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
     let header = &played.header;
     let files = Files {
         header,
@@ -104,7 +104,7 @@ pub fn plan_of(played: &Played) -> Result<Plan, String> {
 }
 
 /// What the header says of the equipment is what plan and rig say of it: nobody wrote another calibration into it.
-fn fits(played: &Played, plan: &Plan) -> Result<(), String> {
+fn fits(played: &LoggedRun, plan: &Plan) -> Result<(), String> {
     let (Some(told), Some(rig)) = (&played.header.equipment, &played.rig) else {
         return Ok(());
     };

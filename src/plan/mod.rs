@@ -4,7 +4,6 @@
 pub mod contribution;
 pub mod formula;
 pub mod procedure;
-mod record_size;
 pub mod report;
 pub mod results;
 mod rig;
@@ -37,10 +36,9 @@ pub use procedure::impact::{Contact, Impact, ImpactTarget, PointTarget, StoreyTa
 pub use procedure::impact_series::{Between, Escalate, MOST_IMPACTS};
 pub use procedure::mode::Mode;
 pub use procedure::move_to::Move;
-pub use procedure::stepping::{MOST_STEPS, Stepping, step_count, steps_in};
+pub use procedure::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
 pub use procedure::structure::Structure;
 pub use procedure::unload::{FrameUnload, Unload};
-pub use record_size::{Counts, FRAME, MOST_RECORD_BYTES, WALL};
 pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use report::golden::{Golden, NearColumn, NearResult, Tolerance};
 pub use report::undeclared::Dependence;

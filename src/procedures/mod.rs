@@ -18,7 +18,6 @@ pub(crate) mod read_field;
 pub(crate) mod results;
 pub mod stepping;
 pub mod stiffness_ramp;
-pub mod storage_bound;
 pub mod unload;
 
 use crate::language::check::checker::Checker;

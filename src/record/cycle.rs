@@ -1,9 +1,9 @@
-//! What a `cycle` records: every reading, and what each cycle came to.
+//! The history of a `cycle`: every reading, and the results of each cycle.
 
 use crate::physics::identification::cyclic::{Loop, LoopPoint};
 use crate::physics::identification::multilinear_fit::MultilinearFit;
 
-/// One reading of a cycle: the mean of the samples at a target, or one on the way.
+/// One reading of a cycle: the mean of the samples at a target, or a single reading during the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CycleStep {
     pub step: u64,
@@ -58,7 +58,7 @@ pub struct CycleHistory {
     /// The first is where the cycles begin.
     pub steps: Vec<CycleStep>,
     pub cycles: Vec<WholeCycle>,
-    /// Of the backbone, displacements from the middle and both sides on one, where the plan asks for it.
+    /// The backbone, as displacements from the middle with both sides combined, if the plan requests it.
     pub backbone: Option<MultilinearFit>,
 }
 
@@ -85,7 +85,7 @@ impl CycleHistory {
             .steps
             .first()
             .map(|step| (step.displacement - middle, step.restoring_force));
-        // One-sided cycles have an end in the middle, where they come back to: that is no backbone.
+        // One-sided cycles return to the middle: that is not a backbone point.
         let far = |(x, _): &(f64, f64), amplitude: f64| (x - middle).abs() > 0.5 * amplitude;
         let first_cycles = self.cycles.iter().filter(|cycle| cycle.repeat == 1);
         let ends = first_cycles.flat_map(|cycle| {

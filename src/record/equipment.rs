@@ -1,5 +1,5 @@
-//! What a run was measured with and held to. In: a checked plan, and what the rig says of itself. Out: [`Equipment`], as data:
-//! the first line of a record tells it, so that the record alone does. It knows no rig and no file.
+//! The equipment and the limits of a run. In: a checked plan, and the identity that the rig reports. Out: [`Equipment`], as
+//! data in the first line of the run log, so that the run log alone states it. It knows no rig and no file.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::record::Identity;
 use crate::units::Dimension;
 use crate::units::display::stated;
 
-/// The rig that answered, what its numbers mean, and what nothing may drive it past.
+/// The rig that answered, the meaning of its numbers, and its limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Equipment {
     pub device: Device,
@@ -19,7 +19,7 @@ pub struct Equipment {
     pub limits: Vec<HeldLimit>,
 }
 
-/// What the rig said of itself before the first move.
+/// The identity that the rig reported before the first move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Device {
     #[serde(flatten)]
@@ -41,7 +41,7 @@ impl Device {
     }
 }
 
-/// What a channel measures.
+/// The quantity that a channel measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measures {
@@ -75,11 +75,11 @@ pub struct Channel {
     /// From 1.
     pub axis: usize,
     pub measures: Measures,
-    /// What one of the device's own numbers is.
+    /// The kind of the device's own numbers.
     pub given_in: GivenIn,
     /// m or N of one of them, the rig's sign in it.
     pub factor: f64,
-    /// Its number at none of the quantity.
+    /// Its number at zero of the quantity.
     pub zero: f64,
     /// Quantum of a displacement (m), standard deviation of one force reading (N), as declared.
     pub doubt: f64,
@@ -100,11 +100,11 @@ pub struct Channel {
     pub calibrated: Option<[f64; 2]>,
 }
 
-/// What a device gives.
+/// The kind of number that a device gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GivenIn {
-    /// A quantity whose unit the dialect fixes.
+    /// A quantity whose unit the protocol fixes.
     Units,
     /// Counts of a converter, or of a register.
     Counts,
@@ -145,7 +145,7 @@ impl Equipment {
         }
     }
 
-    /// What makes the same number another quantity than before, if anything does.
+    /// The change that makes the same number a different quantity, if there is one.
     #[must_use]
     pub fn measures_otherwise(&self, now: &Self) -> Option<&'static str> {
         let scale = |channel: &Channel| {
@@ -175,7 +175,7 @@ impl Equipment {
             .then_some("resolution")
     }
 
-    /// Limits and certificates that are no longer those, in words.
+    /// Limits and certificates that have changed, as text.
     #[must_use]
     pub fn changes(&self, now: &Self) -> Vec<String> {
         let mut named: Vec<(&str, Option<usize>)> = self
@@ -193,7 +193,7 @@ impl Equipment {
                 .cloned()
         };
         let told = |limit: Option<HeldLimit>| {
-            limit.map_or_else(|| "none".to_owned(), |limit| limit.told())
+            limit.map_or_else(|| "none".to_owned(), |limit| limit.describe())
         };
         let limits = named
             .into_iter()
@@ -244,12 +244,12 @@ impl HeldLimit {
         known.map_or(Dimension::NUMBER, |(.., dimension)| dimension)
     }
 
-    /// Whether it bounds the same quantity in the same way, whatever axis it is said of.
+    /// Whether it bounds the same quantity in the same way, for whichever axis.
     fn bounds_as(&self, other: &Self) -> bool {
         (&self.quantity, self.low, self.high) == (&other.quantity, other.low, other.high)
     }
 
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         let end = |end: Option<f64>| {
             end.map_or_else(|| "any".to_owned(), |end| stated(end, self.dimension()))
         };
@@ -257,7 +257,7 @@ impl HeldLimit {
     }
 }
 
-/// The two channels of an axis, by its place.
+/// The two channels of the axis with this index.
 fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
     let link = rig.link.as_real();
     let moves = link.map(|link| &link.moved_by(axis).dialect);

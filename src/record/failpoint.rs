@@ -7,23 +7,23 @@ pub enum Guarding {
     TargetLimits,
     ReadingLimits,
     EnergyError,
-    /// What following wrongly does to the energy of a run, and the size of its error.
+    /// The energy error that tracking errors cause, and their size.
     Tracking,
     WireNumber,
     Following,
-    /// An axis that goes elsewhere than the way it was sent.
-    Straying,
+    /// An axis that deviates from its commanded path.
+    PathDeviation,
     Settling,
     Invalid,
-    /// What a device says of itself: emergency stop, watchdog, no reference.
+    /// Status flags of a device: emergency stop, watchdog, no reference.
     Flags,
     Saturation,
     Frozen,
     Median,
     /// A force that nothing leads to from the dwell before it.
-    Leap,
+    ForceJump,
     Reboot,
-    /// Whether a rig that cannot say it was switched off since.
+    /// Power-up of a rig that cannot report whether it was switched off.
     PowerUp,
     Sequence,
     Checksum,
@@ -31,11 +31,11 @@ pub enum Guarding {
     Away,
     /// A reading that cannot be, of a rig that has not moved.
     AtRest,
-    /// Where a rig stands when a run begins.
-    GateStart,
-    GateZero,
-    GateSign,
-    GateStiffness,
+    /// The position of a rig when a run begins.
+    PretestStart,
+    PretestZero,
+    PretestPolarity,
+    PretestStiffness,
     /// How far a zero may drift before nothing is decided by the forces.
     ZeroDrift,
     IntentDurable,
@@ -46,8 +46,8 @@ pub enum Guarding {
     PanicHook,
     /// So does a program that hangs.
     HostWatchdog,
-    /// Whether a disk has room for the whole run.
-    Room,
+    /// The least free space of the disk before a run.
+    DiskSpace,
 }
 
 /// Whether the guard is on.
@@ -76,7 +76,7 @@ mod switch {
         OFF.get() != Some(guard)
     }
 
-    /// Does `what` with one guard off in this thread.
+    /// Runs `what` with one guard off in this thread.
     pub fn without<T>(guard: Guarding, what: impl FnOnce() -> T) -> T {
         struct Restore(Option<Guarding>);
         impl Drop for Restore {

@@ -1,11 +1,11 @@
-//! What a frame did, floor by floor: the storeys of a step whatever moved them, and the impact on one of them. In: numbers
-//! of a run, SI. It computes no motion.
+//! The floors of a frame: the storeys of a step, whatever moved them, and the impact on one of them. In: numbers of a run,
+//! SI. It computes no motion.
 
 use super::Modes;
 use crate::physics::structure::{drifts, shears};
 use crate::physics::tracking::monitor::Tracking;
 
-/// What the steps of every frame tell, an entry a floor from the ground up; empty where nothing was computed.
+/// The state of a frame at a step, an entry per floor from the ground up; empty for quantities that were not computed.
 #[derive(Clone, Copy, Debug)]
 pub struct FloorsAt<'a> {
     /// Virtual time, s.
@@ -22,7 +22,7 @@ pub struct FloorsAt<'a> {
     pub acceleration: &'a [f64],
     /// Measured, N.
     pub restoring_force: &'a [f64],
-    /// What following each floor has come to.
+    /// The tracking error of each floor.
     pub tracking: &'a [Tracking],
 }
 
@@ -56,7 +56,7 @@ pub trait Floors {
         self.at().measured
     }
 
-    /// What following each floor has come to.
+    /// The tracking error of each floor.
     fn tracking(&self) -> &[Tracking] {
         self.at().tracking
     }
@@ -94,7 +94,7 @@ pub(super) fn shear_of(floors: &[f64]) -> Vec<f64> {
     shear
 }
 
-/// All floors of one step of an impact on a storey; step, striker and contact stand beside it.
+/// All floors of one step of an impact on a storey; step, striker and contact are in the impact step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorStep {
     /// Virtual time, s.
@@ -113,7 +113,7 @@ pub struct FloorStep {
     pub restoring_force: Vec<f64>,
     /// ∫ shear d(drift) of each storey so far, J: together the energy of the restoring forces.
     pub storey_energy: Vec<f64>,
-    /// Of each axis.
+    /// For each axis.
     pub tracking: Vec<Tracking>,
 }
 

@@ -2,14 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Who the rig says it is.
+/// The identity that a rig reports.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     pub name: String,
     pub model: String,
     pub serial: String,
     pub firmware: String,
-    /// Random word of this power-up, where the rig has one: another word means that its position is not to be trusted.
+    /// Random boot identifier of this power-up, if the rig has one. A different identifier means that its position is not
+    /// to be trusted.
     pub boot: Option<String>,
     /// Nothing real moved.
     pub simulated: bool,

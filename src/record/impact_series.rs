@@ -1,10 +1,10 @@
-//! What an `escalate` records: every blow as an impact of its own.
+//! The history of an `escalate`: every impact as an impact history.
 
 use super::{ImpactHistory, NamedResult, Rest, StruckFrame};
 use crate::plan::formula::ResultValue;
 use crate::uncertainty::Contribution;
 
-/// One blow.
+/// One impact.
 #[derive(Clone, Debug)]
 pub struct Blow {
     /// V0, m/s
@@ -14,14 +14,14 @@ pub struct Blow {
     /// Those of an impact, in the schema's order.
     pub results: Vec<NamedResult>,
     pub history: ImpactHistory,
-    /// Whether the condition held; None where the blow did not run to its end, or decided nothing.
+    /// Whether the condition was satisfied. None if the impact did not run to its end, or was not conclusive.
     pub held: Option<bool>,
-    /// Where the specimen was brought to after it, and what it carries there: the next blow begins there.
+    /// The position and force of the specimen after it: the next impact begins there.
     pub rest: Option<Rest>,
 }
 
 impl Blow {
-    /// The striker and what it strikes, step by step; of a frame, the struck floor.
+    /// The striker and the struck point, step by step; for a frame, the struck floor.
     #[must_use]
     pub const fn impact(&self) -> &ImpactHistory {
         &self.history
@@ -68,22 +68,24 @@ impl Blow {
         self.rest.as_ref().map(|rest| rest.of(struck))
     }
 
-    /// What is uncertain of both.
+    /// The uncertainty contributions of both.
     #[must_use]
     pub fn doubts_of_rest(&self) -> Option<[Vec<Contribution>; 2]> {
         let struck = self.storey().map_or(0, |history| history.struck);
-        self.rest.as_ref().map(|rest| rest.doubts_of(struck))
+        self.rest
+            .as_ref()
+            .map(|rest| rest.contributions_at_floor(struck))
     }
 }
 
-/// A row of blows, in the order struck.
+/// A series of impacts, in their order.
 #[derive(Clone, Debug, Default)]
 pub struct EscalateHistory {
     pub blows: Vec<Blow>,
 }
 
 impl EscalateHistory {
-    /// The blows on a frame, blow by blow; none where one degree of freedom is struck.
+    /// The impacts on a frame, one by one; none for one degree of freedom.
     pub fn storeys(&self) -> impl Iterator<Item = &StruckFrame> {
         self.blows.iter().filter_map(Blow::storey)
     }

@@ -1,13 +1,13 @@
-//! What a client asks of the rig that it drives: the words of the record, whatever protocol they came in. A served session
-//! is a function of its plan, of these requests and of what the rig answers. It knows no protocol and no rig.
+//! The requests of a client that drives the rig: entries of the run log, whatever their protocol. A served session is a
+//! function of its plan, of these requests and of the answers of the rig. It knows no protocol and no rig.
 
 use serde::{Deserialize, Serialize};
 
-/// One request, as it was taken from the client.
+/// One request of the client.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "asks")]
 pub enum Request {
-    /// A client has come; its address.
+    /// A client has connected; its address.
     Come {
         client: String,
     },
@@ -24,37 +24,37 @@ pub enum Request {
         targets: Vec<f64>,
         speed: f64,
     },
-    /// A target that is no number and that no line of the record can hold: `NaN`, `inf`. Refused as any other. Of several axes
-    /// every target, with blanks between.
+    /// A target that is not a finite number and cannot be logged as one: `NaN`, `inf`. Refused as any other. For several
+    /// axes every target, separated by spaces.
     ProposeNoNumber {
         said: String,
     },
-    /// Carry out what was proposed last, settle, read.
+    /// Execute the last proposal, settle, read.
     Execute,
     /// The step is final.
     Commit,
     Read,
     Hold,
-    /// Something in the client's words that moves nothing.
+    /// A remark in the client's text that moves nothing.
     Remark {
         text: String,
     },
-    /// The client is gone, or was sent away.
+    /// The client has disconnected, or was disconnected.
     Leave {
-        parting: Parting,
+        parting: Disconnect,
         reason: String,
     },
-    /// Nobody is served any more.
+    /// No client is served any more.
     Close,
 }
 
 /// How a client's session ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Parting {
-    /// The client said so.
+pub enum Disconnect {
+    /// The client closed the session.
     Closed,
-    /// A limit or a person stopped it.
+    /// A limit or the operator stopped it.
     Stopped,
     /// The client or the rig failed.
     Failed,
@@ -112,7 +112,7 @@ impl Request {
     }
 }
 
-/// Targets carried out and what was read there, one entry an axis.
+/// Executed targets and the readings there, one entry per axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrivenStep {
     /// From 1, over all clients.

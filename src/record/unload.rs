@@ -1,4 +1,4 @@
-//! What an unloading of a frame records: the floors after every move. In: numbers of a run, SI. It moves nothing.
+//! The history of the unloading of a frame: the floors after every move. In: numbers of a run, SI. It moves nothing.
 
 use super::floors::{Floors, FloorsAt, drift_of, shear_of};
 use crate::uncertainty::{Contribution, share};
@@ -19,7 +19,7 @@ pub struct UnloadStep {
     pub tangent_stiffness: Vec<Option<f64>>,
 }
 
-/// Nothing is computed here: a place is where it was measured, a time the rig's, and no recursion runs whose tracking could err.
+/// Nothing is computed here: positions are measured, times are rig times, and there is no recursion with a tracking error.
 impl Floors for UnloadStep {
     fn at(&self) -> FloorsAt<'_> {
         FloorsAt {
@@ -40,16 +40,16 @@ impl Floors for UnloadStep {
 pub struct Rest {
     /// Measured, m.
     pub displacement: Vec<f64>,
-    /// What it still carries, N.
+    /// The remaining force \[N\].
     pub force: Vec<f64>,
-    /// What each source of uncertainty does to the place of each floor, m; empty where nothing is uncertain.
+    /// The contribution of each source of uncertainty to the position of each floor \[m\]; empty if nothing is uncertain.
     pub of_displacement: Vec<Vec<Contribution>>,
-    /// The same of what it still carries, N.
+    /// The same for the remaining force \[N\].
     pub of_force: Vec<Vec<Contribution>>,
 }
 
 impl Rest {
-    /// Place (m) and force (N) of one floor.
+    /// Position \[m\] and force \[N\] of one floor.
     #[must_use]
     pub fn of(&self, floor: usize) -> (f64, f64) {
         (self.displacement[floor], self.force[floor])
@@ -67,7 +67,7 @@ impl Rest {
         shear_of(&self.force)
     }
 
-    /// The place farthest out, m, and the largest force left, N, each with its sign.
+    /// The largest position \[m\] and the largest remaining force \[N\] in absolute value, each with its sign.
     #[must_use]
     pub fn largest(&self) -> (f64, f64) {
         let [place, force] = self.floors_of_largest();
@@ -89,22 +89,22 @@ impl Rest {
         [most(&self.displacement), most(&self.force)]
     }
 
-    /// What is uncertain of the place (m) and of the force (N) of one floor.
+    /// The uncertainty contributions of position \[m\] and force \[N\] of one floor.
     #[must_use]
-    pub fn doubts_of(&self, floor: usize) -> [Vec<Contribution>; 2] {
+    pub fn contributions_at_floor(&self, floor: usize) -> [Vec<Contribution>; 2] {
         [&self.of_displacement, &self.of_force]
             .map(|floors| floors.get(floor).cloned().unwrap_or_default())
     }
 
-    /// What is uncertain of the places, m: an entry a floor.
+    /// The uncertainty contributions of the positions \[m\]: an entry per floor.
     #[must_use]
-    pub fn doubts_of_places(&self) -> Vec<Contribution> {
+    pub fn position_contributions(&self) -> Vec<Contribution> {
         entries(self.of_displacement.iter().cloned())
     }
 
-    /// What is uncertain of the drifts, m: what a source does to a floor less what it does to the one below.
+    /// The uncertainty contributions of the storey drifts \[m\]: the contribution to a floor minus that to the floor below.
     #[must_use]
-    pub fn doubts_of_drifts(&self) -> Vec<Contribution> {
+    pub fn drift_contributions(&self) -> Vec<Contribution> {
         let floors = &self.of_displacement;
         entries((0..floors.len()).map(|floor| {
             let mut parts = floors[floor].clone();
@@ -121,9 +121,9 @@ impl Rest {
         }))
     }
 
-    /// What is uncertain of the shears, N: what a source does to all floors that a storey carries.
+    /// The uncertainty contributions of the shears \[N\]: the sum of the contributions to all floors above a storey.
     #[must_use]
-    pub fn doubts_of_shears(&self) -> Vec<Contribution> {
+    pub fn shear_contributions(&self) -> Vec<Contribution> {
         entries((0..self.of_force.len()).map(|storey| {
             let mut parts = Vec::new();
             self.of_force[storey..]

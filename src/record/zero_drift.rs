@@ -1,5 +1,5 @@
-//! What the zeros of a rig did in a run: read before it and after it, and the slopes of readings while nothing moved. `run`
-//! writes it; in: readings. Out: whether the drift was more than the rig allows. It knows no rig and no procedure.
+//! The zero drift of a rig in a run: zeros before and after it, and the slopes of readings while nothing moved. `run`
+//! writes it. In: readings. Out: whether the zero drift exceeds the limit of the rig. It knows no rig and no procedure.
 
 use crate::plan::DriftCheck;
 use crate::plan::{named_axis, of_axis};
@@ -7,13 +7,13 @@ use crate::record::Held;
 use crate::units::Dimension;
 use crate::units::display::{readable, stated};
 
-/// What the zeros of a rig did in a run, beside what they may.
+/// The zero drift of a rig in a run, and its limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
     pub check: DriftCheck,
     /// Lowest floor first.
     pub axes: Vec<AxisDrift>,
-    /// Of every hold of the run.
+    /// Of all dwells of the run.
     pub held: Held,
 }
 
@@ -40,10 +40,10 @@ pub struct Zero {
     pub displacement_slope: f64,
 }
 
-/// A drift beyond what the rig allows, and of what.
+/// A zero drift beyond the limit of the rig, and its quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beyond {
-    /// Of the load cell; else of the displacement.
+    /// Of the load cell; otherwise of the displacement.
     pub of_force: bool,
     pub reason: String,
 }
@@ -62,8 +62,8 @@ impl AxisDrift {
 }
 
 impl Drift {
-    /// The first drift beyond what is allowed. Judged are: the change of a zero; the change at rest before the first move; and a
-    /// force that grew in a hold farther out than the specimen had ever been, where it can only relax.
+    /// The first zero drift beyond its limit. Assessed are: the change of a zero; the change at rest before the first move;
+    /// and a force that grew in a dwell at a displacement beyond all earlier ones, where it can only relax.
     #[must_use]
     pub fn beyond(&self) -> Option<Beyond> {
         self.all_beyond().next()

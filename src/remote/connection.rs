@@ -1,8 +1,9 @@
-//! The line to a client. In: a stream, bytes to send. Out: bytes that came, without delay. It knows no protocol. While it
-//! waits, the rig is heard; while the rig moves, the line is looked after, so that nothing moves for a client that is gone.
+//! The line to a client. In: a stream, bytes to send. Out: received bytes, without delay. It knows no protocol. While it
+//! waits, the rig is polled; while the rig moves, the line is watched, so that nothing moves for a client that has
+//! disconnected.
 //!
-//! Clients of the field leave Nagle's delay on: with a delayed acknowledgement of ours every message of theirs would wait
-//! 40 ms. So what comes is acknowledged at once, after every read, for the system forgets the wish.
+//! Common clients leave Nagle's algorithm on: with a delayed acknowledgement each of their messages would wait 40 ms. So
+//! received bytes are acknowledged immediately, after every read, because the system forgets the option.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::TcpStream;
@@ -13,14 +14,14 @@ use rustix::net::sockopt::set_tcp_quickack;
 use rustix::net::{RecvFlags, recv};
 
 use super::{Ended, LOOK};
-use crate::rig::{RigFault, Wish};
+use crate::rig::{RigFault, StopRequest};
 use crate::run::remote_control::Specimen;
 
-/// A client that takes nothing for so long is gone.
+/// A client that accepts no bytes for this long is disconnected.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A client that has begun a message and does not end it for so long is sent away, and so is one that comes and says nothing: nobody
-/// else is let in meanwhile.
+/// A client that has begun a message and does not complete it for this long is disconnected, and so is one that connects
+/// and sends nothing: no other client is admitted meanwhile.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Bytes that a client may have sent ahead, and that are looked through for its leave.
@@ -30,19 +31,19 @@ const SENT_AHEAD: usize = 1 << 16;
 #[derive(Debug)]
 pub enum Broken {
     HungUp,
-    /// A person wants the end.
+    /// The operator requests the end.
     Stopped,
-    /// It owes the rest of what it has begun.
+    /// The rest of its message is missing.
     Silent,
     Lost(io::Error),
     /// The rig failed while the client was waited for.
     Rig(RigFault),
 }
 
-/// A client's stream, and who may want the end.
+/// A client's stream, and the source of stop requests.
 pub struct Connection<'a> {
     stream: TcpStream,
-    wish: &'a Wish,
+    stop_request: &'a StopRequest,
     pub(super) patience: Duration,
 }
 
@@ -50,8 +51,12 @@ impl<'a> Connection<'a> {
     /// No wait on the line is longer than `wait`.
     ///
     /// # Errors
-    /// The stream cannot be set up: it is gone already.
-    pub fn new(stream: TcpStream, wait: Duration, wish: &'a Wish) -> io::Result<Self> {
+    /// The stream cannot be set up: it is lost already.
+    pub fn new(
+        stream: TcpStream,
+        wait: Duration,
+        stop_request: &'a StopRequest,
+    ) -> io::Result<Self> {
         stream.set_nonblocking(false)?;
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(wait.min(LOOK)))?;
@@ -59,16 +64,16 @@ impl<'a> Connection<'a> {
         set_tcp_quickack(&stream, true)?;
         Ok(Self {
             stream,
-            wish,
+            stop_request,
             patience: PATIENCE,
         })
     }
 
-    /// Has the rig carry out what the client proposed. Where the client goes away meanwhile, the rig holds where it is; not where it has
-    /// taken its leave in what it sent ahead.
+    /// Lets the rig execute the client's proposal. If the client disconnects meanwhile, the rig holds; not if the bytes
+    /// that it sent ahead announced its end.
     ///
     /// # Errors
-    /// The rig fails, or was held on its way.
+    /// The rig fails, or was held during the motion.
     pub fn execute(
         &self,
         specimen: &mut Specimen<'_, '_>,
@@ -79,19 +84,19 @@ impl<'a> Connection<'a> {
             .try_clone()
             .map_err(|error| Ended::Lost(error.to_string()))?;
         let executed = self
-            .wish
+            .stop_request
             .for_client(move || is_gone(&line, &takes_leave), || specimen.execute());
         executed.map_err(|fault| match fault {
-            RigFault::Interrupted if !self.wish.wants_end() => Ended::HungUp,
+            RigFault::Interrupted if !self.stop_request.end_requested() => Ended::HungUp,
             fault => fault.into(),
         })
     }
 
-    /// Waits for bytes and gives how many came, at least one. Between two messages a client may think as long as it likes; `owed_since`
-    /// is when it began one.
+    /// Waits for bytes and gives their number, at least one. Between two messages a client may wait as long as it likes;
+    /// `owed_since` is the start of an incomplete message.
     ///
     /// # Errors
-    /// None will come.
+    /// None will be received.
     pub fn read(
         &mut self,
         buffer: &mut [u8],
@@ -102,7 +107,7 @@ impl<'a> Connection<'a> {
             if owed_since.is_some_and(|since| since.elapsed() > self.patience) {
                 return Err(Broken::Silent);
             }
-            if self.wish.wants_end() {
+            if self.stop_request.end_requested() {
                 return Err(Broken::Stopped);
             }
             specimen.listen().map_err(Broken::Rig)?;
@@ -114,12 +119,12 @@ impl<'a> Connection<'a> {
                     return Ok(count);
                 }
                 Err(error) if waits(&error) => {}
-                Err(error) => return Err(gone(error)),
+                Err(error) => return Err(disconnected(error)),
             }
         }
     }
 
-    /// Waits until the buffer is full: it holds what the client must say next.
+    /// Waits until the buffer is full: the bytes that the client must send next.
     ///
     /// # Errors
     /// It will not be.
@@ -135,10 +140,10 @@ impl<'a> Connection<'a> {
         Ok(())
     }
 
-    /// [`Self::read_all`] from a client that is not silent for long; the rig may have failed, and is heard where it can be.
+    /// [`Self::read_all`] for a client that is not silent for long; the rig may have failed, and is polled if possible.
     ///
     /// # Errors
-    /// It was silent, or is gone.
+    /// It was silent, or has disconnected.
     pub fn read_soon(
         &mut self,
         buffer: &mut [u8],
@@ -158,7 +163,7 @@ impl<'a> Connection<'a> {
                         .map_err(|error| Broken::Lost(error.into()))?;
                 }
                 Err(error) if waits(&error) && Instant::now() < deadline => {}
-                Err(error) => return Err(gone(error)),
+                Err(error) => return Err(disconnected(error)),
             }
         }
         Ok(())
@@ -167,7 +172,7 @@ impl<'a> Connection<'a> {
     /// Sends all the bytes.
     ///
     /// # Errors
-    /// They are not taken.
+    /// They are not accepted.
     pub fn write(
         &mut self,
         mut bytes: &[u8],
@@ -181,14 +186,14 @@ impl<'a> Connection<'a> {
                 Err(error) if waits(&error) && Instant::now() < deadline => {
                     specimen.listen().map_err(Broken::Rig)?;
                 }
-                Err(error) => return Err(gone(error)),
+                Err(error) => return Err(disconnected(error)),
             }
         }
         Ok(())
     }
 }
 
-/// Whether the other side will send nothing more, and did not say that it would.
+/// Whether the other side will send nothing more, and did not announce this.
 fn is_gone(line: &TcpStream, takes_leave: &dyn Fn(&[u8]) -> bool) -> bool {
     let mut watched = [PollFd::new(line, PollFlags::RDHUP)];
     let at_once = Timespec {
@@ -213,7 +218,7 @@ fn waits(error: &io::Error) -> bool {
     )
 }
 
-fn gone(error: io::Error) -> Broken {
+fn disconnected(error: io::Error) -> Broken {
     match error.kind() {
         ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => Broken::HungUp,
         _ => Broken::Lost(error),

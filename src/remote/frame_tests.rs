@@ -1,4 +1,4 @@
-//! A client that drives every floor of a frame at once, over loopback.
+//! A client that drives every floor of a frame simultaneously, over loopback.
 
 use super::tests::{Element, LIMITS, served_on};
 use super::*;

@@ -1,17 +1,18 @@
-//! The socket of OpenSees' `genericClient` element and of `expControl GenericTCP`: a header of sizes, then messages of
-//! one length both ways, 64-bit floats in the machine's order. In: a client's connection. Out: motion through the guard,
-//! forces to the client.
+//! The socket of OpenSees' `genericClient` element and of `expControl GenericTCP`: a header of sizes, then messages of one
+//! length both ways, 64-bit floats in the machine's order. In: a client's connection. Out: motion through the guard, forces
+//! to the client.
 //!
-//! The protocol has no word for an error. OpenSees (3.7.1 was tried) does not notice that its server is gone: after a
-//! `close`, a `shutdown` and a reset alike it waits in its read for ever, at full load. What it does notice is a force that is no
-//! number: an iteration does not converge, and `analyze` fails at that very step; an explicit or linear one runs to the end of
-//! its steps with NaN, which nobody takes for a result, and says its 99. So whatever stands in the way holds the rig, and
-//! from then on every question is answered with NaN, until the client leaves, is silent or has been heard out.
+//! The protocol has no error message. OpenSees (tested with 3.7.1) does not notice that its server has disconnected: after
+//! a `close`, a `shutdown` and a reset alike it waits in its read for ever, at full load. It does notice a force that is
+//! not finite: an iteration does not converge, and `analyze` fails at that step; an explicit or linear analysis runs to the
+//! end of its steps with NaN, which cannot be mistaken for a result, and sends its 99. So any fault holds the rig, and from
+//! then on every question is answered with NaN, until the client disconnects, is silent or has sent all its messages.
 //!
-//! A trial comes more than once: only a target that is not the last one moves the rig. Between moves the specimen is at rest: velocity and
-//! acceleration are zero, so are damping and mass, which are the client's own; both stiffnesses are the constant that was given. A rig of n
-//! axes is driven by vectors of n words, and a stiffness, damping or mass is n·n words. One message moves all axes; where a limit stands in
-//! the way of one, none moves. The messages of a `GenericTCP` with an init file are taken, noted and otherwise ignored.
+//! A trial is sent more than once: only a target that differs from the last one moves the rig. Between moves the specimen
+//! is at rest: velocity and acceleration are zero, and so are damping and mass, which belong to the client; both
+//! stiffnesses are the given constant. A rig of n axes is driven by vectors of n words, and a stiffness, damping or mass
+//! has n·n words. One message moves all axes; if a limit refuses one, none moves. The messages of a `GenericTCP` with an
+//! init file are accepted, noted and otherwise ignored.
 
 use std::time::{Duration, Instant};
 
@@ -20,7 +21,7 @@ use super::connection::{Broken, Connection};
 use super::generic_header::{self, HEADER, Layout};
 use crate::run::remote_control::Specimen;
 
-/// What a message asks for: its first word.
+/// The first word of a message: the requested action.
 mod action {
     pub const SET_TRIAL: f64 = 3.0;
     pub const COMMIT: f64 = 5.0;
@@ -63,7 +64,8 @@ pub fn session(
     ended
 }
 
-/// Answers every question with NaN until the client has seen enough. Nothing moves. `begun` has come of the first of them.
+/// Answers every question with NaN until the client disconnects. Nothing moves. `begun` has been received of the first of
+/// them.
 fn bid_farewell(
     connection: &mut Connection<'_>,
     specimen: &mut Specimen<'_, '_>,
@@ -120,7 +122,7 @@ fn talk(
             settings += 1;
             continue;
         }
-        // Kept as it comes: where it is broken off here, its end comes all the same.
+        // Kept as received: if it is interrupted here, its end is still received later.
         begun.extend_from_slice(&message[..first]);
         let since = Some(Instant::now());
         while begun.len() < message.len() {
@@ -145,10 +147,10 @@ fn talk(
                 continue;
             }
             action::GET_MEASURED => measured(layout, specimen),
-            action::GET_DISPLACEMENT => specimen.felt().displacement.clone(),
+            action::GET_DISPLACEMENT => specimen.feedback().displacement.clone(),
             action::GET_VELOCITY | action::GET_ACCELERATION => still(),
             action::GET_DAMPING | action::GET_MASS => vec![0.0; axes * axes],
-            action::GET_FORCE => specimen.felt().force.clone(),
+            action::GET_FORCE => specimen.feedback().force.clone(),
             action::GET_TIME => vec![specimen.time()],
             action::GET_INITIAL_STIFFNESS | action::GET_TANGENT_STIFFNESS => stiffness.to_vec(),
             action::SHUT_DOWN | action::DIE => return Ok(Ended::Closed),
@@ -161,7 +163,7 @@ fn talk(
                 layout.words
             )));
         }
-        // What is not overwritten by this answer or an earlier one stays zero from the beginning.
+        // Bytes that neither this answer nor an earlier one overwrites stay zero.
         answer[..8 * longest].fill(0);
         longest = longest.max(values.len());
         for (place, value) in answer.chunks_exact_mut(8).zip(values) {
@@ -171,7 +173,7 @@ fn talk(
     }
 }
 
-/// Whether one of the messages that were sent ahead, of so many words, is the last.
+/// Whether one of the messages that were sent ahead, of this length in words, is the last.
 fn takes_leave(mut ahead: &[u8], words: usize) -> bool {
     loop {
         let length = if ahead.first() == Some(&SETTING) {
@@ -189,15 +191,15 @@ fn takes_leave(mut ahead: &[u8], words: usize) -> bool {
     }
 }
 
-/// What the header announced as measured, packed in its order.
+/// The measured values announced in the header, packed in its order.
 fn measured(layout: Layout, specimen: &Specimen<'_, '_>) -> Vec<f64> {
-    let felt = specimen.felt();
-    let still = vec![0.0; felt.force.len()];
+    let feedback = specimen.feedback();
+    let still = vec![0.0; feedback.force.len()];
     let all = [
-        &felt.displacement,
+        &feedback.displacement,
         &still,
         &still,
-        &felt.force,
+        &feedback.force,
         &vec![specimen.time()],
     ];
     all.into_iter()

@@ -1,24 +1,25 @@
-//! The first message of a generic client: eleven numbers that say how the later ones are laid out. In: its bytes. Out:
-//! the layout, if it is one that a rig of so many degrees of freedom can serve. It reads no later message.
+//! The first message of a generic client: eleven numbers that define the layout of the later ones. In: its bytes. Out: the
+//! layout, if a rig with this number of degrees of freedom can serve it. It reads no later message.
 
 /// Bytes of the first message: eleven 32-bit numbers, little-endian.
 pub const HEADER: usize = 44;
 /// Longest later message, words of 64 bits.
 const LONGEST: i32 = 16_384;
-/// Fewest words OpenSees sends by itself; a header in the other byte order gives itself away by much more than the longest.
+/// Fewest words that OpenSees sends; a header in the other byte order is recognised because its numbers are far above the
+/// longest.
 const SHORTEST: i32 = 2;
 
 /// How the later messages are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// What is measured, in the order of an answer: displacement, velocity, acceleration, force, each a word an axis, and
-    /// time.
+    /// The measured quantities, in the order of an answer: displacement, velocity, acceleration, force, each a word per
+    /// axis, and time.
     pub measured: [bool; 5],
-    /// Words of every message.
+    /// Length of every message in words.
     pub words: usize,
 }
 
-/// Reads the first message, for a rig of so many axes.
+/// Reads the first message, for a rig with this number of axes.
 ///
 /// # Errors
 /// Why it cannot be served.
@@ -44,7 +45,7 @@ pub fn parse(bytes: &[u8; HEADER], axes: usize) -> Result<Layout, String> {
         ));
     }
     let sizes: [i32; 10] = std::array::from_fn(number);
-    // A time is one word, every other quantity none or one an axis.
+    // A time is one word, every other quantity none or one per axis.
     let most = |at: usize| {
         if at % 5 == 4 {
             Some(1)

@@ -20,8 +20,8 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-use crate::rig::{RigFault, Wish};
-use crate::run::Parting;
+use crate::rig::{RigFault, StopRequest};
+use crate::run::Disconnect;
 pub use crate::run::remote_control::Driven;
 use crate::run::remote_control::Specimen;
 use connection::{Broken, Connection};
@@ -30,25 +30,25 @@ pub use nees::usual_names;
 /// How often a wait looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// What the client speaks.
+/// The protocol of the client.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Protocol {
     /// With the names of its control points, one an axis; none: of one axis, and any name is it.
     Nees { control_points: Vec<String> },
-    /// With the constant stiffness it is told, N/m: of n axes n·n numbers, row by row.
+    /// With the constant stiffness that it receives \[N/m\]: for n axes n·n numbers, row by row.
     GenericClient { stiffness: Vec<f64> },
 }
 
 /// How a session ended. The rig holds in every case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ended {
-    /// The client said so.
+    /// The client closed the session.
     Closed,
-    /// The client went away without a word.
+    /// The client disconnected without closing the session.
     HungUp,
-    /// A person wanted the end.
+    /// The operator requested the end.
     Stopped,
-    /// The client does not speak the protocol, or wants what cannot be served.
+    /// The client does not follow the protocol, or requests something that cannot be served.
     Misspoken(String),
     Lost(String),
     Limit(RigFault),
@@ -56,16 +56,16 @@ pub enum Ended {
 }
 
 impl Ended {
-    /// For the record.
-    const fn parting(&self) -> Parting {
+    /// For the run log.
+    const fn parting(&self) -> Disconnect {
         match self {
-            Self::Closed => Parting::Closed,
-            Self::Stopped | Self::Limit(_) => Parting::Stopped,
-            Self::HungUp | Self::Misspoken(_) | Self::Lost(_) | Self::Rig(_) => Parting::Failed,
+            Self::Closed => Disconnect::Closed,
+            Self::Stopped | Self::Limit(_) => Disconnect::Stopped,
+            Self::HungUp | Self::Misspoken(_) | Self::Lost(_) | Self::Rig(_) => Disconnect::Failed,
         }
     }
 
-    /// Whether another client may come: not once the rig was stopped by a limit or by its own fault.
+    /// Whether another client may connect: not after a stop by a limit or a fault of the rig.
     const fn allows_another(&self) -> bool {
         matches!(
             self,
@@ -113,22 +113,22 @@ impl From<Broken> for Ended {
     }
 }
 
-/// One client, from its coming to its going.
+/// One client, from its connection to its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     pub ended: Ended,
     pub driven: Driven,
 }
 
-/// What happens while serving, for who tells it.
+/// Events while serving, for display.
 #[derive(Debug)]
 pub enum Event<'a> {
     Connected(SocketAddr),
     Ended(&'a Session),
 }
 
-/// Serves one client after the other, or only `once`; a second one at the same time is refused. Ends when a person wants the end,
-/// and after a session that a limit or the rig ended.
+/// Serves one client after the other, or only `once`; a second one at the same time is refused. Ends when the operator
+/// requests the end, and after a session that a limit or the rig ended.
 ///
 /// # Errors
 /// The listener fails.
@@ -137,7 +137,7 @@ pub fn serve(
     protocol: &Protocol,
     specimen: &mut Specimen<'_, '_>,
     once: bool,
-    wish: &Wish,
+    stop_request: &StopRequest,
     told: &mut dyn FnMut(Event<'_>),
 ) -> io::Result<()> {
     listener.set_nonblocking(true)?;
@@ -146,7 +146,7 @@ pub fn serve(
         let (sender, clients) = channel();
         let door = scope.spawn(|| keep_door(listener, &busy, &closing, sender));
         loop {
-            let (stream, address) = match next_client(&clients, wish, specimen) {
+            let (stream, address) = match next_client(&clients, stop_request, specimen) {
                 Ok(Some(client)) => client,
                 Ok(None) => break,
                 Err(fault) => {
@@ -160,7 +160,7 @@ pub fn serve(
                 }
             };
             told(Event::Connected(address));
-            let session = session(stream, address, protocol, specimen, wish);
+            let session = session(stream, address, protocol, specimen, stop_request);
             told(Event::Ended(&session));
             if once || !session.ended.allows_another() {
                 break;
@@ -180,11 +180,11 @@ pub fn session(
     address: SocketAddr,
     protocol: &Protocol,
     specimen: &mut Specimen<'_, '_>,
-    wish: &Wish,
+    stop_request: &StopRequest,
 ) -> Session {
     let ended = match specimen.come(address.to_string()) {
         Err(fault) => fault.into(),
-        Ok(()) => match Connection::new(stream, specimen.wait(LOOK), wish) {
+        Ok(()) => match Connection::new(stream, specimen.wait(LOOK), stop_request) {
             Err(error) => Ended::Lost(error.to_string()),
             Ok(mut connection) => match protocol {
                 Protocol::Nees { control_points } => {
@@ -203,7 +203,7 @@ pub fn session(
     }
 }
 
-/// Lets one client in while there is none, and turns the others away.
+/// Admits one client while there is none, and refuses the others.
 #[expect(
     clippy::needless_pass_by_value,
     reason = "who waits for clients is to see that nobody keeps the door any more"
@@ -225,7 +225,7 @@ fn keep_door(
             Err(error) => return Err(error.into()),
         }
         match listener.accept() {
-            // Who is not sent on is closed by being dropped.
+            // A client that is not passed on is closed by being dropped.
             Ok(client) if !busy.swap(true, Ordering::AcqRel) => {
                 if clients.send(client).is_err() {
                     return Ok(());
@@ -243,15 +243,15 @@ fn keep_door(
     Ok(())
 }
 
-/// Waits for a client, and hears the rig meanwhile.
+/// Waits for a client, and polls the rig meanwhile.
 fn next_client(
     clients: &Receiver<(TcpStream, SocketAddr)>,
-    wish: &Wish,
+    stop_request: &StopRequest,
     specimen: &mut Specimen<'_, '_>,
 ) -> Result<Option<(TcpStream, SocketAddr)>, RigFault> {
-    while !wish.wants_end() {
+    while !stop_request.end_requested() {
         match specimen.listen() {
-            // Whoever wants it held wants the end, and nothing was moving.
+            // A request to hold is a request to end, and nothing was moving.
             Err(RigFault::Interrupted) => break,
             listened => listened?,
         }

@@ -1,10 +1,10 @@
 //! The NEES "LabVIEW plugin" protocol, psd as the rig. In: a coordinator's connection. Out: motion through the guard, one
-//! answer a line. What a limit stands in the way of is refused when it is proposed, before anything moves.
+//! answer per line. A target outside a limit is refused when it is proposed, before anything moves.
 //!
-//! Every axis is a control point with a name, of the form `MDL-00-01` or `MDL-00-01:floor`; on a rig of one axis any name is taken for it.
-//! One proposal may name several: they are proposed, refused, moved and settled together, and an axis that it does not name stays where it
-//! was sent last. Control points of cameras and the like (`MDL-AUX`) move nothing. Names and directions are echoed as they were written;
-//! answers end as the client ends its lines.
+//! Every axis is a control point with a name, of the form `MDL-00-01` or `MDL-00-01:floor`; a rig of one axis accepts any
+//! name. One proposal may name several: they are proposed, refused, moved and settled together, and an axis that it does
+//! not name keeps its last target. Control points of cameras and the like (`MDL-AUX`) move nothing. Names and directions
+//! are echoed as they were written; answers have the line ending of the client.
 
 use std::time::Instant;
 
@@ -14,11 +14,11 @@ use super::nees_message::{self, Refusal, Request, Why};
 use crate::rig::RigFault;
 use crate::run::remote_control::Specimen;
 
-/// Longest line taken, bytes.
+/// Longest line accepted, bytes.
 const LONGEST: usize = 4096;
 
-/// Serves a coordinator until one of the two has enough. `names` are the control points, one an axis; none: any is taken for the
-/// one axis.
+/// Serves a coordinator until one of the two ends the session. `names` are the control points, one per axis; none: any name
+/// is accepted for the single axis.
 pub fn session(
     connection: &mut Connection<'_>,
     specimen: &mut Specimen<'_, '_>,
@@ -27,7 +27,7 @@ pub fn session(
     talk(connection, specimen, names).unwrap_or_else(|ended| ended)
 }
 
-/// What control points are called where nobody says: none where there is one axis.
+/// Default names of the control points: none for one axis.
 #[must_use]
 pub fn usual_names(axes: usize) -> Vec<String> {
     if axes == 1 {
@@ -37,11 +37,11 @@ pub fn usual_names(axes: usize) -> Vec<String> {
     }
 }
 
-/// What the coordinator and the rig have agreed on.
+/// The state that coordinator and rig share.
 struct State<'a> {
     open: bool,
     names: &'a [String],
-    /// The direction in which the client moved each control point, as it was written.
+    /// The direction in which the client moved each control point, as written by the client.
     directions: Vec<String>,
     proposed: Option<Proposed>,
 }
@@ -51,7 +51,7 @@ struct Proposed {
     moves: bool,
 }
 
-/// Who asks, and what of the lines after this one has been read already.
+/// The client, and the bytes after this line that have been read already.
 struct Client<'a> {
     connection: &'a Connection<'a>,
     ahead: &'a [u8],
@@ -202,8 +202,8 @@ impl State<'_> {
                     nees_message::wishes(points, |name| self.place_of(name)).map_err(refused)?;
                 if !wishes.is_empty() {
                     let mut targets = specimen.commanded().to_vec();
-                    for (axis, wish) in &wishes {
-                        targets[*axis] = wish.value;
+                    for (axis, stop_request) in &wishes {
+                        targets[*axis] = stop_request.value;
                     }
                     match specimen.propose(&targets) {
                         Ok(()) => {}
@@ -213,8 +213,8 @@ impl State<'_> {
                         Err(fault) => return Ok(failed(transaction, fault.into())),
                     }
                 }
-                for (axis, wish) in &wishes {
-                    wish.axis.clone_into(&mut self.directions[*axis]);
+                for (axis, stop_request) in &wishes {
+                    stop_request.axis.clone_into(&mut self.directions[*axis]);
                 }
                 self.proposed = Some(Proposed {
                     transaction: (*transaction).to_owned(),
@@ -247,8 +247,8 @@ impl State<'_> {
                 if let Err(fault) = specimen.read() {
                     return Ok(failed(transaction, fault.into()));
                 }
-                let felt = specimen.felt();
-                let (displacement, force) = (felt.displacement[axis], felt.force[axis]);
+                let feedback = specimen.feedback();
+                let (displacement, force) = (feedback.displacement[axis], feedback.force[axis]);
                 Ok(nees_message::control_point(
                     transaction,
                     point,
@@ -272,7 +272,7 @@ impl State<'_> {
     }
 }
 
-/// The rig failed: the coordinator is told, and nothing more will move.
+/// The rig failed: the coordinator is informed, and nothing more will move.
 fn failed(transaction: &str, ended: Ended) -> Answer {
     let why = if matches!(ended, Ended::Limit(_)) {
         Why::Limit

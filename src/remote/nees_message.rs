@@ -1,12 +1,12 @@
-//! The messages of the NEES "LabVIEW plugin" as the rig's side sees them: tab-separated ASCII, one line each. In: a line
-//! without its end. Out: what is asked; and answers as lines. It knows no rig and no socket.
+//! The messages of the NEES "LabVIEW plugin" from the rig's side: tab-separated ASCII, one line each. In: a line without
+//! its ending. Out: the request; and answers as lines. It knows no rig and no socket.
 
 use std::fmt::Write as _;
 
 /// Auxiliary devices (cameras, loggers) have control points that begin so; they move nothing.
 const AUXILIARY: &str = "MDL-AUX";
 
-/// What is asked. Texts are the client's own.
+/// A request. Texts are the client's own.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request<'a> {
     OpenSession,
@@ -29,11 +29,11 @@ pub enum Request<'a> {
     CloseSession,
 }
 
-/// A control point, and what is wanted of it.
+/// A control point, and the requested action.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point<'a> {
     pub name: &'a str,
-    pub wishes: Vec<Wish<'a>>,
+    pub wishes: Vec<StopRequest<'a>>,
 }
 
 impl Point<'_> {
@@ -46,14 +46,14 @@ impl Point<'_> {
 
 /// `x displacement 1.5E-3`
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wish<'a> {
+pub struct StopRequest<'a> {
     pub axis: &'a str,
     pub kind: &'a str,
     /// m
     pub value: f64,
 }
 
-/// A request that is not done: what stands after `NOT OK`.
+/// A request that is refused: the text after `NOT OK`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal<'a> {
     pub why: Why,
@@ -64,7 +64,7 @@ pub struct Refusal<'a> {
 /// The code of a refusal; the protocol names none, these are ours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Why {
-    /// A limit stands in the way.
+    /// A limit is exceeded.
     Limit = 1,
     /// Not understood, or more than this rig has.
     Message = 2,
@@ -100,7 +100,7 @@ impl<'a> Refusal<'a> {
     }
 }
 
-/// The control point among `names` that a client means: by its whole name, or by what stands before a `:`.
+/// The control point among `names` that a client names: by its whole name, or by the part before a `:`.
 #[must_use]
 pub fn place_of(names: &[String], name: &str) -> Option<usize> {
     let model = name.split(':').next();
@@ -110,16 +110,16 @@ pub fn place_of(names: &[String], name: &str) -> Option<usize> {
         .or_else(|| names.iter().position(|known| Some(known.as_str()) == model))
 }
 
-/// What a proposal wants of each axis that it names: one displacement of one control point each, and of none twice. Nothing
-/// where it is for auxiliary devices alone. `place_of` finds a control point.
+/// The requested displacement of each axis that a proposal names: one displacement of one control point each, and no point
+/// twice. Empty if it is for auxiliary devices alone. `place_of` finds a control point.
 ///
 /// # Errors
-/// What of it cannot be done, for the client.
+/// The part that cannot be done, for the client.
 pub fn wishes<'a>(
     points: &[Point<'a>],
     place_of: impl Fn(&str) -> Option<usize>,
-) -> Result<Vec<(usize, Wish<'a>)>, &'static str> {
-    let mut wishes: Vec<(usize, Wish<'a>)> = Vec::new();
+) -> Result<Vec<(usize, StopRequest<'a>)>, &'static str> {
+    let mut wishes: Vec<(usize, StopRequest<'a>)> = Vec::new();
     for point in points.iter().filter(|point| !point.is_auxiliary()) {
         let place = place_of(point.name).ok_or("no such control point")?;
         let [wish] = *point.wishes.as_slice() else {
@@ -139,7 +139,7 @@ pub fn wishes<'a>(
 /// Reads one line.
 ///
 /// # Errors
-/// It is none of the protocol's messages.
+/// It is not a message of the protocol.
 pub fn parse(line: &str) -> Result<Request<'_>, Refusal<'_>> {
     let mut words: Vec<&str> = line.split('\t').map(str::trim).collect();
     while words.last() == Some(&"") {
@@ -173,7 +173,7 @@ pub fn parse(line: &str) -> Result<Request<'_>, Refusal<'_>> {
     }
 }
 
-/// `MDL-00-01 (axis kind value)+ [MDL-… …]`. The two words of a wish may stand in either order.
+/// `MDL-00-01 (axis kind value)+ [MDL-… …]`. Axis and kind may be in either order.
 fn points<'a>(wanted: &[&'a str]) -> Result<Vec<Point<'a>>, String> {
     let mut points: Vec<Point<'a>> = Vec::new();
     let mut left = wanted;
@@ -201,7 +201,7 @@ fn points<'a>(wanted: &[&'a str]) -> Result<Vec<Point<'a>>, String> {
                 } else {
                     (first, second)
                 };
-                point.wishes.push(Wish { axis, kind, value });
+                point.wishes.push(StopRequest { axis, kind, value });
                 left = rest;
             }
             _ => return Err("axis, kind and value come in threes".to_owned()),
@@ -243,7 +243,7 @@ fn scientific(value: f64) -> String {
     format!("{digits}E{sign}{exponent:0>2}")
 }
 
-/// What is echoed stays short: an answer is to keep below 512 bytes.
+/// The echoed text stays short: an answer must be below 512 bytes.
 fn clipped(text: &str) -> String {
     text.chars().take(100).collect()
 }
@@ -257,7 +257,7 @@ mod tests {
         let proposed = parse(
             "propose\tOPFTransaction20260431120000\tMDL-00-01\tx\tdisplacement\t1.2500000000E-03\t",
         );
-        let wish = Wish {
+        let wish = StopRequest {
             axis: "x",
             kind: "displacement",
             value: 1.25e-3,

@@ -77,7 +77,7 @@ pub(super) fn served_on<T: Send>(
             protocol,
             &mut specimen,
             true,
-            &Wish::default(),
+            &StopRequest::default(),
             &mut told,
         )
         .unwrap();
@@ -454,10 +454,11 @@ fn ended_in_silence(protocol: &Protocol, sent: &[u8]) -> Ended {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
     client.write_all(sent).unwrap();
-    let (mut rig, mut nobody, wish) = (spring(), Unwatched, Wish::default());
+    let (mut rig, mut nobody, stop_request) = (spring(), Unwatched, StopRequest::default());
     let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
     let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
-    let mut connection = Connection::new(listener.accept().unwrap().0, LOOK, &wish).unwrap();
+    let mut connection =
+        Connection::new(listener.accept().unwrap().0, LOOK, &stop_request).unwrap();
     connection.patience = Duration::from_millis(50);
     match protocol {
         Protocol::Nees { control_points } => {

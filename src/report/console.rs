@@ -34,7 +34,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         one_line(&run.plan.title),
         status_text(
             &ReportStatus::of(run),
-            rehearsal::told(run.plan).is_some(),
+            rehearsal::rehearsed_plan(run.plan).is_some(),
             &one_line(&run.plan.rig.name)
         )
     );

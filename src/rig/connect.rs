@@ -1,5 +1,5 @@
-//! From a plan to a rig that answers: ports opened, drivers chosen, the last resort armed. In: the plan's real rig. Out: a
-//! [`Connected`]. Nothing moves. The one place where ports are opened to drive a rig.
+//! From a plan to a connected rig: ports opened, drivers chosen, the emergency hold armed. In: the plan's real rig. Out: a
+//! [`Connected`]. Nothing moves. Only this file opens ports to drive a rig.
 
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use super::controllers::{Device, Member, together};
 use super::real::RealRig;
 use super::safety::{self, Armed};
 use super::transport::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
-use super::{RigFault, Wish};
+use super::{RigFault, StopRequest};
 use crate::plan::{Behind, DeviceLink, Limits, PortPlan, RigPlan};
 
-/// Longest wait for a network rig to take the connection.
+/// Longest wait for a network rig to accept the connection.
 const CONNECTING: Duration = Duration::from_secs(5);
 
 /// A rig that is open. As long as this lives, a panic and a program that no longer drives hold it.
@@ -20,21 +20,25 @@ pub struct Connected {
     _armed: Armed,
 }
 
-/// Opens the plan's rig: asks every device who it is, tells it the limits, reads once.
+/// Opens the plan's rig: requests the identity of every device, sends it the limits, reads once.
 ///
 /// # Errors
 /// A port cannot be opened, or a device is not the plan's or not fit.
-pub fn connect(plan: &RigPlan, limits: &Limits, wish: &Wish) -> Result<Connected, RigFault> {
+pub fn connect(
+    plan: &RigPlan,
+    limits: &Limits,
+    stop_request: &StopRequest,
+) -> Result<Connected, RigFault> {
     let link = plan
         .link
         .as_real()
         .ok_or_else(|| RigFault::Device(format!("{} is a virtual rig", plan.name)))?;
-    let (actuator, mut lines) = attach_all(link.actuators(), plan, wish)?;
-    let (load_cell, more) = attach_all(link.load_cells(), plan, wish)?;
+    let (actuator, mut lines) = attach_all(link.actuators(), plan, stop_request)?;
+    let (load_cell, more) = attach_all(link.load_cells(), plan, stop_request)?;
     lines.extend(more);
     let actuator =
         actuator.ok_or_else(|| RigFault::Device(format!("nothing moves the rig {}", plan.name)))?;
-    // Armed before the first word: whatever becomes of the conversation, the rig holds.
+    // Armed before the first request: the rig holds whatever happens in the conversation.
     let armed = safety::arm(lines).watched(link.watchdog);
     let rig = RealRig::open(
         plan,
@@ -42,23 +46,23 @@ pub fn connect(plan: &RigPlan, limits: &Limits, wish: &Wish) -> Result<Connected
         actuator,
         load_cell,
         Box::new(MonotonicClock::start()),
-        wish.clone(),
+        stop_request.clone(),
     )?;
     Ok(Connected { rig, _armed: armed })
 }
 
-/// Lines, each with the bytes that stop what is behind it.
+/// Lines, each with the bytes that stop its device.
 type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
 
 /// The devices of one role as one, None where there are none, with their lines.
 fn attach_all(
     behind: Vec<Behind<'_>>,
     plan: &RigPlan,
-    wish: &Wish,
+    stop_request: &StopRequest,
 ) -> Result<(Option<Box<dyn Device>>, Lines), RigFault> {
     let (mut members, mut lines) = (Vec::new(), Lines::new());
     for Behind { link, axes, .. } in behind {
-        let (device, line) = attach(link, plan, wish)?;
+        let (device, line) = attach(link, plan, stop_request)?;
         lines.push(line);
         members.push(Member {
             device,
@@ -72,7 +76,11 @@ fn attach_all(
 type Attached = (Box<dyn Device>, (Box<dyn Emergency>, Vec<u8>));
 
 /// One device on its port, with the line and the bytes that stop it.
-fn attach(link: &DeviceLink, plan: &RigPlan, wish: &Wish) -> Result<Attached, RigFault> {
+fn attach(
+    link: &DeviceLink,
+    plan: &RigPlan,
+    stop_request: &StopRequest,
+) -> Result<Attached, RigFault> {
     let failed = |error: std::io::Error| RigFault::Device(format!("{}: {error}", link.port));
     let port: Box<dyn Port> = match &link.port {
         PortPlan::Serial { path, baud } => Box::new(SerialPort::open(path, *baud).map_err(failed)?),
@@ -82,7 +90,7 @@ fn attach(link: &DeviceLink, plan: &RigPlan, wish: &Wish) -> Result<Attached, Ri
     };
     let emergency = port.emergency().map_err(failed)?;
     let clock: Box<dyn Clock> = Box::new(MonotonicClock::start());
-    let device = controllers::open(link, port, clock, wish.clone(), plan.settle.timeout);
+    let device = controllers::open(link, port, clock, stop_request.clone(), plan.settle.timeout);
     let bytes = device.emergency();
     Ok((device, (emergency, bytes)))
 }

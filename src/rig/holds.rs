@@ -1,21 +1,22 @@
-//! Holds: settled readings of one place, with time between them. In: readings as the guard lets them through. Out: how fast force
-//! and displacement changed while nothing moved. It reads nothing itself, and judges nothing.
+//! Dwells: settled readings at one position, with time between them. In: readings that passed the guard. Out: rates of
+//! force and displacement while nothing moved. It reads nothing itself and assesses nothing.
 //!
-//! In a hold a force changes by drift and by what relaxes. What relaxes has a known sign in one case. Let a specimen be a spring beside
-//! Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ): each branch holds its stiffness times d less a
-//! weighted mean of where the specimen has been since it rested at 0. Where it is farther out than ever, that mean is no larger than d,
-//! every bᵢ ≥ 0, and at rest all of them die away towards 0: the force can only fall. A force that grows there is drift. After an unloading
-//! it may grow by itself, so that those holds are told and not judged; so are those of frames, whose storeys are not farthest out when
-//! their floors are.
+//! In a dwell a force changes by zero drift and by relaxation. The sign of the relaxation is known in one case. Let a
+//! specimen be a spring in parallel with Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ):
+//! each branch force is its stiffness times d minus a weighted mean of the displacement since the specimen rested at 0. At
+//! a displacement beyond all earlier ones, that mean is not larger than d, every bᵢ ≥ 0, and at rest all bᵢ decay to 0: the
+//! force can only fall. A force that grows there is zero drift. After an unloading the force may grow by relaxation, so
+//! those dwells are reported and not assessed. The same applies to frames, whose storey drifts are not largest when their
+//! floor displacements are.
 
 use super::{Guard, Held, Reading};
 
 /// The holds so far.
 #[derive(Debug)]
 pub(super) struct Holds {
-    /// Shorter ones tell nothing, s.
+    /// Shorter dwells are not evaluated \[s\].
     least: f64,
-    /// Where nothing loads the specimen, and the farthest places on either side of it, m.
+    /// The unloaded position, and the farthest positions on either side of it \[m\].
     home: f64,
     low: f64,
     high: f64,
@@ -102,18 +103,18 @@ fn faster(fastest: &mut f64, slope: f64) {
 }
 
 impl Guard<'_> {
-    /// Tells holds of at least this length (s) from here on, where nothing loads the specimen.
+    /// Evaluates dwells of at least this length \[s\] from here on; the present position is unloaded.
     pub fn watch_holds(&mut self, least: f64) {
         self.holds = Some(Holds::from(&self.commanded, least));
     }
 
-    /// Whether holds are told.
+    /// Whether dwells are evaluated.
     #[must_use]
     pub const fn watches_holds(&self) -> bool {
         self.holds.is_some()
     }
 
-    /// What they told; none is watched any more.
+    /// Their results. No dwell is evaluated after this call.
     pub fn take_held(&mut self) -> Held {
         self.holds
             .take()
@@ -142,7 +143,7 @@ mod tests {
         }
     }
 
-    /// Holds at these places (m), each of two seconds in which the force changes by so much, N.
+    /// Dwells at these positions \[m\], each of two seconds in which the force changes by this amount \[N\].
     fn held(holds: &[(f64, f64)]) -> Held {
         let mut told = Holds::from(&[0.0], 1.0);
         for (number, (place, change)) in (0_u32..).zip(holds) {

@@ -26,22 +26,22 @@ pub(crate) use crate::plan::{named_axis, of_axis, who};
 pub use crate::record::{Held, Identity};
 pub use connect::{Connected, connect};
 pub use guard::{Guard, Traversed};
-pub use safety::final_hold::{Halted, place_and_force};
-pub use safety::live::{Felt, Live};
-pub use safety::stop_request::Wish;
+pub use safety::final_hold::{FinalHold, position_and_force};
+pub use safety::live::{Feedback, Live};
+pub use safety::stop_request::StopRequest;
 pub use virtual_rig::{OWN_SPEED, VirtualRig};
 
-/// The virtual rig of a plan, with an axis for each degree of freedom of the specimen on it; in place of a real rig an ideal
-/// one.
+/// The virtual rig of a plan, with an axis for each degree of freedom of its specimen. For a plan with a real rig, an ideal
+/// virtual rig.
 #[must_use]
 pub fn virtual_rig(plan: &Plan) -> Box<dyn Rig> {
     Box::new(VirtualRig::of_plan(plan))
 }
 
-/// What stands for the word of a power-up where a device that has none was seen to start anew.
+/// Boot identifier of a device that has none and was seen to restart.
 pub const JUST_STARTED: &str = "just started";
 
-/// What stands for the word of a power-up of one device of several that has none.
+/// Boot identifier of one device of several that has none.
 pub const NO_POWER_UP: &str = "-";
 
 /// One reading: measured displacement (m) and restoring force (N) of each degree of freedom.
@@ -55,10 +55,10 @@ pub struct Reading {
     pub raw: Vec<Vec<u8>>,
 }
 
-/// A move as it would be sent. Nothing has left the program yet.
+/// A move as it would be sent. Nothing has been sent yet.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Offer {
-    /// Absolute targets, m, read back from the bytes: what the limits are held against.
+pub struct EncodedMove {
+    /// Absolute targets \[m\], decoded from the bytes. The guard compares these with the limits.
     pub targets: Vec<f64>,
     /// m/s, read back from the bytes where they carry one.
     pub speed: f64,
@@ -74,23 +74,23 @@ pub struct Offer {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LastMove {
     pub id: u64,
-    /// One an axis, m. On record a rig of one axis has a number here, not a list.
+    /// One per axis \[m\]. In the run log, a rig of one axis has a number here, not a list.
     #[serde(rename = "target", with = "scalar_or_list")]
     pub targets: Vec<f64>,
 }
 
-/// What went wrong on the line and was mended without harm: for the report.
+/// Communication errors that were recovered without harm, for the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Tally {
+pub struct LineStatistics {
     /// Frames sent again for want of an answer.
     pub resent: u64,
     /// Replies thrown away: broken, late, doubled or not asked for.
     pub ignored: u64,
-    /// Readings taken again because one was not usable.
+    /// Readings that were repeated because one was not usable.
     pub reread: u64,
 }
 
-impl Tally {
+impl LineStatistics {
     /// Both counts together.
     #[must_use]
     pub const fn plus(self, other: Self) -> Self {
@@ -102,8 +102,8 @@ impl Tally {
     }
 }
 
-impl std::fmt::Display for Tally {
-    /// Only what is not zero.
+impl std::fmt::Display for LineStatistics {
+    /// Only the counts that are not zero.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let counted = [
             (self.resent, "frame", "sent again"),
@@ -121,38 +121,38 @@ impl std::fmt::Display for Tally {
     }
 }
 
-/// Why a rig could not do what was asked. The rig holds its position in every case.
+/// The reason why a rig could not do a request. The rig holds its position in every case.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RigFault {
-    /// A target or reading lies outside a limit: the run is aborted.
+    /// A target or reading is outside a limit: the run is aborted.
     #[error("{}", breach(*.quantity, *.axis, *.value, *.low, *.high))]
     LimitBreached {
         quantity: LimitedQuantity,
         value: f64,
         low: f64,
         high: f64,
-        /// Of a rig of several axes, from 1.
+        /// The axis of a rig with several axes, from 1.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         axis: Option<usize>,
     },
     #[error("{} did not settle within {timeout} s", who(*.axis))]
     NotSettled {
         timeout: f64,
-        /// Of a rig of several axes the first that did not, from 1.
+        /// The first axis of several that did not settle, from 1.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         axis: Option<usize>,
     },
-    /// The rig says that it has arrived, and stands elsewhere, m.
+    /// The rig reports that it has arrived, at a different position \[m\].
     #[error("following error{}: it stopped {:.6} mm from its target, the band is {:.6} mm", of_axis(*.axis), .error * 1e3, .band * 1e3)]
     Following {
         error: f64,
         band: f64,
-        /// Of a rig of several axes, from 1.
+        /// The axis of a rig with several axes, from 1.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         axis: Option<usize>,
     },
-    /// A person wants the rig held now, not at the end of the step.
+    /// The operator requests a hold now, not at the end of the step.
     #[error("held on request in the middle of a step")]
     Interrupted,
     #[error("{0}")]
@@ -177,7 +177,7 @@ fn breach(
     )
 }
 
-/// What a limit bounds.
+/// The quantity that a limit bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LimitedQuantity {
@@ -193,7 +193,7 @@ pub enum LimitedQuantity {
 }
 
 impl LimitedQuantity {
-    /// What kind of quantity it is; errors of energy and the NRMS error are fractions.
+    /// The dimension of the quantity. Energy errors and the NRMS error are fractions.
     #[must_use]
     pub const fn dimension(self) -> Dimension {
         match self {
@@ -224,11 +224,11 @@ impl std::fmt::Display for LimitedQuantity {
     }
 }
 
-/// The driver contract, one way for every dialect: identify → propose (may refuse) → execute → settle → read; hold at any time.
+/// The contract of every driver: identify → propose (may refuse) → execute → settle → read; hold at any time.
 pub trait Rig {
     fn identity(&self) -> Identity;
 
-    /// The replies in which it said who it is; none on a virtual rig.
+    /// The replies with its identity. A virtual rig has none.
     fn introduction(&self) -> Vec<Vec<u8>> {
         Vec::new()
     }
@@ -239,12 +239,12 @@ pub trait Rig {
     /// Rig time, s since the run began.
     fn time(&self) -> f64;
 
-    /// Makes the bytes of a move to absolute targets (m) at a speed (m/s; None: the rig's own), and gives what they say.
-    /// They do not leave the program, and nothing moves yet.
+    /// Encodes a move to absolute targets \[m\] at a speed (\[m/s\]; None: the rig's own), and decodes the bytes again.
+    /// Nothing is sent, and nothing moves yet.
     ///
     /// # Errors
-    /// The rig has no way to say it.
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault>;
+    /// The rig cannot encode it.
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault>;
 
     /// Carries out the proposed move, and waits until in position and settled.
     ///
@@ -264,8 +264,8 @@ pub trait Rig {
     /// The rig cannot be reached, or the reading is no number.
     fn read(&mut self) -> Result<Reading, RigFault>;
 
-    /// Reads once, and says when it went on its last move, where that was seen: begin and end of the even motion that stands for it, s of
-    /// rig time.
+    /// Reads once, and reports when its last move took place, if that was seen: start and end of the equivalent uniform
+    /// motion, in rig time \[s\].
     ///
     /// # Errors
     /// As `read`.
@@ -273,10 +273,10 @@ pub trait Rig {
         Ok((self.read()?, None))
     }
 
-    /// Moves at constant velocity (m/s, signed towards the target) to absolute targets, and reads at up to `samples` equal
-    /// times on the way, the last at the end of the motion; no settling in between. A rig that cannot keep up reads as
-    /// often as it can, at least twice; every reading carries its own time and place. Each is given to `each` as it is
-    /// made; where `each` refuses, the rig holds at once and the refusal is the error.
+    /// Moves at constant velocity (\[m/s\], signed towards the target) to absolute targets, and reads at up to `samples`
+    /// equally spaced times during the motion, the last at its end. There is no settling in between. A rig that cannot keep
+    /// up reads as often as it can, at least twice. Every reading has its own time and position. Each reading is passed to
+    /// `each` as it is made; if `each` refuses, the rig holds immediately and the refusal is the error.
     ///
     /// # Errors
     /// As `execute`, `read` and `each`; fewer than two readings, where as many are wanted.
@@ -288,12 +288,12 @@ pub trait Rig {
         each: EachReading<'_>,
     ) -> Result<(), RigFault>;
 
-    /// Follows smooth paths, one a degree of freedom and equally long, and reads at `samples` equal times on the way, the
-    /// last at the end, where it goes on moving until it is told the next path or to hold. Each reading is given to `each`
-    /// as it is made; where `each` refuses, the rig holds at once and the refusal is the error.
+    /// Follows smooth paths, one per degree of freedom and of equal duration, and reads at `samples` equally spaced times,
+    /// the last at the end of the paths. The rig goes on moving there until the next path or a hold. Each reading is passed
+    /// to `each` as it is made; if `each` refuses, the rig holds immediately and the refusal is the error.
     ///
     /// # Errors
-    /// As `traverse`; a rig that must be told a target at a time follows no path.
+    /// As `traverse`; a rig that takes one target at a time follows no path.
     fn glide(
         &mut self,
         _paths: &[Path],
@@ -306,8 +306,8 @@ pub trait Rig {
         ))
     }
 
-    /// The rest of a traverse that was cut off after some of its readings, from where the rig stands: no part of it is gone
-    /// twice. A rig that stands at its end reads once more there, if a reading is left.
+    /// The rest of a traverse that was interrupted after some of its readings, from the present position: no part of it is
+    /// travelled twice. A rig that is at the end already reads once more, if a reading is left.
     ///
     /// # Errors
     /// As `traverse`.
@@ -340,9 +340,9 @@ pub trait Rig {
     /// Stops all motion and keeps the load.
     fn hold(&mut self);
 
-    /// The last hold of a run that ends early, and what became of it: whether the rig was seen at rest, and where. None of a rig of
-    /// which nothing moves.
-    fn halt(&mut self) -> Option<Halted> {
+    /// The last hold of a run that ends early, and its result: whether the rig was seen at rest, and where. None for a rig
+    /// without moving parts.
+    fn halt(&mut self) -> Option<FinalHold> {
         self.hold();
         None
     }
@@ -351,8 +351,8 @@ pub trait Rig {
     /// stiffness.
     fn declared_noise(&self) -> DeclaredNoise;
 
-    /// Where the plan's zero lies in the rig's own coordinate, m, one an axis; None: it has no other coordinate than the plan's, or
-    /// the record, of an older version, does not say.
+    /// The position of the plan's zero in the rig's own coordinate \[m\], one per axis. None: the rig has no other
+    /// coordinate than the plan's, or a run log of an older version does not state it.
     fn datum(&self) -> Option<Vec<f64>> {
         None
     }
@@ -362,20 +362,20 @@ pub trait Rig {
         None
     }
 
-    /// Mean speed of the last move as it was seen, m/s: its way over the time from its sending until every axis was there, so never
-    /// more than it went at. None: nothing but what it was told is known.
+    /// Mean speed of the last move as it was seen \[m/s\]: its length divided by the time from its command until every axis
+    /// had arrived, so never more than the true speed. None: only the commanded speed is known.
     fn seen_speed(&self) -> Option<f64> {
         None
     }
 
-    /// The last move the rig remembers, as it said when it was opened.
+    /// The last move that the rig remembers, as it reported when it was opened.
     fn last_move(&self) -> Option<LastMove> {
         None
     }
 
-    /// What was mended on the line so far.
-    fn tally(&self) -> Tally {
-        Tally::default()
+    /// Communication errors recovered so far.
+    fn line_statistics(&self) -> LineStatistics {
+        LineStatistics::default()
     }
 }
 
@@ -385,7 +385,7 @@ pub struct CutOff<'a> {
     /// Where it began and where it leads, m.
     pub from: &'a [f64],
     pub to: &'a [f64],
-    /// Readings that were wanted of the whole, and those that were taken.
+    /// Readings that were requested for the whole motion, and those that were made.
     pub samples: usize,
     pub done: usize,
 }
@@ -397,5 +397,5 @@ impl CutOff<'_> {
     }
 }
 
-/// Takes the readings of a traverse as they come.
+/// Receives each reading of a traverse as it is made.
 pub type EachReading<'a> = &'a mut dyn FnMut(Reading) -> Result<(), RigFault>;

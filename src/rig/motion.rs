@@ -1,5 +1,6 @@
-//! How a piston went on its last move, told as an even motion. In: when it went, in closed form or by places in time. Out: when an even
-//! motion with the same mean instant and the same spread about it begins and ends: to what relaxes slowly the two are one.
+//! The last move of an actuator as an equivalent uniform motion. In: its times, in closed form or as positions in time.
+//! Out: start and end of the uniform motion with the same mean instant and the same variance about it. For slow relaxation
+//! the two are equal.
 
 /// Begin and end of an even motion of that mean instant (s) and variance about it (s²), no sooner than `start` (s): then the mean counts.
 pub(super) fn even(start: f64, mean: f64, variance: f64) -> [f64; 2] {
@@ -7,8 +8,9 @@ pub(super) fn even(start: f64, mean: f64, variance: f64) -> [f64; 2] {
     [from, 2.0 * mean - from]
 }
 
-/// The same by places (m) in time (s), from before the motion to after it, between which it went evenly; None where it went nowhere.
-pub(super) fn of_places(places: &[(f64, f64)]) -> Option<[f64; 2]> {
+/// The same from positions \[m\] at times \[s\], from before the motion until after it, with linear interpolation. None if
+/// there was no motion.
+pub(super) fn from_positions(places: &[(f64, f64)]) -> Option<[f64; 2]> {
     let (start, from) = *places.first()?;
     let way = places.last()?.1 - from;
     let (mut once, mut twice) = (0.0, 0.0);
@@ -31,13 +33,13 @@ mod tests {
         let places: Vec<(f64, f64)> = [1.0, 1.05, 1.13, 1.2, 1.4, 1.7]
             .map(|time: f64| (time, 2e-3 * ((time - 1.0) / 0.2).min(1.0)))
             .to_vec();
-        let [from, to] = of_places(&places).unwrap();
+        let [from, to] = from_positions(&places).unwrap();
         assert!(
             (from - 1.0).abs() < 1e-12 && (to - 1.2).abs() < 1e-12,
             "{from} s to {to} s"
         );
-        assert_eq!(of_places(&[(0.0, 1.0), (1.0, 1.0)]), None);
-        assert_eq!(of_places(&[]), None);
+        assert_eq!(from_positions(&[(0.0, 1.0), (1.0, 1.0)]), None);
+        assert_eq!(from_positions(&[]), None);
     }
 
     /// A first-order lag delays a ramp of T by its time constant, and adds its square to the variance T²/12.
@@ -51,7 +53,7 @@ mod tests {
             .map(|index| f64::from(index) * 3e-4)
             .map(|t| (t, t.min(way) - behind(t)))
             .collect();
-        let found = of_places(&places).unwrap();
+        let found = from_positions(&places).unwrap();
         let wanted = even(0.0, 0.5 * way + lag, way * way / 12.0 + lag * lag);
         assert!(
             found

@@ -1,5 +1,5 @@
-//! A list that is written as its one number where it has one: how places of one axis always stood on record. In: numbers.
-//! Out: a number or a list. It knows no rig.
+//! A list that is written as its one number if it has one: run logs have always had positions of one axis in this form. In:
+//! numbers. Out: a number or a list. It knows no rig.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -1,5 +1,5 @@
-//! The run of a plan: the pre-test check, the procedures in order, the zeros before and after. In: a plan, a rig, who watches. Out:
-//! the record. It knows no particular procedure.
+//! The run of a plan: the pre-test check, the procedures in order, the zeros before and after. In: a plan, a rig, an
+//! observer. Out: the record. It knows no particular procedure.
 
 use super::session::Session;
 use super::{Observer, Performed, Settings, pretest_check, zero_drift};
@@ -10,7 +10,7 @@ use crate::record::{EventKind, Outcome, ProcedureRecord, Record};
 use crate::rig::Rig;
 use crate::run::inputs::Inputs;
 
-/// Runs every procedure of the plan in order on the rig. Never fails: what went wrong is the record's outcome.
+/// Runs every procedure of the plan in order on the rig. Never fails: a fault is the outcome of the record.
 #[must_use]
 pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Record {
     run_with(plan, rig, observer, Settings::default())
@@ -125,7 +125,7 @@ pub fn run_with(
     record
 }
 
-/// What a real rig does once it has proved itself.
+/// The motion of a real rig after the pre-test check.
 fn afterwards(plan: &Plan) -> &'static str {
     match plan.rig.drift {
         Some(DriftCheck {

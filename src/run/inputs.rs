@@ -7,7 +7,7 @@ use crate::uncertainty::known;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// Evaluates, and remembers what came out.
+/// Evaluates inputs and keeps their values.
 pub(crate) struct Inputs<'record> {
     results: &'record dyn Results,
     procedure: ProcedureId,
@@ -16,12 +16,12 @@ pub(crate) struct Inputs<'record> {
     moved: bool,
     /// By how much the damping was raised to none, in its own unit.
     lift: f64,
-    /// What a reader must know of how an input was taken.
+    /// Remarks on the treatment of an input.
     observations: Vec<String>,
 }
 
 impl<'record> Inputs<'record> {
-    /// Of the procedure at this place of the plan.
+    /// For the procedure with this index in the plan.
     pub(crate) fn new(results: &'record dyn Results, procedure: ProcedureId) -> Self {
         Self {
             results,
@@ -47,7 +47,7 @@ impl<'record> Inputs<'record> {
         self.lift
     }
 
-    /// What a reader must know of how inputs were taken.
+    /// Remarks on the treatment of inputs.
     pub(crate) fn take_observations(&mut self) -> Vec<String> {
         std::mem::take(&mut self.observations)
     }
@@ -57,7 +57,7 @@ impl<'record> Inputs<'record> {
         self.procedure
     }
 
-    /// A stated uncertainty, of the field evaluated last, beside what its formula brings.
+    /// Adds a stated uncertainty to that of the formula of the last field.
     pub(crate) fn also_uncertain(&mut self, stated: f64) {
         if let Some((_, estimate, _)) = self.recorded.last_mut().filter(|_| stated > 0.0) {
             estimate.uncertainty = Some(estimate.uncertainty.unwrap_or(0.0).hypot(stated));
@@ -113,8 +113,8 @@ impl<'record> Inputs<'record> {
         }
     }
 
-    /// Damping, or its ratio: at least 0. What was measured below 0 by no more than its expanded uncertainty is taken as 0, with the
-    /// uncertainty that it has.
+    /// Damping, or its ratio: at least 0. A measured value below 0 by no more than its expanded uncertainty is set to 0,
+    /// with its uncertainty.
     pub(crate) fn damping(
         &mut self,
         field: &'static str,

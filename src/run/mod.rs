@@ -2,6 +2,7 @@
 //! procedure and ends the run. Every target and reading passes the guard. It knows no equation and
 //! no printed form.
 
+pub mod client_run;
 mod driver;
 pub(crate) mod inputs;
 mod motion;
@@ -15,7 +16,7 @@ pub mod start;
 pub(crate) mod stop;
 pub(crate) mod zero_drift;
 
-pub use crate::record::remote::{Parting, Request};
+pub use crate::record::remote::{Disconnect, Request};
 pub use driver::{run, run_with};
 pub use motion::{Extent, Motion};
 
@@ -25,52 +26,52 @@ use crate::physics::tracking::monitor::Tracking;
 use crate::record::{Event, History, NamedResult};
 use stop::Stop;
 
-/// Who watches a run: a progress bar, a live screen, a journal, a person.
+/// An observer of a run: a progress bar, a live screen, a run log, the operator.
 pub trait Observer {
     /// A procedure begins; `steps` is an upper bound of its steps where one is known.
     fn procedure_started(&mut self, _name: &str, _keyword: &str, _steps: Option<u64>) {}
     fn step_done(&mut self, _report: &StepReport) {}
     fn procedure_finished(&mut self, _name: &str) {}
-    /// The uncertainty of the results is being worked out, by runs taken again: so many of so many are done.
+    /// The uncertainty of the results is being calculated by re-runs, of which `_done` are done.
     fn studying(&mut self, _done: usize, _of: usize) {}
     /// Asked after every step: true stops the run after holding the rig.
     fn stop_requested(&self) -> bool {
         false
     }
-    /// A person is to look at the specimen; the answer says whether to go on. Asked again while it is
+    /// The operator is to inspect the specimen; the answer states whether to continue. Asked again while it is
     /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
-    /// A real rig is about to move for the first time: whether a person releases it for this motion. `note` is the record's word for
-    /// it. Asked again while it is [`Inspection::Wait`].
+    /// A real rig is about to move for the first time: whether the operator releases it for this motion. `note` is its text
+    /// in the run log. Asked again while it is [`Inspection::Wait`].
     fn release(&mut self, note: &str, _motion: &Motion) -> Inspection {
         self.inspect(note)
     }
-    /// The run has ended early, and the rig holds: whether it may take the load off.
-    /// None: nobody wants it, and the rig stays held. Asked again while it is [`Inspection::Wait`].
+    /// The run has ended early, and the rig holds: whether it may be unloaded. None: unloading is not requested, and the
+    /// rig stays on hold. Asked again while it is [`Inspection::Wait`].
     fn may_unload(&mut self, _question: &str, _motion: &Motion) -> Option<Inspection> {
         None
     }
-    /// What a person wants between two steps. Asked until it is [`Next::GoOn`].
+    /// The operator's request between two steps. Asked until it is [`Next::GoOn`].
     fn next(&mut self) -> Next {
         Next::GoOn
     }
-    /// Something worth a line happened; the record has it.
+    /// An event of the run; it is in the run log.
     fn event(&mut self, _: &Event) {}
     /// A client that drives the rig asks for something; it is about to be done.
     fn asked(&mut self, _: &Request) {}
 }
 
-/// What comes after a step.
+/// The action after a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Next {
     GoOn,
     /// The run is paused: ask again in a moment.
     Wait,
-    /// Something a person did or saw, for the record.
+    /// An action or observation of the operator, for the run log.
     Record(String),
 }
 
-/// The end of a step, for who watches and for the record.
+/// The end of a step, for display and for the run log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepReport {
     /// Number within its procedure, from 1.
@@ -87,16 +88,16 @@ pub struct StepReport {
     pub acceleration: Option<f64>,
     /// Measured restoring force, N.
     pub force: f64,
-    /// Of the last way of the rig, m/s; only for who watches.
+    /// Speed of the last motion of the rig \[m/s\]; only for display.
     #[serde(skip)]
     pub speed: Option<f64>,
     /// Energy error over the input energy; only of procedures that integrate.
     pub energy_error: Option<f64>,
-    /// What the monitors of tracking show; only of procedures that integrate.
+    /// The tracking errors; only for procedures that integrate.
     pub tracking: Option<Tracking>,
     /// Its energy error over the energy put into the test so far.
     pub tracking_energy_error: Option<f64>,
-    /// The axes after the first, whose numbers stand above, of a procedure that moves several.
+    /// The axes after the first, whose numbers are above, for a procedure that moves several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<AxisReport>,
 }
@@ -127,18 +128,18 @@ impl StepReport {
     }
 }
 
-/// What the person said.
+/// The operator's answer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Inspection {
     GoOn {
         note: Option<String>,
-        /// Who says so, where it is known.
+        /// The operator, if known.
         by: Option<String>,
     },
     Stop {
         reason: String,
-        /// Who says so, where it is known.
+        /// The operator, if known.
         by: Option<String>,
     },
     /// No answer yet: ask again in a moment.
@@ -146,7 +147,7 @@ pub enum Inspection {
 }
 
 impl Inspection {
-    /// Goes on with nothing to say.
+    /// Continues without a note.
     #[must_use]
     pub const fn go_on() -> Self {
         Self::GoOn {
@@ -156,10 +157,10 @@ impl Inspection {
     }
 }
 
-/// Said in the record before a stopped run takes the load off.
+/// The event in the run log before a stopped run unloads.
 pub(crate) const UNLOADING: &str = "unloading to where the run began";
 
-/// Watches nothing, goes on at every inspection.
+/// Displays nothing, continues at every inspection.
 pub struct Unwatched;
 
 impl Observer for Unwatched {
@@ -168,7 +169,7 @@ impl Observer for Unwatched {
     }
 }
 
-/// What a procedure leaves, also when it was stopped: everything recorded up to there and what follows from it.
+/// The record of a procedure, also if it was stopped: all measurements up to there and their results.
 pub(crate) struct Performed {
     pub(crate) history: History,
     /// In the schema's order, every one of them.

@@ -1,5 +1,5 @@
-//! What a rig does once a person releases it, as that person must read it before. In: the rig, the plan's limits, what is known of the
-//! motion. Out: lines of text. Pure: every prompt that lets a rig move says the same things in the same order.
+//! The motion of a rig after its release, as the operator must read it before. In: the rig, the plan's limits, the known
+//! facts of the motion. Out: lines of text. Pure: every prompt for motion states the same facts in the same order.
 
 use crate::plan::{Interval, Limits, Plan};
 use crate::rig::Identity;
@@ -11,15 +11,15 @@ use crate::units::display::{plain, readable, stated};
 pub struct Motion {
     /// Name of the rig in the plan.
     pub rig: String,
-    /// Who answered there.
+    /// The identity of the rig that answered.
     pub identity: Identity,
-    /// Where it stands, where that was read: `at 0 mm, 0.2 N`.
+    /// Its position and force, if they were read: `at 0 mm, 0.2 N`.
     pub stands: Option<String>,
-    /// What the rig does, as a sentence has it behind its name: `it moves to 1 mm`.
+    /// The motion, as the end of a sentence that begins with the name of the rig: `it moves to 1 mm`.
     pub does: String,
-    /// What the motion takes.
+    /// The expected extent of the motion.
     pub expected: Extent,
-    /// What stops it.
+    /// The limits that stop it.
     pub limits: Limits,
 }
 
@@ -37,7 +37,7 @@ pub struct Extent {
 }
 
 impl Motion {
-    /// What the rig of a plan does, as far as its plan alone says.
+    /// The motion of a plan's rig, as far as the plan alone states it.
     #[must_use]
     pub fn of(plan: &Plan, identity: Identity, does: String) -> Self {
         Self {
@@ -63,7 +63,7 @@ impl Motion {
         self
     }
 
-    /// The lines of a prompt: which rig, what it does, how far, how hard, how fast, how long.
+    /// The lines of a prompt: rig, motion, displacement, force, speed, duration.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let Extent {
@@ -105,7 +105,7 @@ impl Motion {
         first.chain(rest).collect()
     }
 
-    /// The rig's name, and who answered there.
+    /// The rig's name, and the identity that it reported.
     fn who(&self) -> String {
         let Identity {
             model,
@@ -126,7 +126,7 @@ fn row(name: &str, text: &str) -> String {
     format!("{name:<9} {text}")
 }
 
-/// What is expected, and the limit that stops it.
+/// The expected value, and the limit that stops the motion.
 fn within(expected: Option<String>, limit: Interval, dimension: Dimension) -> String {
     let expected = expected.unwrap_or_else(|| "not known".to_owned());
     let limit = match (limit.low.is_finite(), limit.high.is_finite()) {
@@ -149,7 +149,7 @@ fn span(interval: Interval, dimension: Dimension, written: fn(f64, Dimension) ->
     )
 }
 
-/// How long a motion takes, in words.
+/// The duration of a motion, as text.
 fn about(seconds: f64) -> String {
     match seconds {
         seconds if seconds < 60.0 => {

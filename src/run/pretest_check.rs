@@ -1,6 +1,6 @@
-//! The gate of a real rig, before the first step: the readings at rest, and the stiffness that a tiny move shows. A
-//! wrong sign, unit or scale and a dead sensor are found here, while nothing can be broken. In: the rig, what the plan
-//! expects. Out: what was found, as a note of the record, or why the run does not begin.
+//! The pre-test check of a real rig, before the first step: the readings at rest, and the stiffness in a small move. A
+//! wrong polarity, unit or scale and a dead sensor are found here, while nothing can be damaged. In: the rig, the plan's
+//! expectations. Out: the findings, as a note of the record, or the reason why the run does not begin.
 
 use super::motion::Motion;
 use super::session::Session;
@@ -18,7 +18,8 @@ use crate::units::display::{readable, stated};
 /// Time between the two readings at rest, s.
 const REST: f64 = 1.0;
 
-/// Asks for the release, then tries the rig, axis by axis. Nothing else has moved by then; `afterwards` says how it will.
+/// Asks for the release, then tests the rig, axis by axis. Nothing else has moved by then; `afterwards` describes the later
+/// motion.
 pub(crate) fn pass(
     plan: &Plan,
     link: &RealLink,
@@ -38,14 +39,14 @@ pub(crate) fn pass(
     } else {
         format!("each of its {axes} axes in turn, by {ways}")
     };
-    // Nobody is asked to release a rig that stands elsewhere.
+    // The release of a rig at a different position is not asked for.
     start::check(plan, link, session, session.guard.found())?;
     let note = format!(
         "release rig {}: it will move {by} to prove itself, then {afterwards}",
         plan.rig.name
     );
     let does = format!("it moves {by} to check itself, then {afterwards}");
-    let stands = Some(start::told(session));
+    let stands = Some(start::describe(session));
     session.release(
         &note,
         &Motion {
@@ -60,9 +61,9 @@ pub(crate) fn pass(
     for reading in [&first, &at_rest] {
         start::check(plan, link, session, (&reading.displacement, &reading.force))?;
     }
-    start::tell(link, session);
+    start::log_datum(link, session);
     for (axis, (gate, force)) in gates.iter().zip(&at_rest.force).enumerate() {
-        if failpoint::on(Guarding::GateZero) && !within(force.abs(), 0.0, gate.zero) {
+        if failpoint::on(Guarding::PretestZero) && !within(force.abs(), 0.0, gate.zero) {
             return refuse(format!(
                 "{}{} at rest, {} is allowed: {}",
                 named_axis(axis, axes).map_or_else(String::new, |axis| format!("axis {axis}: ")),
@@ -75,7 +76,7 @@ pub(crate) fn pass(
     let mut before = at_rest.clone();
     for (axis, gate) in gates.iter().enumerate() {
         session.stop_if_requested()?;
-        // Each is held against the reading at rest before it: that after the one before it had come back.
+        // Each is compared with the reading at rest before it, after the axis before it had returned.
         let (column, back) = probe(axis, gate, &before, session)?;
         before = back;
         let force = readable(at_rest.force[axis], Dimension::FORCE);
@@ -99,8 +100,8 @@ pub(crate) fn pass(
     Ok(())
 }
 
-/// A tiny move of one axis alone, and back. Gives its column of the stiffness matrix, N/m: the forces that it raised in
-/// every axis, over its way; and the reading where it came back to.
+/// A small move of one axis alone, and back. Gives its column of the stiffness matrix \[N/m\]: the change of force of every
+/// axis, divided by the travel; and the reading after the return.
 fn probe(
     axis: usize,
     gate: &Gate,
@@ -130,7 +131,7 @@ fn probe(
         .map(|(force, rest)| (force - rest) / moved)
         .collect();
     let stiffness = column[axis];
-    if failpoint::on(Guarding::GateSign) && (stiffness < 0.0 || moved * gate.probe < 0.0) {
+    if failpoint::on(Guarding::PretestPolarity) && (stiffness < 0.0 || moved * gate.probe < 0.0) {
         return refuse(format!(
             "displacement and force{of} have opposite signs: turn one of them, or the rig's `sign`"
         ));
@@ -138,7 +139,7 @@ fn probe(
     let (low, high) = (gate.stiffness.low, gate.stiffness.high);
     let bound = |value| stated(value, Dimension::STIFFNESS);
     let found = readable(stiffness, Dimension::STIFFNESS);
-    if failpoint::on(Guarding::GateStiffness) && !within(stiffness, low, high) {
+    if failpoint::on(Guarding::PretestStiffness) && !within(stiffness, low, high) {
         let (low, high) = (bound(low), bound(high));
         return refuse(format!(
             "the move{of} of {probe} shows {found}, outside {low} .. {high}: look for a wrong unit or scale"
@@ -147,7 +148,7 @@ fn probe(
     Ok((column, back))
 }
 
-/// What the move of one axis (from 1) raised in the others.
+/// The effect of the move of one axis (from 1) on the others.
 fn others(column: &[f64], axis: usize) -> String {
     let felt = (1..).zip(column).filter(|(other, _)| *other != axis);
     let told: Vec<String> = felt

@@ -1,13 +1,13 @@
-//! A rehearsal: what of a plan is measured first, and what the rest is predicted on. In: a plan, and the record of its
-//! gate and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen that is as
-//! stiff as the measured one. It moves nothing.
+//! A rehearsal: the part of a plan that is measured first, and the prediction of the rest. In: a plan, and the record of
+//! its pre-test check and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen
+//! with the measured stiffness. It moves nothing.
 
 use crate::plan::formula::ResultValue;
 use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
 use crate::record::{History, RampHistory, Record};
 use crate::rig::VirtualRig;
 
-/// The particular of a plan that says it is a rehearsal, and of what.
+/// The particular of a plan that marks it as a rehearsal.
 pub const REHEARSAL: &str = "rehearsal";
 
 /// Why a plan cannot be rehearsed.
@@ -40,8 +40,8 @@ fn leading(plan: &Plan) -> usize {
     ramps.map(|(place, _)| place + 1).last().unwrap_or(0)
 }
 
-/// The part of the plan that a rehearsal runs on the rig: the gate and the leading stiffness ramps. It requires nothing,
-/// for nothing is decided by it, and says what it is.
+/// The part of the plan that a rehearsal runs on the rig: the pre-test check and the leading stiffness ramps. It has no
+/// requirements, because no conformity is assessed by it, and is marked as a rehearsal.
 ///
 /// # Errors
 /// There would be nothing to predict the rest on.
@@ -91,17 +91,17 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     Ok(part)
 }
 
-/// What the rehearsal of a plan is of, where it is one.
+/// The plan that is rehearsed, if this is a rehearsal.
 #[must_use]
-pub fn told(plan: &Plan) -> Option<&str> {
+pub fn rehearsed_plan(plan: &Plan) -> Option<&str> {
     plan.particulars
         .iter()
         .find(|(field, _)| *field == REHEARSAL)
         .map(|(_, text)| text.as_str())
 }
 
-/// The whole plan on a virtual specimen as stiff as `measured` says, with the noise and the quanta of the rig. Noise is
-/// the larger of what is declared and what the ramps showed.
+/// The whole plan on a virtual specimen with the stiffness of `measured`, and with the noise and resolution of the rig. The
+/// noise is the larger of the declared one and that of the ramps.
 ///
 /// # Errors
 /// A ramp gave no stiffness.
@@ -135,7 +135,8 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
     Ok(model)
 }
 
-/// The specimen that a ramp past yield measured, where its fitted curve is one: as it yielded, not as the plan expected.
+/// The specimen that a ramp beyond yield measured, if its fitted curve is one: with its measured yield point, not the
+/// expected one.
 fn curve_of(history: &History) -> Option<Behaviour> {
     let History::Ramp(RampHistory {
         steps,
@@ -164,7 +165,7 @@ fn curve_of(history: &History) -> Option<Behaviour> {
 /// A specimen of the measured stiffness (N/m): the expected one with every force in that proportion, so that it yields and
 /// breaks at the displacements of the plan.
 fn as_stiff_as(stiffness: f64, specimen: &Specimen) -> Behaviour {
-    // A pause lets relax what relaxes before the reading.
+    // During a pause the relaxing part of the force relaxes before the reading.
     let expected = specimen
         .behaviour
         .as_ref()
@@ -207,14 +208,14 @@ mod tests {
         elastic_plan, impact, ramp, result_of, run_unwatched, struck_frame,
     };
 
-    /// A frame has its storeys' behaviours: nothing of it is measured first, and the blow is predicted on them.
+    /// A frame has the behaviours of its storeys: none is measured first, and the impact is predicted with them.
     #[test]
     fn a_blow_on_a_storey_is_predicted_on_the_storeys_of_the_plan() {
         let plan = struck_frame();
         let part = measured_part(&plan).unwrap();
         assert!(part.procedures.is_empty());
         assert_eq!(
-            told(&part),
+            rehearsed_plan(&part),
             Some("nothing ran on the rig; p0 did not run and was predicted on a virtual specimen")
         );
         let model = prediction(&plan, &run_unwatched(&part)).unwrap();
@@ -252,12 +253,12 @@ mod tests {
         let part = measured_part(&plan()).unwrap();
         assert_eq!(part.procedures.len(), 2, "not what comes after the move");
         assert_eq!(
-            told(&part),
+            rehearsed_plan(&part),
             Some(
                 "p0, p1 ran on the rig; p2, p3, p4, p5 did not run and was predicted on a virtual specimen"
             )
         );
-        assert_eq!(told(&plan()), None);
+        assert_eq!(rehearsed_plan(&plan()), None);
         let mut blind = plan();
         blind.procedures.remove(1);
         assert_eq!(leading(&blind), 0);

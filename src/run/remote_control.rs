@@ -1,26 +1,23 @@
 //! A rig that a client drives, behind the guard. In: the client's requests, one after the other. Out: the reading after
-//! each, events, and what was asked of the specimen in all. It knows no protocol.
+//! each, events, and a summary of the requests. It knows no protocol.
 //!
-//! Everything that a protocol does to the rig goes through [`Specimen`], which tells the observer first. So the record of
-//! the requests, played back through `Specimen::carry_out`, asks the guard and the rig for the same again.
+//! Every action of a protocol on the rig goes through [`Specimen`], which reports it to the observer first. So the logged
+//! requests, repeated through `Specimen::carry_out`, make the same calls to the guard and the rig again.
 
-pub(crate) use std::time::{Duration, Instant};
+use std::time::{Duration, Instant};
 
-use crate::plan::{DriftCheck, Plan, ZeroAfter};
-use crate::record::remote::{DrivenStep, Parting, Request};
-use crate::record::{Drift, Event, EventKind, Outcome, Record};
-use crate::rig::{Guard, Rig, RigFault};
-use crate::run::pretest_check;
-use crate::run::session::Session;
+use crate::record::remote::{Disconnect, DrivenStep, Request};
+use crate::record::{Event, EventKind, Outcome};
+use crate::rig::{Guard, RigFault};
 use crate::run::stop::Stop;
-use crate::run::{AxisReport, Observer, StepReport, zero_drift};
+use crate::run::{AxisReport, Observer, StepReport};
 
-/// What a session asked of the specimen, SI.
+/// Summary of a session, SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Driven {
     /// Moves carried out.
     pub targets: u64,
-    /// Targets that a limit stood in the way of.
+    /// Targets refused because of a limit.
     pub refused: u64,
     /// Largest |displacement| read, m.
     pub displacement: f64,
@@ -30,141 +27,32 @@ pub struct Driven {
 
 /// Displacement (m) and force (N) of every axis, settled and inside the limits.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct Felt {
+pub struct Feedback {
     pub displacement: Vec<f64>,
     pub force: Vec<f64>,
 }
 
-/// What stands on a rig, behind its guard: an entry for every axis.
+/// The specimen on a rig, behind its guard: an entry for every axis.
 pub struct Specimen<'session, 'rig> {
     guard: &'session mut Guard<'rig>,
     observer: &'session mut dyn Observer,
-    /// A real rig must be heard from at least this often.
+    /// A real rig must be polled at least this often.
     beat: Option<Duration>,
     heard: Instant,
-    felt: Felt,
+    feedback: Feedback,
     driven: Driven,
-    steps: Vec<DrivenStep>,
+    pub(super) steps: Vec<DrivenStep>,
     commits: u64,
-    events: Vec<Event>,
+    pub(super) events: Vec<Event>,
     /// How the worst session ended, and why.
-    worst: Option<(Parting, String)>,
+    worst: Option<(Disconnect, String)>,
     /// A client is there.
     inside: bool,
     closed: bool,
 }
 
-/// What a driven rig leaves.
-pub struct DrivenRecord {
-    pub record: Record,
-    pub steps: Vec<DrivenStep>,
-}
-
-/// Who drives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Driver {
-    /// A program: a real rig must have passed the gate first.
-    Client,
-    /// A person by hand, who says yes to every move; there may be no specimen yet to pass a gate with.
-    ByHand,
-}
-
-/// Lets `client` drive the plan's rig. Never fails: what went wrong is the record's outcome.
-#[must_use]
-pub fn drive(
-    plan: &Plan,
-    rig: &mut dyn Rig,
-    observer: &mut dyn Observer,
-    driver: Driver,
-    client: &mut dyn FnMut(&mut Specimen<'_, '_>),
-) -> DrivenRecord {
-    let identity = rig.identity();
-    let ended = |events, outcome| DrivenRecord {
-        record: Record {
-            rig: identity.clone(),
-            procedures: Vec::new(),
-            events,
-            outcome,
-            drift: None,
-        },
-        steps: Vec::new(),
-    };
-    let mut session = match Session::begin(plan, rig, observer) {
-        Ok(session) => session,
-        Err(early) => return ended(vec![early.0], early.1.outcome()),
-    };
-    let link = plan.rig.link.as_real();
-    if let Some(link) = link.filter(|_| driver == Driver::Client)
-        && let Err(stop) = pretest_check::pass(plan, link, afterwards(plan), &mut session)
-    {
-        session.end(&stop);
-        return ended(session.finish(), stop.outcome());
-    }
-    // By hand there may be no specimen yet, and a place to go back to neither.
-    let check = plan.rig.drift.filter(|_| driver == Driver::Client);
-    let home = session.guard.commanded().to_vec();
-    let mut drift = match check
-        .map(|check| zero_drift::before(check, &mut session))
-        .transpose()
-    {
-        Ok(drift) => drift,
-        Err(stop) => {
-            session.end(&stop);
-            return ended(session.finish(), stop.outcome());
-        }
-    };
-    let (guard, observer, events) = session.parts();
-    let beat = link.map(|link| Duration::from_secs_f64((link.watchdog / 8.0).max(0.0)));
-    let mut specimen = Specimen::new(guard, observer, beat);
-    client(&mut specimen);
-    let (mut outcome, steps) = (specimen.outcome(), std::mem::take(&mut specimen.steps));
-    events.append(&mut specimen.events);
-    drop(specimen);
-    if let Some(drift) = &mut drift {
-        drift.held = session.guard.take_held();
-        if outcome == Outcome::Completed
-            && let Err(stop) = once_more(drift, &home, &mut session)
-        {
-            session.event(stop.event_kind(), stop.to_string());
-            outcome = stop.outcome();
-        }
-    }
-    session.guard.hold();
-    let DrivenRecord { record, .. } = ended(session.finish(), outcome);
-    DrivenRecord {
-        steps,
-        record: Record { drift, ..record },
-    }
-}
-
-/// The zeros after the last client, as after a test. Whoever ended the serving wants the rig held where it is: then nothing moves,
-/// and they are not read.
-fn once_more(drift: &mut Drift, home: &[f64], session: &mut Session<'_>) -> Result<(), Stop> {
-    if session.stop_if_requested().is_err() {
-        session.event(
-            EventKind::Note,
-            "the zeros are not read again: stopped on request".to_owned(),
-        );
-        return Ok(());
-    }
-    zero_drift::after(drift, home, session)
-}
-
-/// What a real rig does once it has proved itself.
-fn afterwards(plan: &Plan) -> &'static str {
-    match plan.rig.drift {
-        Some(DriftCheck {
-            after: ZeroAfter::Start,
-            ..
-        }) => {
-            "as its client says, within the plan's limits, and after the last client back to where it began"
-        }
-        _ => "as its client says, within the plan's limits",
-    }
-}
-
 impl<'session, 'rig> Specimen<'session, 'rig> {
-    /// With `beat`, a rig that must be heard from at least so often.
+    /// With `beat`, for a rig that must be polled at least so often.
     pub fn new(
         guard: &'session mut Guard<'rig>,
         observer: &'session mut dyn Observer,
@@ -175,7 +63,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
             observer,
             beat,
             heard: Instant::now(),
-            felt: Felt::default(),
+            feedback: Feedback::default(),
             driven: Driven::default(),
             steps: Vec::new(),
             commits: 0,
@@ -186,9 +74,9 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         }
     }
 
-    /// What was read last.
-    pub const fn felt(&self) -> &Felt {
-        &self.felt
+    /// The last reading.
+    pub const fn feedback(&self) -> &Feedback {
+        &self.feedback
     }
 
     /// Axes, each with its load cell.
@@ -196,7 +84,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.guard.commanded().len()
     }
 
-    /// Of the client that is there, or was last.
+    /// Summary of the present client, or of the last.
     pub const fn driven(&self) -> Driven {
         self.driven
     }
@@ -206,9 +94,9 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.guard.commanded()
     }
 
-    /// The targets on the way to `targets`, none farther from the one before than the limit on an increment.
-    pub fn way_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
-        self.guard.way_to(targets)
+    /// The targets on the path to `targets`, in increments inside the limit.
+    pub fn increments_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
+        self.guard.increments_to(targets)
     }
 
     /// Rig time, s.
@@ -216,29 +104,28 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.guard.time()
     }
 
-    /// How long one wait for a client may be, if `longest` is long enough by itself.
+    /// Longest single wait for a client, at most `longest`.
     pub fn wait(&self, longest: Duration) -> Duration {
         self.beat.map_or(longest, |beat| {
             beat.clamp(Duration::from_millis(1), longest)
         })
     }
 
-    /// Takes a client, and reads where the rig stands.
+    /// Admits a client, and reads the present position of the rig.
     ///
     /// # Errors
-    /// It cannot be read, or stands outside a limit.
+    /// It cannot be read, or is outside a limit.
     pub fn come(&mut self, client: String) -> Result<(), RigFault> {
         self.asked(&Request::Come { client });
         self.driven = Driven::default();
         self.inside = true;
-        self.feel()
+        self.read_feedback()
     }
 
-    /// Checks the targets of all axes (m) and makes them ready; nothing moves. What stands in the way of one stands in
-    /// the way of all.
+    /// Checks the targets of all axes \[m\] and prepares them; nothing moves. A refusal of one refuses all.
     ///
     /// # Errors
-    /// A limit stands in the way, or the rig refuses.
+    /// A limit is exceeded, or the rig refuses.
     pub fn propose(&mut self, targets: &[f64]) -> Result<(), RigFault> {
         self.propose_at(targets, None)
     }
@@ -253,25 +140,25 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         if matches!(proposed, Err(RigFault::LimitBreached { .. })) {
             self.driven.refused += 1;
         }
-        self.told(proposed)
+        self.note_fault(proposed)
     }
 
-    /// Carries out what was proposed, settles and reads.
+    /// Executes the proposal, settles and reads.
     ///
     /// # Errors
-    /// The rig fails, or the reading lies outside a limit.
+    /// The rig fails, or the reading is outside a limit.
     pub fn execute(&mut self) -> Result<(), RigFault> {
         self.asked(&Request::Execute);
         let executed = self.guard.execute();
-        self.told(executed)?;
+        self.note_fault(executed)?;
         self.driven.targets += 1;
-        self.feel()?;
+        self.read_feedback()?;
         let step = self.steps.len() as u64 + 1;
         let (time, command) = (self.time(), self.commanded().to_vec());
-        let Felt {
+        let Feedback {
             displacement,
             force,
-        } = self.felt.clone();
+        } = self.feedback.clone();
         self.steps.push(DrivenStep {
             step,
             time,
@@ -287,13 +174,13 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.asked(&Request::Commit);
         self.commits += 1;
         let nothing = None;
-        let felt = self.felt.displacement.iter().zip(&self.felt.force);
-        // At rest, as it is whenever a client asks.
+        let feedback = self.feedback.displacement.iter().zip(&self.feedback.force);
+        // At rest, as always when a client sends a request.
         let mut axes =
             self.guard
                 .commanded()
                 .iter()
-                .zip(felt)
+                .zip(feedback)
                 .map(|(command, (displacement, force))| AxisReport {
                     command: *command,
                     displacement: *displacement,
@@ -328,29 +215,29 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         });
     }
 
-    /// Reads anew.
+    /// Reads again.
     ///
     /// # Errors
-    /// The rig fails, or the reading lies outside a limit.
+    /// The rig fails, or the reading is outside a limit.
     pub fn read(&mut self) -> Result<(), RigFault> {
         self.asked(&Request::Read);
-        self.feel()
+        self.read_feedback()
     }
 
-    /// Forgets what was proposed, stops all motion and keeps the load.
+    /// Forgets the proposal, stops all motion and keeps the load.
     pub fn hold(&mut self) {
         self.asked(&Request::Hold);
         self.guard.hold();
     }
 
-    /// A remark for the record.
+    /// A remark for the run log.
     pub fn remark(&mut self, text: String) {
         self.asked(&Request::Remark { text: text.clone() });
         self.event(EventKind::Note, text);
     }
 
-    /// The client is gone; the rig holds.
-    pub fn leave(&mut self, parting: Parting, reason: String) {
+    /// The client has disconnected; the rig holds.
+    pub fn leave(&mut self, parting: Disconnect, reason: String) {
         self.asked(&Request::Leave {
             parting,
             reason: reason.clone(),
@@ -367,16 +254,16 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         }
     }
 
-    /// Nobody is served any more.
+    /// No client is served any more.
     pub fn close(&mut self) {
         self.asked(&Request::Close);
         self.closed = true;
     }
 
-    /// Hears the rig, where that is due: while a client is silent, and while one talks of other things than the rig.
+    /// Polls the rig if that is due: while a client is silent, and while it sends other messages.
     ///
     /// # Errors
-    /// The rig fails, or stands outside a limit.
+    /// The rig fails, or is outside a limit.
     pub fn listen(&mut self) -> Result<(), RigFault> {
         let Some(beat) = self.beat.filter(|beat| self.heard.elapsed() >= *beat) else {
             return Ok(());
@@ -384,9 +271,9 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.stay(beat)
     }
 
-    /// One request again, as the record has it. What comes of it is on record too.
+    /// Repeats one logged request. Its result is logged too.
     pub(crate) fn carry_out(&mut self, request: Request) {
-        // A refusal has told its event, and what the client made of it are the requests that follow.
+        // The event of a refusal is logged, and the reaction of the client is in the requests that follow.
         if let Some((targets, speed)) = request.proposed() {
             let _ = self.propose_at(&targets, speed);
             return;
@@ -422,21 +309,21 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         };
     }
 
-    /// A stay that failed in the record fails again.
-    pub(crate) fn stay_again(&mut self) {
+    /// A wait that failed in the run log fails again.
+    pub(crate) fn repeat_stay(&mut self) {
         let _ = self.stay(Duration::from_millis(1));
     }
 
     fn stay(&mut self, seconds: Duration) -> Result<(), RigFault> {
         let stayed = self.guard.pause(seconds.as_secs_f64());
         self.heard = Instant::now();
-        self.told(stayed)
+        self.note_fault(stayed)
     }
 
-    fn feel(&mut self) -> Result<(), RigFault> {
+    fn read_feedback(&mut self) -> Result<(), RigFault> {
         let read = self.guard.read();
         self.heard = Instant::now();
-        let reading = self.told(read)?;
+        let reading = self.note_fault(read)?;
         let largest = |values: &[f64], so_far: f64| {
             values
                 .iter()
@@ -444,7 +331,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         };
         self.driven.displacement = largest(&reading.displacement, self.driven.displacement);
         self.driven.force = largest(&reading.force, self.driven.force);
-        self.felt = Felt {
+        self.feedback = Feedback {
             displacement: reading.displacement,
             force: reading.force,
         };
@@ -456,7 +343,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     }
 
     /// A fault is an event of the record.
-    fn told<T>(&mut self, result: Result<T, RigFault>) -> Result<T, RigFault> {
+    fn note_fault<T>(&mut self, result: Result<T, RigFault>) -> Result<T, RigFault> {
         if let Err(fault) = &result {
             let stop = Stop::Rig(fault.clone());
             self.event(stop.event_kind(), stop.to_string());
@@ -476,19 +363,19 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.events.push(event);
     }
 
-    /// A record that was cut off is no complete one.
-    fn outcome(&self) -> Outcome {
+    /// An interrupted run log is not complete.
+    pub(super) fn outcome(&self) -> Outcome {
         let cut_off = |place: &str| Outcome::Faulted {
             reason: format!("the record ends {place}"),
         };
         match &self.worst {
             _ if self.inside => cut_off("in the middle of a session"),
             _ if !self.closed => cut_off("while a client was waited for"),
-            None | Some((Parting::Closed, _)) => Outcome::Completed,
-            Some((Parting::Stopped, reason)) => Outcome::Aborted {
+            None | Some((Disconnect::Closed, _)) => Outcome::Completed,
+            Some((Disconnect::Stopped, reason)) => Outcome::Aborted {
                 reason: reason.clone(),
             },
-            Some((Parting::Failed, reason)) => Outcome::Faulted {
+            Some((Disconnect::Failed, reason)) => Outcome::Faulted {
                 reason: reason.clone(),
             },
         }

@@ -1,18 +1,18 @@
-//! One run as it goes: the guarded rig, who watches, and the events so far. In: what procedures do. Out: events.
-//! It knows no procedure's physics.
+//! One run in progress: the guarded rig, the observer, and the events so far. In: actions of procedures. Out: events. It
+//! knows no physics of a procedure.
 
 use super::stop::Stop;
 use super::{AxisReport, Inspection, Motion, Next, Observer, Settings, StepReport};
 use crate::plan::{Plan, Procedure};
 use crate::record::{Event, EventKind};
-use crate::rig::{Guard, Identity, Reading, Rig, RigFault, Tally};
+use crate::rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault};
 use crate::uncertainty::engine::{Tick, Unknown};
 
-/// A reading, when the rig went on its last move (s), and what ends the run.
+/// A reading, the time of the last move \[s\], and the fault that ends the run.
 pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
 
-/// How long a real rig stays where it is between two looks at whether the person has decided, s of rig time: it takes a
-/// sign of life at least this often.
+/// Longest wait of a real rig between two looks at the operator's decision, rig time \[s\]: it needs a heartbeat at least
+/// this often.
 const BREATH: f64 = 0.01;
 
 /// Why a run ends that a person wants to end while nothing moves.
@@ -21,28 +21,28 @@ pub(super) const STOPPED_ON_REQUEST: &str = "stopped on request";
 pub(crate) struct Session<'run> {
     pub(crate) guard: Guard<'run>,
     pub(super) observer: &'run mut dyn Observer,
-    /// Who the rig says it is.
+    /// The identity that the rig reported.
     identity: Identity,
     events: Vec<Event>,
     procedure: Option<String>,
     /// Number of the last step done in this procedure.
     step: Option<u64>,
-    /// What a reader was told of a blow of this procedure, and after how many more of its blows it was so again.
+    /// Remarks about an impact of this procedure, and the number of its later impacts to which each applies.
     remarks: Vec<(String, usize)>,
     /// Where the rig was found, m.
     pub(super) home: Vec<f64>,
     /// [`Plan::unloads_at_once`]
     pub(crate) unloads_at_once: bool,
-    /// A person was asked to look, or has paused the run: somebody may stand at the specimen.
+    /// The operator was asked to inspect, or has paused the run: a person may be at the specimen.
     pub(super) attended: bool,
     pub(crate) settings: Settings,
-    /// Whether rig time is only reckoned, and must not pass while a person thinks. A simulator on a line is driven as any
-    /// rig, and has a watchdog as any.
+    /// Whether rig time is only simulated, and must not pass while the operator decides. An emulator on a line is driven as
+    /// any rig, and has a watchdog as any.
     reckoned: bool,
 }
 
 impl<'run> Session<'run> {
-    /// Takes the rig behind its guard. The error is the event to record and what ended the run.
+    /// Takes the rig behind its guard. The error is the event to record and the reason of the end.
     pub(crate) fn begin(
         plan: &Plan,
         rig: &'run mut dyn Rig,
@@ -107,16 +107,17 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// The events, the last of which says what was mended on the lines of the rig: a deviation, though it did no harm.
+    /// The events. The last of them states the communication errors that were recovered: a deviation, although without
+    /// harm.
     pub(crate) fn finish(mut self) -> Vec<Event> {
-        let tally = self.guard.tally();
-        if tally != Tally::default() {
-            self.event(EventKind::Mended, tally.to_string());
+        let line_statistics = self.guard.line_statistics();
+        if line_statistics != LineStatistics::default() {
+            self.event(EventKind::Mended, line_statistics.to_string());
         }
         self.events
     }
 
-    /// The guard, who watches, and where events go.
+    /// The guard, the observer, and the list of events.
     pub(crate) fn parts(
         &mut self,
     ) -> (
@@ -136,7 +137,7 @@ impl<'run> Session<'run> {
     }
 
     pub(super) fn leave(&mut self) {
-        // What was said during the last step is not lost.
+        // Remarks of the last step are not lost.
         while let Next::Record(text) = self.observer.next() {
             self.event(EventKind::Note, text);
         }
@@ -157,7 +158,7 @@ impl<'run> Session<'run> {
         self.events.push(event);
     }
 
-    /// What a reader must know of a blow, once: of further blows of the same procedure it is counted.
+    /// A remark about an impact, once: for later impacts of the same procedure it is counted.
     pub(crate) fn remark(&mut self, text: String) {
         if let Some((_, again)) = self.remarks.iter_mut().find(|(known, _)| *known == text) {
             *again += 1;
@@ -167,7 +168,7 @@ impl<'run> Session<'run> {
         self.event(EventKind::Remark, text);
     }
 
-    /// Says what was so of more blows than one.
+    /// Adds the remarks that apply to more than one impact.
     pub(crate) fn remark_again(&mut self) {
         for (text, again) in std::mem::take(&mut self.remarks) {
             match again {
@@ -181,7 +182,7 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Tells who watches that a step is done, and asks whether to go on.
+    /// Reports to the observer that a step is done, and asks whether to continue.
     pub(crate) fn step_done(&mut self, report: StepReport) -> Result<(), Stop> {
         self.step = Some(report.step);
         self.observer.step_done(&StepReport {
@@ -204,12 +205,12 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Lets a person look at the specimen; what was said, and by whom, is an event.
+    /// Lets the operator inspect the specimen; the answer is an event.
     pub(crate) fn inspect(&mut self, note: &str) -> Result<(), Stop> {
         self.ask(note, &mut |observer| observer.inspect(note))
     }
 
-    /// Asks for the release of a rig that has not moved yet. Whoever does not give it stops nothing: nothing was begun.
+    /// Asks for the release of a rig that has not moved yet. A refusal stops nothing, because nothing has begun.
     pub(super) fn release(&mut self, note: &str, motion: &Motion) -> Result<(), Stop> {
         self.ask(note, &mut |observer| observer.release(note, motion))
             .map_err(|stop| match stop {
@@ -253,7 +254,7 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// While a person looks nothing moves: what the readings do meanwhile tells of drift, where that is asked for.
+    /// During an inspection nothing moves: the readings meanwhile show zero drift, if that is evaluated.
     fn look_at_a_hold(&mut self) -> Result<(), Stop> {
         if self.guard.watches_holds() {
             self.guard.read()?;
@@ -261,17 +262,17 @@ impl<'run> Session<'run> {
         Ok(())
     }
 
-    /// Who the rig says it is.
+    /// The identity that the rig reported.
     pub(super) fn identity(&self) -> Identity {
         self.identity.clone()
     }
 
-    /// Whether nothing real is moved, so that what the plan says of the specimen is what the specimen does.
+    /// Whether nothing real is moved, so that the specimen behaves exactly as the plan states.
     pub(crate) const fn reckoned(&self) -> bool {
         self.reckoned
     }
 
-    /// While a study of the run is under way, of which so much is done: who watches is told, and a real rig is heard from.
+    /// During a sensitivity study of the run: its progress is reported, and a real rig is polled.
     fn study(&mut self, done: usize, of: usize) -> Result<(), Stop> {
         self.observer.studying(done, of);
         self.breathe()
@@ -299,7 +300,7 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Holds where a person wants the end. Asked after every step, and before anything else begins to move.
+    /// Holds if the operator requests the end. Called after every step, and before any other motion begins.
     pub(crate) fn stop_if_requested(&mut self) -> Result<(), Stop> {
         if self.observer.stop_requested() {
             self.guard.hold();
@@ -308,8 +309,8 @@ impl<'run> Session<'run> {
         Ok(())
     }
 
-    /// A moment of a person's time. A real rig spends it where it is, and is heard from. A request to hold that comes meanwhile is a
-    /// request to stop: nothing moves.
+    /// A short wait for the operator. A real rig stays at its position meanwhile, and is polled. A request to hold during the wait
+    /// is a request to stop: nothing moves.
     pub(super) fn breathe(&mut self) -> Result<(), Stop> {
         if self.reckoned {
             return Ok(());
@@ -386,13 +387,13 @@ impl<'run> Session<'run> {
         Ok(first(&self.guard.read()?))
     }
 
-    /// One reading of every axis, and what ends the run where it breaks a limit: it was made all the same, and is kept.
+    /// One reading of every axis, and the fault if it exceeds a limit: the reading is kept all the same.
     pub(crate) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
         let read = self.guard.read();
         self.kept(read)
     }
 
-    /// The same, with when the rig went on its last move: begin and end of the even motion that stands for it, s.
+    /// The same, with the time of the last move: start and end of the equivalent uniform motion \[s\].
     pub(crate) fn read_moved_kept(&mut self) -> Result<MovedReading, Stop> {
         let read = self.guard.read_moved();
         let (read, moved) = read.map_or_else(
@@ -413,14 +414,14 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Back to `place` (m), as one move or, where increments are limited, as equal ones.
+    /// Back to `place` \[m\], as one move or, if increments are limited, as equal ones.
     pub(crate) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
         self.go_to_all(&[place], speed)
     }
 
     /// The same of every axis.
     pub(crate) fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
-        for target in self.guard.way_to(places) {
+        for target in self.guard.increments_to(places) {
             self.guard.move_to(&target, speed)?;
         }
         Ok(())

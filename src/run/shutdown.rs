@@ -1,26 +1,27 @@
-//! How a run ends early: the rig held for good, where that left it, and whether it may take the load off. In: why the run does not go
-//! on. Out: events. Where a person stopped the run, or may stand at the specimen, nothing moves without their yes.
+//! The early end of a run: the final hold of the rig, its position, and whether it may be unloaded. In: the reason of the
+//! end. Out: events. If the operator stopped the run, or may be at the specimen, nothing moves without the operator's
+//! consent.
 
 use super::session::{Session, signed};
 use super::stop::Stop;
 use super::{Extent, Inspection, Motion, UNLOADING};
 use crate::plan::{Interval, Plan, SafeState};
 use crate::record::{EventKind, Outcome};
-use crate::rig::Halted;
+use crate::rig::FinalHold;
 use crate::units::Dimension;
 use crate::units::display::{plain, readable};
 
 impl Session<'_> {
-    /// Holds the rig, and takes the load off: where that is its safe state and nobody stands at it, or where a person wants it.
+    /// Holds the rig, and unloads it: if that is its safe state and no person is at it, or if the operator requests it.
     pub(super) fn end_as_declared(&mut self, stop: &Stop, plan: &Plan) -> Outcome {
         let halted = self.end(stop);
         let Some(link) = plan.rig.link.as_real() else {
             return stop.outcome();
         };
-        let held = halted.as_ref().is_none_or(Halted::is_held);
+        let held = halted.as_ref().is_none_or(FinalHold::is_held);
         let declared = link.safe_state == SafeState::Unload && stop.leaves_the_rig_sound();
         let alone = declared && !self.attended && !stop.is_a_persons();
-        // A rig that a person held in the middle of a move was seen at rest since: it may move again for who sees it.
+        // A rig that the operator held during a move was seen at rest since: it may move again with the operator's consent.
         let sound = stop.leaves_the_rig_sound() || stop.is_a_persons();
         if held && sound && (alone || self.may_unload(plan, halted.as_ref())) {
             self.unload();
@@ -29,16 +30,16 @@ impl Session<'_> {
     }
 
     /// Records why the run ends here, and where the rig is held.
-    pub(crate) fn end(&mut self, stop: &Stop) -> Option<Halted> {
+    pub(crate) fn end(&mut self, stop: &Stop) -> Option<FinalHold> {
         let halted = self.guard.halt();
         self.event(stop.event_kind(), stop.to_string());
-        self.tell(halted.as_ref());
+        self.report_final_hold(halted.as_ref());
         self.leave();
         halted
     }
 
-    /// Where the rig holds, or that nobody knows whether it does.
-    fn tell(&mut self, halted: Option<&Halted>) {
+    /// The position at which the rig holds, or that the hold is not confirmed.
+    fn report_final_hold(&mut self, halted: Option<&FinalHold>) {
         if let Some(halted) = halted {
             let kind = if halted.is_held() {
                 EventKind::Held
@@ -49,8 +50,8 @@ impl Session<'_> {
         }
     }
 
-    /// Whether a person wants the load off.
-    fn may_unload(&mut self, plan: &Plan, halted: Option<&Halted>) -> bool {
+    /// Whether the operator requests unloading.
+    fn may_unload(&mut self, plan: &Plan, halted: Option<&FinalHold>) -> bool {
         let place = |places: &[f64]| {
             places
                 .iter()
@@ -74,7 +75,7 @@ impl Session<'_> {
             match self.observer.may_unload(&question, &motion) {
                 None => return false,
                 Some(Inspection::GoOn { note, by }) => {
-                    // Older versions asked nobody.
+                    // Older versions did not ask.
                     if by.is_some() {
                         let note = note.map_or_else(String::new, |note| format!(": {note}"));
                         self.event(
@@ -95,7 +96,7 @@ impl Session<'_> {
                     if let Err(stop) = self.breathe() {
                         let halted = self.guard.halt();
                         self.event(stop.event_kind(), stop.to_string());
-                        self.tell(halted.as_ref());
+                        self.report_final_hold(halted.as_ref());
                         return false;
                     }
                 }
@@ -104,7 +105,7 @@ impl Session<'_> {
     }
 
     /// The motion that takes the load off.
-    fn unloading(&self, plan: &Plan, halted: Option<&Halted>) -> Motion {
+    fn unloading(&self, plan: &Plan, halted: Option<&FinalHold>) -> Motion {
         let found = halted.and_then(|halted| halted.found.as_ref());
         let from = found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice());
         let over = |values: &mut dyn Iterator<Item = f64>| {
@@ -137,7 +138,7 @@ impl Session<'_> {
         }
     }
 
-    /// Takes the load off after a stop, inside the same limits; what stands in the way is one more event.
+    /// Unloads after a stop, inside the same limits; a fault is one more event.
     fn unload(&mut self) {
         self.event(EventKind::Hold, UNLOADING.to_owned());
         let home = self.home.clone();
@@ -148,6 +149,6 @@ impl Session<'_> {
             self.event(stop.event_kind(), format!("not unloaded: {stop}"));
         }
         let halted = self.guard.halt();
-        self.tell(halted.as_ref());
+        self.report_final_hold(halted.as_ref());
     }
 }

@@ -1,5 +1,6 @@
-//! Where a real rig must stand when a run begins: at the plan's zero. The plan's targets count from there, so that a rig that stands
-//! elsewhere would be sent all the way there by its first one. In: readings at rest. Out: why the run does not begin.
+//! The required position of a real rig when a run begins: the plan's zero. The plan's targets count from there, so the
+//! first target would move a rig at a different position all the way. In: readings at rest. Out: the reason why the run
+//! does not begin.
 
 use super::replay::Bands;
 use super::session::Session;
@@ -8,14 +9,14 @@ use crate::plan::{Datum, Gate, Plan, RealLink};
 use crate::record::EventKind;
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
-use crate::rig::{named_axis, place_and_force};
+use crate::rig::{named_axis, position_and_force};
 use crate::units::Dimension;
 use crate::units::display::{plain, readable, stated};
 
 /// Displacements of every axis, m, and forces, N.
 pub(super) type AtRest<'a> = (&'a [f64], &'a [f64]);
 
-/// How near the axis at this place must stand to the plan's zero, m: as near as it settles at a target.
+/// The largest distance of the axis with this index from the plan's zero \[m\]: its settling band.
 pub fn band(plan: &Plan, link: &RealLink, axis: usize) -> f64 {
     let settled = Bands::of(&plan.rig, link)
         .displacement
@@ -30,14 +31,14 @@ pub fn band(plan: &Plan, link: &RealLink, axis: usize) -> f64 {
     }
 }
 
-/// Whether the rig stands at the plan's zero. Records of older versions say nothing of where that lies, and nobody asked.
+/// Whether the rig is at the plan's zero. Run logs of older versions do not state its position, and were not checked.
 pub(super) fn check(
     plan: &Plan,
     link: &RealLink,
     session: &Session<'_>,
     (places, forces): AtRest<'_>,
 ) -> Result<(), Stop> {
-    if session.guard.datum().is_none() || !failpoint::on(Guarding::GateStart) {
+    if session.guard.datum().is_none() || !failpoint::on(Guarding::PretestStart) {
         return Ok(());
     }
     for (axis, (place, force)) in places.iter().zip(forces).enumerate() {
@@ -65,10 +66,10 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Where the rig stands and what it feels there, and where that is of its own where the plan's zero is not.
-pub(super) fn told(session: &Session<'_>) -> String {
+/// The position and force of the rig, and its own coordinate if the plan's zero is different.
+pub(super) fn describe(session: &Session<'_>) -> String {
     let (places, forces) = session.guard.found();
-    let stands = format!("at {}", place_and_force(places, forces));
+    let stands = format!("at {}", position_and_force(places, forces));
     let own = session.guard.datum().unwrap_or_default();
     if own.iter().all(|place| *place == 0.0) {
         return stands;
@@ -83,8 +84,8 @@ pub(super) fn told(session: &Session<'_>) -> String {
     )
 }
 
-/// Puts on record where the plan's zero lies, where that is not the rig's own.
-pub(super) fn tell(link: &RealLink, session: &mut Session<'_>) {
+/// Logs the position of the plan's zero, if it is not the rig's own.
+pub(super) fn log_datum(link: &RealLink, session: &mut Session<'_>) {
     let Some(datum) = session
         .guard
         .datum()

@@ -1,4 +1,4 @@
-//! Why a run does not go on, and what that makes of it.
+//! The reasons for an early end of a run, and the outcome of each.
 
 use std::borrow::Cow;
 
@@ -8,17 +8,17 @@ use crate::rig::RigFault;
 use crate::units::Dimension;
 use crate::units::display::stated;
 
-/// What ends a run before its end. The rig holds by then.
+/// The reason for an early end of a run. The rig holds by then.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Stop {
     Rig(RigFault),
-    /// A reading outside its limit before anything was told to move.
+    /// A reading outside its limit before any command to move.
     AtRest(RigFault),
-    /// A person said so, or asked the program to end.
+    /// The operator requested it, or asked the program to end.
     Person {
         reason: String,
     },
-    /// Nobody released the rig: nothing has moved.
+    /// The rig was not released: nothing has moved.
     NotReleased {
         reason: String,
     },
@@ -26,7 +26,7 @@ pub(crate) enum Stop {
     Gate {
         reason: String,
     },
-    /// An input of a procedure has no value, for it reads a result that does not exist.
+    /// An input of a procedure has no value, because it reads a result that does not exist.
     NoInput {
         field: &'static str,
         error: FormulaError,
@@ -84,7 +84,7 @@ impl Stop {
         )
     }
 
-    /// Whether it was a person who ended the run.
+    /// Whether the operator ended the run.
     pub(super) const fn is_a_persons(&self) -> bool {
         matches!(
             self,

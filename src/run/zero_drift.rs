@@ -1,5 +1,5 @@
-//! The zeros of a rig, read before the first procedure and after the last. In: how far they may drift, and how the force is
-//! known again. Out: a [`Drift`] of the record, told as notes. It judges no requirement.
+//! The zeros of a rig, read before the first procedure and after the last. In: the limits of their drift, and the way to
+//! unload. Out: a [`Drift`] of the record, reported as notes. It assesses no requirement.
 
 use super::session::Session;
 use super::stop::Stop;
@@ -14,10 +14,10 @@ use crate::units::display::readable;
 /// Readings that make a zero.
 pub(crate) const READINGS: u32 = 10;
 
-/// What a person does before the zero of a free cell is read.
+/// The instruction to the operator before the zero of a free cell is read.
 const TAKE_OFF: &str = "take the specimen off the load cell: its zero is read, and nothing moves";
 
-/// Nothing loads the specimen: reads the zeros, and has holds told from here on.
+/// The specimen is unloaded: reads the zeros, and has dwells evaluated from here on.
 pub(crate) fn before(check: DriftCheck, session: &mut Session<'_>) -> Result<Drift, Stop> {
     let axes = zeros(check.over, session)?
         .into_iter()
@@ -32,7 +32,7 @@ pub(crate) fn before(check: DriftCheck, session: &mut Session<'_>) -> Result<Dri
         axes,
         held: Held::default(),
     };
-    let said = drift.axes.iter().map(|axis| told(&axis.before));
+    let said = drift.axes.iter().map(|axis| describe(&axis.before));
     session.event(
         EventKind::Note,
         format!("zero before the test: {}", listed(said)),
@@ -61,7 +61,7 @@ pub(crate) fn after(
     let said = said.map(|(zero, (by, _))| {
         format!(
             "{}, {} from that before",
-            told(zero),
+            describe(zero),
             readable(by, Dimension::FORCE)
         )
     });
@@ -73,7 +73,7 @@ pub(crate) fn after(
 }
 
 /// `2 mN, drift 0.1 mN/s`
-fn told(zero: &Zero) -> String {
+fn describe(zero: &Zero) -> String {
     let slope = readable(zero.force_slope, Dimension::FORCE);
     format!(
         "{} at rest, drift {slope}/s",
@@ -95,7 +95,7 @@ fn listed(said: impl Iterator<Item = String>) -> String {
         .join("; ")
 }
 
-/// Readings over some seconds, where the rig stands.
+/// Readings over some seconds, at the present position.
 fn zeros(over: f64, session: &mut Session<'_>) -> Result<Vec<Zero>, Stop> {
     let mut readings = vec![session.guard.read()?];
     for _ in 1..READINGS {

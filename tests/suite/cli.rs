@@ -470,6 +470,13 @@ fn limits_lists_the_bounds_of_every_stage() {
     );
     assert!(
         has(
+            psd::plan::MOST_RECORDED_STEPS.to_string(),
+            "steps of all procedures of one run"
+        ),
+        "{listed}"
+    );
+    assert!(
+        has(
             psd::record::journal::MOST_BYTES.to_string(),
             "the record of one run"
         ),
@@ -478,7 +485,7 @@ fn limits_lists_the_bounds_of_every_stage() {
 }
 
 #[test]
-fn a_run_whose_record_nobody_could_read_back_does_not_begin() {
+fn a_run_of_too_many_steps_does_not_begin() {
     let bench = Bench::new(&[(
         "long.psd",
         &changed("time_step = 10 ms", "time_step = 0.1 us"),
@@ -493,8 +500,7 @@ fn a_run_whose_record_nobody_could_read_back_does_not_begin() {
         .with(2)
         .stderr;
     assert!(
-        told.contains("none of more than 4.3 GB is read back")
-            && told.contains("a longer `time_step`"),
+        told.contains("one run has at most 2000000 steps") && told.contains("a longer `time_step`"),
         "{told}"
     );
     assert!(

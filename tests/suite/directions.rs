@@ -38,7 +38,7 @@ const DRIVERS: &[&str] = &[
     "language/check/procedures.rs",
     "language/check/warnings/left.rs",
     "language/check/warnings/mod.rs",
-    "language/check/warnings/record_size.rs",
+    "language/check/warnings/recorded_steps.rs",
     "language/check/warnings/tracking.rs",
     "report/budget/line.rs",
     "report/figures/mod.rs",

@@ -182,14 +182,6 @@ const LONG: &[&str] = &[
     "emulator/firmware/native/mod.rs",
     "emulator/firmware/native/tests.rs",
     "emulator/script.rs",
-    "record/mod.rs",
-    "rig/controllers/native/codec.rs",
-    "rig/guard/mod.rs",
-    "rig/real/tests.rs",
-    "run/replay/resume_decision.rs",
-    "run/replay/resume_tests.rs",
-    "run/replay/rig.rs",
-    "run/replay/tests.rs",
 ];
 
 #[test]

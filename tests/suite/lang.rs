@@ -32,7 +32,7 @@ const WITHOUT_CASE: &[(Code, &str)] = &[
         "needs 64 files; the page of `psd explain` has the plan",
     ),
     (
-        Code::NoRoom,
+        Code::DiskSpace,
         "is of the machine; tests/system/disk.rs has a disk that is too small",
     ),
 ];

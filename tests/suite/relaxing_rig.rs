@@ -7,7 +7,7 @@ use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{History, Outcome};
 use psd::rig::real::RealRig;
-use psd::rig::{Wish, controllers};
+use psd::rig::{StopRequest, controllers};
 use psd::run::{Unwatched, run};
 
 const PLAN: &str = r#"
@@ -63,16 +63,23 @@ fn a_real_rig_says_when_it_moved() {
     let stand = of_plan(&plan, &Script::default(), Log::none(), 1, Some(0x7f3a)).expect("a stand");
     let shared = InProcess::new(stand).at_baud(115_200.0);
     let link = plan.rig.link.as_real().expect("a real rig");
-    let (wish, clock) = (Wish::default(), || Box::new(shared.clock()));
+    let (stop_request, clock) = (StopRequest::default(), || Box::new(shared.clock()));
     let actuator = controllers::open(
         &link.actuator,
         Box::new(shared.port(0)),
         clock(),
-        wish.clone(),
+        stop_request.clone(),
         plan.rig.settle.timeout,
     );
-    let mut rig =
-        RealRig::open(&plan.rig, &plan.limits, actuator, None, clock(), wish).expect("it answers");
+    let mut rig = RealRig::open(
+        &plan.rig,
+        &plan.limits,
+        actuator,
+        None,
+        clock(),
+        stop_request,
+    )
+    .expect("it answers");
     let record = run(&plan, &mut rig, &mut Unwatched);
     assert_eq!(record.outcome, Outcome::Completed);
     let ramp = record.procedure("k").expect("it ran");

@@ -7,7 +7,7 @@ use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{EventKind, History, Outcome, Record};
 use psd::rig::real::RealRig;
-use psd::rig::{Wish, controllers};
+use psd::rig::{StopRequest, controllers};
 use psd::run::{Unwatched, run};
 
 /// c and the Coulomb force of the bench, N·s/m and N.
@@ -76,16 +76,23 @@ fn over_a_line(baud: f64, seed: u64) -> Record {
         of_plan(&plan, &Script::default(), Log::none(), seed, Some(0x7f3a)).expect("a stand");
     let shared = InProcess::new(stand).at_baud(baud);
     let link = plan.rig.link.as_real().expect("a real rig");
-    let (wish, clock) = (Wish::default(), || Box::new(shared.clock()));
+    let (stop_request, clock) = (StopRequest::default(), || Box::new(shared.clock()));
     let actuator = controllers::open(
         &link.actuator,
         Box::new(shared.port(0)),
         clock(),
-        wish.clone(),
+        stop_request.clone(),
         plan.rig.settle.timeout,
     );
-    let mut rig =
-        RealRig::open(&plan.rig, &plan.limits, actuator, None, clock(), wish).expect("it answers");
+    let mut rig = RealRig::open(
+        &plan.rig,
+        &plan.limits,
+        actuator,
+        None,
+        clock(),
+        stop_request,
+    )
+    .expect("it answers");
     run(&plan, &mut rig, &mut Unwatched)
 }
 

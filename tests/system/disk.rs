@@ -207,9 +207,9 @@ fn a_disk_that_fills_up_holds_the_rig_and_the_run_goes_on_when_there_is_room() {
     let stage = Stage::new();
     fs::create_dir(stage.path("run")).unwrap();
     fs::create_dir(stage.path("kept")).unwrap();
-    // Room for the whole run, as it is reckoned; a file beside takes it once the run moves.
+    // Enough free space to begin; a file beside the record takes it once the run moves.
     let script = r#"set -e
-mount -t tmpfs -o size=12m tmpfs "$1/run"
+mount -t tmpfs -o size=220m tmpfs "$1/run"
 "$2" run "$1/plan.psd" --rig bench --operator "A. Tester" --yes --out "$1/run" & ran=$!
 for wait in $(seq 2000); do
   if grep -q "bench move 5 " "$1/simulator-1.log"; then break; fi
@@ -245,13 +245,13 @@ exit $status
 }
 
 #[test]
-fn a_disk_that_is_too_small_for_the_whole_run_is_found_before_anything_moves() {
+fn a_disk_with_too_little_free_space_is_found_before_anything_moves() {
     if !needs::own_mounts() {
         return;
     }
     let stage = Stage::new();
     fs::create_dir(stage.path("small")).unwrap();
-    // Room for the reserve and the whole record, and not for the results.
+    // Enough for the reserve and the whole record, and less than a run needs to begin.
     let script = r#"set -e
 mount -t tmpfs -o size=2m tmpfs "$1/small"
 status=0; "$2" run "$1/plan.psd" --rig bench --operator "A. Tester" --yes --out "$1/small/run" || status=$?
@@ -266,12 +266,14 @@ exit $status
     );
     assert_eq!(ran.code, Some(3), "{}", ran.told);
     assert!(
-        ran.told.contains("error[E629]") && ran.told.contains("1.0 MB left; nothing has moved"),
+        ran.told.contains("error[E629]")
+            && ran.told.contains("1.0 MB of free space")
+            && ran.told.contains("nothing has moved"),
         "{}",
         ran.told
     );
     assert!(
-        ran.told.contains("`--out`") && ran.told.trim_end().ends_with("says what is reckoned"),
+        ran.told.trim_end().ends_with("another disk with `--out`"),
         "no folder is left: {}",
         ran.told
     );

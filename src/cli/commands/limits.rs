@@ -67,10 +67,16 @@ pub fn limits() -> Result<Exit, Failure> {
         ),
     ]
     .map(|(bound, what)| (format!("{bound:.0}"), what));
-    let record = [(
-        journal::MOST_BYTES.to_string(),
-        "bytes of the record of one run",
-    )];
+    let record = [
+        (
+            plan::MOST_RECORDED_STEPS.to_string(),
+            "steps of all procedures of one run",
+        ),
+        (
+            journal::MOST_BYTES.to_string(),
+            "bytes of the record of one run",
+        ),
+    ];
     print_result(&counted.iter().chain(&reckoned).chain(&record).fold(
         String::new(),
         |mut text, (bound, what)| {

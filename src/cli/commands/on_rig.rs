@@ -13,7 +13,7 @@ use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::plan::{Link, Plan};
 use crate::report::Provenance;
-use crate::rig::{Wish, virtual_rig};
+use crate::rig::{StopRequest, virtual_rig};
 use crate::run::replay;
 use crate::run::replay::Recorded;
 
@@ -68,7 +68,7 @@ fn on_a_virtual_rig(
     attendance: &Attendance,
     settings: Settings,
 ) -> Result<Ran, Failure> {
-    let signals = Signals::caught(&Wish::default()).map_err(Failure::Signals)?;
+    let signals = Signals::caught(&StopRequest::default()).map_err(Failure::Signals)?;
     let mut watcher = Watcher::new(settings, attendance, plan, true, signals);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
@@ -104,7 +104,7 @@ fn on_a_real_rig(
     settings: Settings,
 ) -> Result<Ran, Failure> {
     let (expected, _) = expected::of(plan);
-    let mut opened = real_rig::open(plan, attendance, &Wish::default(), settings)?;
+    let mut opened = real_rig::open(plan, attendance, &StopRequest::default(), settings)?;
     opened.watcher.expect(expected);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);

@@ -10,7 +10,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::finish_run;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::{ReadRecord, journal_of};
-use crate::cli::files::{disk_space, plan_file, provenance};
+use crate::cli::files::{plan_file, provenance};
 use crate::cli::operator::watch::{Attendance, Shared, Signals, Watcher};
 use crate::cli::operator::{confirm_release, expected, held, real_rig};
 use crate::cli::output::{print_message, print_result};
@@ -23,10 +23,11 @@ use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::report::Provenance;
 use crate::rig::real::RealRig;
-use crate::rig::{Rig as _, Wish, connect};
+use crate::rig::{Rig as _, StopRequest, connect};
 use crate::run::replay;
 use crate::run::replay::{
-    AmendBody, Assurance, Bands, GoesOn, Header, Played, Recorded, RecoverBody, ResumeBody, RigBody,
+    AmendBody, Assurance, Bands, Continuation, Header, LoggedRun, Recorded, RecoverBody,
+    ResumeBody, RigBody,
 };
 
 /// Goes on with one run.
@@ -46,7 +47,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let read = record_file::from_bytes(&path, &storage.contents()?)?;
     if read.played.ended {
         let run = arguments.run.display();
-        let failure = Failure::file(&arguments.run, replay::Refusal::Ended.to_string());
+        let failure = Failure::file(&arguments.run, replay::ResumeRefusal::Ended.to_string());
         // The manifest is written last.
         return Err(if arguments.run.join(MANIFEST).exists() {
             failure
@@ -78,7 +79,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
 
     replay::same_measure(&read.plan.rig, &plan.rig)?;
     replay::not_restarted(&read.played, &assured(arguments))?;
-    disk_space::enough(&arguments.run, &storage, &plan, read.recovered.whole)?;
+    record_file::check_disk_space(&arguments.run, &storage)?;
 
     let steps = read
         .played
@@ -91,7 +92,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         yes: arguments.yes,
         operator: Some(arguments.operator.clone()),
     };
-    let wish = Wish::default().letting_go(arguments.let_go);
+    let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
     // Its zero is where it was when the run began, wherever the rig stands now.
     let datum = read
         .played
@@ -99,7 +100,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         .as_ref()
         .and_then(|rig| rig.datum.as_deref());
     let at_its_datum = plan.rig.with_recorded_datum(datum);
-    let signals = Signals::caught(&wish).map_err(Failure::Signals)?;
+    let signals = Signals::caught(&stop_request).map_err(Failure::Signals)?;
     let simulated = read
         .played
         .last_rig
@@ -115,13 +116,13 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let (mut connected, mut torn) = (None, None);
     let (opened, put_aside) = (&mut connected, &mut torn);
     let begin = || {
-        if wish.wants_end() {
+        if stop_request.end_requested() {
             return Err(Failure::NotReleased {
                 reason: "stopped on request".to_owned(),
             });
         }
         let rig = &mut opened
-            .insert(connect(&at_its_datum, &plan.limits, &wish)?)
+            .insert(connect(&at_its_datum, &plan.limits, &stop_request)?)
             .rig;
         watcher.borrow_mut().watch(rig.live());
         watcher.borrow_mut().expect(expected);
@@ -136,8 +137,11 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
 
         // From here on the run goes on: until now the record has not changed.
         *put_aside = storage.truncate_to(read.recovered.whole)?;
-        let mut journal =
-            Journal::go_on(Box::new(storage), Durability::EveryPromise, &read.recovered);
+        let mut journal = Journal::reopen(
+            Box::new(storage),
+            Durability::EverySyncPoint,
+            &read.recovered,
+        );
         let mut played = read.played.clone();
         if let Some(torn) = put_aside {
             let name = torn
@@ -169,10 +173,10 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         journal.sync()?;
         played.resumed(resumption);
         put_results_aside(&arguments.run)?;
-        Ok(GoesOn {
+        Ok(Continuation {
             rig,
             journal,
-            played,
+            logged: played,
         })
     };
     let recorded = replay::resume(
@@ -262,7 +266,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
     }
     let now = Equipment::of(&plan, was.device.clone());
     if let Some(what) = was.measures_otherwise(&now) {
-        return Err(replay::Refusal::OtherMeasure { what }.into());
+        return Err(replay::ResumeRefusal::OtherMeasure { what }.into());
     }
     differences.extend(was.changes(&now));
     header.equipment = Some(now);
@@ -320,7 +324,7 @@ fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
         .played
         .rig
         .as_ref()
-        .ok_or(replay::Refusal::NothingRecorded)?;
+        .ok_or(replay::ResumeRefusal::NothingRecorded)?;
     Ok(Equipment::of(
         &read.plan,
         Device::of(&rig.identity, rig.noise),
@@ -364,14 +368,14 @@ fn settle(
     arguments: &ResumeArguments,
     plan: &Plan,
     link: &RealLink,
-    played: &Played,
+    played: &LoggedRun,
     rig: &mut RealRig,
     watcher: &mut Watcher,
 ) -> Result<ResumeBody, Failure> {
     let recorded = played
         .last_rig
         .as_ref()
-        .ok_or(replay::Refusal::NothingRecorded)?;
+        .ok_or(replay::ResumeRefusal::NothingRecorded)?;
     let assured = assured(arguments);
     replay::same_rig(&recorded.identity, &rig.identity(), &assured)?;
     replay::same_resolution(recorded.noise, rig.declared_noise())?;

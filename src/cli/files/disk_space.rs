@@ -1,60 +1,22 @@
-//! Disk space for a run, checked before anything moves. In: a plan, and the free space of the file system. Out: nothing, or
-//! [`NoRoom`] with both numbers. It deletes nothing.
+//! The least free space of a disk before anything moves. In: the run folder and its free space. Out: nothing, or a
+//! [`DiskSpaceFault`] with both amounts. It frees nothing.
 
 use std::path::Path;
 
-use crate::cli::output::print_message;
-use crate::files::failure::{Failure, NoRoom, amount};
-use crate::plan::Plan;
-use crate::procedures::storage_bound;
-use crate::record::journal::{FileStorage, MOST_BYTES};
+use crate::files::failure::{DiskSpaceFault, LEAST_FREE_BYTES};
 use crate::rig::safety::failpoint::{Guarding, on};
-use crate::text::diagnostic::excerpt::escape;
 
-/// Asks the disk of a record that is about to be written, of which `written` bytes are there already.
+/// Compares the free space of a disk \[bytes\] with [`LEAST_FREE_BYTES`].
 ///
 /// # Errors
-/// Too little space, or the file system does not report it.
-pub fn enough(
-    folder: &Path,
-    storage: &FileStorage,
-    plan: &Plan,
-    written: u64,
-) -> Result<(), Failure> {
-    let need = storage_bound::of(plan);
-    can_be_read(folder, need.record)?;
-    fits(folder, need.bytes.saturating_sub(written), storage.room()?)?;
-    if !need.unknown.is_empty() {
-        let names: Vec<String> = need.unknown.iter().map(|name| escape(name)).collect();
-        print_message(&format!(
-            "  not reckoned: the room on the disk that {} may take hangs on what is measured before\n",
-            names.join(", ")
-        ));
-    }
-    Ok(())
-}
-
-/// A record that is too long to be read back cannot be verified, and its run cannot be resumed.
-fn can_be_read(folder: &Path, record: u64) -> Result<(), Failure> {
-    if record <= MOST_BYTES {
-        return Ok(());
-    }
-    let (record, most) = (amount(record), amount(MOST_BYTES));
-    let told = format!(
-        "the record of the run may take {record}, and none of more than {most} is read back; nothing has moved"
-    );
-    Err(Failure::file(folder, told)
-        .help("a shorter `duration` or a longer `time_step` makes it shorter; `psd limits` tells every bound"))
-}
-
-fn fits(folder: &Path, need: u64, room: u64) -> Result<(), NoRoom> {
-    if need <= room || !on(Guarding::Room) {
+/// It is less.
+pub fn compare(folder: &Path, free: u64) -> Result<(), DiskSpaceFault> {
+    if free >= LEAST_FREE_BYTES || !on(Guarding::DiskSpace) {
         Ok(())
     } else {
-        Err(NoRoom {
+        Err(DiskSpaceFault {
             folder: folder.to_owned(),
-            need,
-            room,
+            free,
         })
     }
 }
@@ -62,6 +24,7 @@ fn fits(folder: &Path, need: u64, room: u64) -> Result<(), NoRoom> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::failure::amount;
     use crate::plan::ProcedureKind;
     use crate::record::journal::{Durability, Journal, Storage};
     use crate::rig::safety::failpoint::without;
@@ -70,7 +33,7 @@ mod tests {
     use crate::tests::testing::{elastic_plan, ramp};
     use std::io;
 
-    /// A disk with this many free bytes.
+    /// A disk with this free space, bytes.
     struct Small(usize);
 
     impl Storage for Small {
@@ -91,16 +54,12 @@ mod tests {
         }
     }
 
-    /// Whether the run completed on such a disk.
-    fn ran_on(room: u64) -> Result<bool, NoRoom> {
+    /// Whether the run was completed on such a disk, if it began.
+    fn ran_on(free: u64) -> Result<bool, DiskSpaceFault> {
         let plan = elastic_plan(1e5, vec![ProcedureKind::StiffnessRamp(ramp(1e-4))]);
-        fits(
-            Path::new("runs/beam-1"),
-            storage_bound::of(&plan).bytes,
-            room,
-        )?;
-        let disk = Small(usize::try_from(room).unwrap());
-        let mut journal = Journal::create(Box::new(disk), Durability::EveryPromise);
+        compare(Path::new("runs/beam-1"), free)?;
+        let disk = Small(usize::try_from(free).unwrap());
+        let mut journal = Journal::create(Box::new(disk), Durability::EverySyncPoint);
         replay::begin(
             &mut journal,
             &crate::tests::testing::header(),
@@ -121,35 +80,29 @@ mod tests {
     }
 
     #[test]
-    fn a_run_whose_record_would_not_fit_does_not_begin_and_would_end_in_the_middle() {
+    fn a_run_on_a_disk_that_is_nearly_full_does_not_begin_and_would_end_in_the_middle() {
         assert!(ran_on(1 << 30).unwrap());
         assert!(ran_on(3000).is_err());
         assert!(
-            !without(Guarding::Room, || ran_on(3000)).unwrap(),
-            "it is the look at the room that refuses"
+            !without(Guarding::DiskSpace, || ran_on(3000)).unwrap(),
+            "only the check of the free space refuses"
         );
     }
 
     #[test]
-    fn what_fits_to_the_byte_fits_and_one_less_does_not() {
+    fn a_disk_with_the_least_free_space_is_accepted_and_one_byte_less_is_not() {
         let folder = Path::new("runs/beam-1");
-        assert_eq!(fits(folder, 1_500_000, 1_500_000), Ok(()));
-        let refused = fits(folder, 12_400_000, 9_960_000).unwrap_err();
+        assert_eq!(compare(folder, LEAST_FREE_BYTES), Ok(()));
+        assert!(compare(folder, LEAST_FREE_BYTES - 1).is_err());
+        let refused = compare(folder, 9_960_000).unwrap_err();
         assert_eq!(
             refused.to_string(),
-            "runs/beam-1: the run may write 12 MB, and its disk has 10 MB left; nothing has moved"
+            "runs/beam-1: its disk has 10 MB of free space, and a run begins with at least 200 MB; nothing has moved"
         );
         assert!(
-            refused.help().starts_with("free 2.4 MB, or name a folder"),
+            refused.help().starts_with("free 190 MB, or name a folder"),
             "{}",
             refused.help()
-        );
-        assert!(fits(folder, 1, 0).is_err());
-        assert!(can_be_read(folder, MOST_BYTES).is_ok());
-        let refused = can_be_read(folder, MOST_BYTES + 1).unwrap_err().to_string();
-        assert!(
-            refused.contains("may take 4.3 GB, and none of more than 4.3 GB is read back"),
-            "{refused}"
         );
         assert_eq!(
             (amount(999), amount(999_600), amount(5_000_000_000_000)),

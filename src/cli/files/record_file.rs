@@ -46,7 +46,7 @@ pub fn header(
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
         equipment: Some(Equipment::of(plan, device)),
-        rehearsal: rehearsal::told(plan).is_some(),
+        rehearsal: rehearsal::rehearsed_plan(plan).is_some(),
         served,
         date: settings.date.clone(),
         operator,
@@ -65,15 +65,20 @@ pub fn texts(plan: &Plan) -> Vec<String> {
     plan.files.iter().map(|file| file.text.clone()).collect()
 }
 
-/// Opens the record of a run before it begins; the disk must have space for all of it.
+/// Checks the disk of a run log that is about to be written.
+///
+/// # Errors
+/// Its free space is too small, or the file system does not report it.
+pub fn check_disk_space(folder: &Path, storage: &FileStorage) -> Result<(), Failure> {
+    Ok(disk_space::compare(folder, storage.free_space()?)?)
+}
+
+/// Opens the run log of a run that is about to begin, if its disk has enough free space.
 pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     let path = journal_of(folder);
     // A run that did not begin leaves no file, and its empty folder is removed.
     let storage = FileStorage::create(&path).inspect_err(|_| drop(std::fs::remove_dir(folder)))?;
-    // The number of requests of a client is not known.
-    if header.served.is_none()
-        && let Err(failure) = disk_space::enough(folder, &storage, plan, 0)
-    {
+    if let Err(failure) = check_disk_space(folder, &storage) {
         drop(storage);
         let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(folder));
         return Err(failure);
@@ -88,7 +93,7 @@ pub fn begin_nowhere(plan: &Plan, header: &Header) -> Result<Journal, Failure> {
 
 fn begin_in(storage: Box<dyn Storage>, plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     let durability = if plan.rig.link.as_real().is_some() {
-        Durability::EveryPromise
+        Durability::EverySyncPoint
     } else {
         Durability::Buffered
     };

@@ -4,8 +4,8 @@
 use super::watch::Watcher;
 use crate::cli::exit::Failure;
 use crate::plan::{Plan, RealLink};
-use crate::rig::{Reading, Rig, RigFault, place_and_force};
-use crate::run::replay::{Decision, Doubt};
+use crate::rig::{Reading, Rig, RigFault, position_and_force};
+use crate::run::replay::{ResumeDecision, TargetStatus};
 use crate::run::{Inspection, Motion, Observer as _};
 use crate::units::Dimension;
 use crate::units::display::{plain, readable};
@@ -18,7 +18,7 @@ pub fn ask(
     plan: &Plan,
     link: &RealLink,
     found: &Reading,
-    decision: &Decision,
+    decision: &ResumeDecision,
     rig: &mut dyn Rig,
     watcher: &mut Watcher,
 ) -> Result<String, Failure> {
@@ -53,7 +53,7 @@ fn refused(watcher: &mut Watcher, reason: String) -> Failure {
 }
 
 /// What was found, what would move, and how.
-fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &Decision) -> String {
+fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
     format!(
         "resume on rig {}: {}",
         plan.rig.name,
@@ -61,7 +61,7 @@ fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &Decision) 
     )
 }
 
-fn next(link: &RealLink, found: &Reading, decision: &Decision) -> String {
+fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
     let places = |places: &[f64]| {
         places
             .iter()
@@ -71,8 +71,8 @@ fn next(link: &RealLink, found: &Reading, decision: &Decision) -> String {
     };
     let at = |speed: f64| plain(speed, Dimension::VELOCITY, 4);
     let own = at(link.own_speed);
-    let next = match (&decision.sends, &decision.doubt) {
-        (Some((to, speed)), Doubt::NotExecuted) => {
+    let next = match (&decision.sends, &decision.target_status) {
+        (Some((to, speed)), TargetStatus::NotExecuted) => {
             format!(
                 "the last target did not arrive: it will move to {} at {}, then as the plan says",
                 places(to),
@@ -86,7 +86,7 @@ fn next(link: &RealLink, found: &Reading, decision: &Decision) -> String {
                 at(*speed)
             )
         }
-        (None, Doubt::Stroke { back_to, others }) => {
+        (None, TargetStatus::Stroke { back_to, others }) => {
             let to: Vec<f64> = std::iter::once(*back_to)
                 .chain(others.iter().copied())
                 .collect();
@@ -95,7 +95,7 @@ fn next(link: &RealLink, found: &Reading, decision: &Decision) -> String {
                 places(&to)
             )
         }
-        (None, Doubt::RestOfTheWay { .. }) => {
+        (None, TargetStatus::RestOfTheWay { .. }) => {
             "a way was cut off: it will go the rest of it from here, then as the plan says"
                 .to_owned()
         }
@@ -107,6 +107,6 @@ fn next(link: &RealLink, found: &Reading, decision: &Decision) -> String {
     };
     format!(
         "found at {}; {next}",
-        place_and_force(&found.displacement, &found.force)
+        position_and_force(&found.displacement, &found.force)
     )
 }

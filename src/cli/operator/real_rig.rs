@@ -7,7 +7,7 @@ use crate::cli::files::record_file::Circumstances;
 use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
-use crate::rig::{Connected, Rig as _, Wish, connect};
+use crate::rig::{Connected, Rig as _, StopRequest, connect};
 use crate::run::replay::Wall;
 
 /// Whether nobody is named on the command line, and nobody can be asked.
@@ -69,31 +69,31 @@ pub struct Opened {
     pub watcher: Watcher,
 }
 
-/// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on, and become `wish`: to be killed in
+/// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on, and become `stop_request`: to be killed in
 /// the middle of a word is no way to leave a rig.
 pub fn open(
     plan: &Plan,
     attendance: &Attendance,
-    wish: &Wish,
+    stop_request: &StopRequest,
     settings: Settings,
 ) -> Result<Opened, Failure> {
-    let signals = Signals::caught(wish).map_err(Failure::Signals)?;
-    let connected = connect(&plan.rig, &plan.limits, wish)?;
+    let signals = Signals::caught(stop_request).map_err(Failure::Signals)?;
+    let connected = connect(&plan.rig, &plan.limits, stop_request)?;
     let simulated = connected.rig.identity().simulated;
     let mut watcher = Watcher::new(settings, attendance, plan, simulated, signals);
     watcher.watch(connected.rig.live());
     Ok(Opened { connected, watcher })
 }
 
-/// [`open`] for a client that drives: watched in lines, and `wish` is what signals become.
+/// [`open`] for a client that drives: watched in lines, and `stop_request` is what signals become.
 pub fn open_for_client(
     plan: &Plan,
     attendance: &Attendance,
     settings: Settings,
-    wish: &Wish,
+    stop_request: &StopRequest,
 ) -> Result<Opened, Failure> {
-    let signals = Signals::caught(wish).map_err(Failure::Signals)?;
-    let connected = connect(&plan.rig, &plan.limits, wish)?;
+    let signals = Signals::caught(stop_request).map_err(Failure::Signals)?;
+    let connected = connect(&plan.rig, &plan.limits, stop_request)?;
     let simulated = connected.rig.identity().simulated;
     let watcher = Watcher::in_lines(settings, attendance, plan, simulated, signals);
     Ok(Opened { connected, watcher })

@@ -204,7 +204,7 @@ pub fn plan(
         if findings == Findings::WarningsToo {
             warnings::tracking::warn(checker, &plan, &blocks, rig_block);
         }
-        warnings::record_size::fits(checker, &plan, &blocks);
+        warnings::recorded_steps::check(checker, &plan, &blocks);
     }
     Some(plan)
 }

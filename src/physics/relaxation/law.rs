@@ -5,7 +5,7 @@
 //! - 1 − e^(−t/τ): exponential, as a Maxwell branch;
 //! - ln(1 + t/t₀): with the logarithm of time, as creep by Lomnitz's law (Garra, Mainardi & Spada, *A generalization of the
 //!   Lomnitz logarithmic creep law via Hadamard fractional calculus*, 2017, arXiv:1701.03068). Every decade of time takes the same
-//! part, without end: the result is therefore the rate of relaxation, not the remaining force.
+//!   part, without end: the result is therefore the rate of relaxation, not the remaining force.
 //!
 //! The relaxations of all increments of force are superposed, each from its own instant on (Boltzmann's superposition; Fung's
 //! quasi-linear viscoelasticity).

@@ -4,9 +4,12 @@
 use crate::plan::formula::Formula;
 use crate::plan::{InspectTrigger, Integrator, Mode};
 
-/// Steps of one procedure, of a frame times its storeys, at most. `check` counts them where it can, `run` where it must; of one or a
-/// few storeys what the record may hold (`MOST_RECORD_BYTES`) ends sooner.
+/// Steps of one procedure, of a frame times its storeys, at most. `check` counts them where it can, `run` where it must.
 pub const MOST_STEPS: f64 = 1e7;
+
+/// Steps of all procedures of one run, at most. A step takes 0.5 kB to 2 kB of the run log, and no run log of more than 4 GiB
+/// is read back.
+pub const MOST_RECORDED_STEPS: u64 = 2_000_000;
 
 /// What every procedure that integrates says of its steps.
 #[derive(Clone, Debug)]

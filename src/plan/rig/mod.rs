@@ -309,6 +309,24 @@ pub enum Dialect {
 }
 
 impl Dialect {
+    /// The protocols without arguments.
+    const WITHOUT_ARGUMENTS: &[Self] = &[
+        Self::Native,
+        Self::Grbl,
+        Self::Hx711,
+        Self::Indicator,
+        Self::Instron,
+        Self::Mark10,
+        Self::Mark10Gauge,
+    ];
+
+    /// The protocol without arguments that has this word in the language; None for all others.
+    #[must_use]
+    pub fn without_arguments(name: &str) -> Option<Self> {
+        let mut listed = Self::WITHOUT_ARGUMENTS.iter();
+        listed.find(|dialect| dialect.name() == name).cloned()
+    }
+
     /// The keyword of the language.
     #[must_use]
     pub const fn name(&self) -> &'static str {

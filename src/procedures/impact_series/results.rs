@@ -128,7 +128,7 @@ fn of_impacts(blows: &[Blow], left: &Left) -> Vec<NamedResult> {
 fn of_storeys(blows: &[Blow], left: &Left) -> [NamedResult; 3] {
     let rest = blows.last().and_then(|blow| blow.rest.as_ref());
     let (drift, parts) = rest
-        .map(|rest| (rest.drift(), rest.doubts_of_drifts()))
+        .map(|rest| (rest.drift(), rest.drift_contributions()))
         .unwrap_or_default();
     [
         largest_of_storeys(blows),

@@ -164,7 +164,7 @@ fn as_brought(blow: &Blow, between: Between) -> Vec<NamedResult> {
     );
     let drift = blow
         .storey()
-        .map(|_| list(left.drift, rest.drift(), rest.doubts_of_drifts()));
+        .map(|_| list(left.drift, rest.drift(), rest.drift_contributions()));
     for brought in [Some(position), drift].into_iter().flatten() {
         match results
             .iter_mut()

@@ -31,7 +31,7 @@ fn go(
 ) -> Result<(), Stop> {
     let to = inputs.number("to", &plan.to, Dimension::LENGTH)?;
     let speed = inputs.speed(plan.speed.as_ref())?;
-    for (step, target) in (1..).zip(session.guard.way_to(&[to])) {
+    for (step, target) in (1..).zip(session.guard.increments_to(&[to])) {
         session.guard.move_to(&target, speed)?;
         let (reading, broken) = session.read_kept()?;
         let (displacement, restoring_force) = first(&reading);

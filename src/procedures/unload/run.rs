@@ -132,12 +132,12 @@ fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
     };
     let position = rest.map(|rest| {
         let [floor, _] = rest.floors_of_largest();
-        let [parts, _] = rest.doubts_of(floor);
+        let [parts, _] = rest.contributions_at_floor(floor);
         (rest.largest().0, parts)
     });
     let force = rest.map(|rest| {
         let [_, floor] = rest.floors_of_largest();
-        let [_, parts] = rest.doubts_of(floor);
+        let [_, parts] = rest.contributions_at_floor(floor);
         (rest.largest().1, parts)
     });
     vec![
@@ -161,15 +161,15 @@ fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
     results.extend([
         list(
             schema::FLOOR_DISPLACEMENT,
-            rest.map(|rest| (rest.displacement.clone(), rest.doubts_of_places())),
+            rest.map(|rest| (rest.displacement.clone(), rest.position_contributions())),
         ),
         list(
             schema::RESIDUAL_DRIFT,
-            rest.map(|rest| (rest.drift(), rest.doubts_of_drifts())),
+            rest.map(|rest| (rest.drift(), rest.drift_contributions())),
         ),
         list(
             schema::RESIDUAL_SHEAR,
-            rest.map(|rest| (rest.shear(), rest.doubts_of_shears())),
+            rest.map(|rest| (rest.shear(), rest.shear_contributions())),
         ),
     ]);
     results

@@ -1,5 +1,5 @@
-//! The JSON of a record. In: anything that serde can walk. Out: one object of printable ASCII, appended to a buffer.
-//! It knows no line around it.
+//! The JSON of an entry. In: any value that serde can walk. Out: one object of printable ASCII, appended to a buffer. It
+//! knows no line.
 
 use std::io::{self, Write};
 
@@ -51,7 +51,7 @@ impl Formatter for Ascii {
         writer: &mut W,
         fragment: &str,
     ) -> io::Result<()> {
-        // Control characters never come here; DEL does.
+        // Control characters never occur here; DEL does.
         if fragment.bytes().all(|byte| byte < 0x7f) {
             return writer.write_all(fragment.as_bytes());
         }

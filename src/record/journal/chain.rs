@@ -1,5 +1,5 @@
-//! The chain: what makes order and history checkable. In: what a line says. Out: 64 hexadecimal digits that stand for
-//! it and for everything before it. It knows no line's parts.
+//! The chain, which makes order and history verifiable. In: the content of a line. Out: 64 hexadecimal digits that depend
+//! on it and on all lines before it. It knows no parts of a line.
 
 use sha2::{Digest as _, Sha256};
 
@@ -11,10 +11,10 @@ pub const CHAIN_DIGITS: usize = 64;
 pub struct Chain([u8; CHAIN_DIGITS]);
 
 impl Chain {
-    /// Before the first record.
+    /// Before the first entry.
     pub const START: Self = Self([b'0'; CHAIN_DIGITS]);
 
-    /// The chain after a line that says `SEQ TYPE JSON`.
+    /// The chain after a line with `SEQ TYPE JSON`.
     #[must_use]
     pub fn after(&self, said: &[u8]) -> Self {
         const DIGITS: &[u8; 16] = b"0123456789abcdef";

@@ -1,13 +1,13 @@
-//! What is wrong with a journal that cannot be trusted. In: nothing. Out: the place and the reason, for people. It knows
-//! no remedy: there is none.
+//! Damage of a run log that cannot be trusted. In: nothing. Out: the position and the reason, for the reader. There is no
+//! remedy.
 
 use super::{FORMAT, LINE_BYTES, OLDEST_FORMAT};
 
-/// The journal was altered, or is not one: nothing of it may be gone on with.
+/// The run log was altered, or is not one: it must not be continued.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the journal is damaged at line {line} (byte {offset}{}): {reason}", .step.map(|step| format!(", after step {step}")).unwrap_or_default())]
 pub struct Damage {
-    /// Of the first byte of the first bad line.
+    /// Offset of the first byte of the first bad line.
     pub offset: u64,
     /// From 1.
     pub line: u64,
@@ -16,7 +16,7 @@ pub struct Damage {
     pub reason: Wrong,
 }
 
-/// What is wrong with a line.
+/// The damage of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Wrong {
     #[error("this is no record")]

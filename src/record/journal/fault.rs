@@ -1,4 +1,5 @@
-//! Why the journal did not take a record. In: nothing. Out: a fault that can be kept and given again. It knows no file.
+//! The reason why the run log did not accept an entry. In: nothing. Out: a fault that can be kept and reported again. It
+//! knows no file.
 
 use std::io;
 
@@ -7,17 +8,17 @@ use super::EntryKind;
 /// Objects and lists inside one another, the outermost counted: `serde_json` reads 127.
 pub const DEEPEST: usize = 64;
 
-/// A record was not written, or not made safe.
+/// An entry was not written, or not made durable.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JournalFault {
-    /// The disk failed. Final: every later call gives the same fault and does not ask the disk again.
+    /// The disk failed. Final: every later call gives the same fault and does not use the disk again.
     #[error("the journal cannot be {doing}: {text}")]
     Storage {
         doing: Doing,
         kind: io::ErrorKind,
         text: String,
     },
-    /// The record is not one; nothing was written, and the journal can go on.
+    /// The entry is invalid; nothing was written, and the run log can be continued.
     #[error("the journal refuses a record: {0}")]
     Refused(#[from] Refusal),
 }
@@ -32,7 +33,7 @@ impl JournalFault {
     }
 }
 
-/// What the disk was asked for.
+/// The operation of the disk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doing {
     Append,
@@ -51,7 +52,7 @@ impl std::fmt::Display for Doing {
     }
 }
 
-/// What is wrong with a record.
+/// The reason why an entry is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     #[error("a number in it is not finite")]

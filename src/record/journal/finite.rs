@@ -1,15 +1,15 @@
-//! Whether a body can be written so that it reads back as it is: an object, of finite numbers of 64 bits, not too deep.
-//! In: anything that serde can walk. Out: the first refusal. It writes nothing: `serde_json` alone would write NaN as null.
+//! Whether a body reads back as it was written: an object of finite 64-bit numbers, not too deep. In: any value that serde
+//! can walk. Out: the first refusal. It writes nothing: `serde_json` alone would write NaN as null.
 
 use serde::ser::{self, Serialize, Serializer};
 
 use super::Refusal;
 use super::fault::DEEPEST;
 
-/// Says why a body must not be written.
+/// Gives the reason why a body must not be written.
 ///
 /// # Errors
-/// It is no object, or a part of it would not read back as it is.
+/// It is not an object, or a part of it would not read back as it was.
 pub fn check(body: &impl Serialize) -> Result<(), Refusal> {
     let mut walk = Walk { depth: 0 };
     body.serialize(&mut walk)
@@ -198,7 +198,7 @@ impl<'a> Serializer for &'a mut Walk {
     }
 }
 
-/// What serde asks of a list or an object: look at each part, then go up again.
+/// The functions that serde requires for a list or an object: check each part, then return.
 macro_rules! parts {
     ($($kind:ident::$part:ident($($name:ty)?) of $place:ty, up $levels:literal;)*) => {
         $(impl ser::$kind for $place {

@@ -1,39 +1,39 @@
-//! What a record is about. In: the second word of a line. Out: its kind, and back. It knows no body.
+//! The kind of an entry. In: the second word of a line. Out: its kind, and back. It knows no body.
 
 use serde::{Deserialize, Serialize};
 
-/// What a record is about; the second word of its line.
+/// The kind of an entry; the second word of its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum EntryKind {
-    /// Format version, names and digests of the plan's files, settings, operator, host: what a run starts from. Always the
-    /// first.
+    /// Format version, names and digests of the plan's files, settings, operator, host: the start of a run. Always the
+    /// first entry.
     Header,
     /// A part of the text of one of those files.
     Plan,
-    /// Who the rig said it is.
+    /// The identity that the rig reported.
     Rig,
     /// A target about to be sent.
     Intent,
     /// A reading, with the bytes it was made of.
     Sample,
-    /// The end of a stroke read on the way, with how many readings it gave.
+    /// The end of a stroke with readings on the way, and their number.
     Stroke,
     /// The end of a step, as computed.
     Step,
-    /// What a person answered, or asked for.
+    /// An answer or a request of the operator.
     Operator,
     Event,
     Fault,
-    /// What became of the rig when it was told to hold for good, and where it stood then.
+    /// The result of the final hold, and the position of the rig.
     Held,
-    /// What was mended on the lines of the rig by the end of the run, where anything was.
+    /// The communication errors recovered, if there were any.
     Tally,
     /// A torn tail was put aside.
     Recover,
-    /// The plan or the program is no longer the one of the header; who says so, and why.
+    /// The plan or the program is no longer the one of the header; by whom, and why.
     Amend,
-    /// The run goes on.
+    /// The run is continued.
     Resume,
     /// The run came to an end; count of records and the chain before it.
     End,
@@ -59,7 +59,7 @@ impl EntryKind {
         Self::End,
     ];
 
-    /// The word in the line.
+    /// Its word in the line.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -82,7 +82,7 @@ impl EntryKind {
         }
     }
 
-    /// The kind of a word; None if no record of this format has it.
+    /// The kind of a word. None if this format has no such entry.
     #[must_use]
     pub fn of_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.word() == word)

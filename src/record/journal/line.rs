@@ -15,11 +15,11 @@ pub const LINE_BYTES: usize = 64 * 1024;
 /// Digits of the CRC.
 const CRC_DIGITS: usize = 8;
 
-/// Both check words, with a blank before each.
+/// Both check words, with a space before each.
 pub const CHECK_BYTES: usize = 1 + CHAIN_DIGITS + 1 + CRC_DIGITS;
 
-/// One record, as read back. Its body stays the text that it was written as, which a copy shares: an object read is twenty
-/// times as large, and a long run has millions.
+/// One entry, as read back. Its body stays the text that was written, shared by all copies: a parsed object is twenty times
+/// as large, and a long run has millions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// From 1.
@@ -29,12 +29,12 @@ pub struct Line {
     json: Arc<str>,
     /// Its field `t`: rig time, s.
     time: Option<f64>,
-    /// Of its first byte in the file.
+    /// Offset of its first byte in the file.
     pub offset: u64,
 }
 
 impl Line {
-    /// A record that says `body`, an object; written as `json`.
+    /// An entry with `body`, an object; written as `json`.
     pub(super) fn as_written(
         seq: u64,
         kind: EntryKind,
@@ -51,33 +51,33 @@ impl Line {
         }
     }
 
-    /// A record that says `body`.
+    /// An entry with `body`.
     #[must_use]
     pub fn new(seq: u64, kind: EntryKind, body: &Value, offset: u64) -> Self {
         Self::as_written(seq, kind, body, &body.to_string(), offset)
     }
 
-    /// Rig time, s, where it is told.
+    /// Rig time \[s\], if it is stated.
     #[must_use]
     pub const fn time(&self) -> Option<f64> {
         self.time
     }
 
-    /// What it says.
+    /// Its body.
     #[must_use]
     pub fn body(&self) -> Value {
         self.read().unwrap_or_default()
     }
 
-    /// What it says, typed.
+    /// Its body, typed.
     ///
     /// # Errors
-    /// It says something else.
+    /// The body has a different type.
     pub fn read<T: DeserializeOwned>(&self) -> serde_json::Result<T> {
         serde_json::from_str(&self.json)
     }
 
-    /// The same record, if it said something else.
+    /// The same entry with a different body.
     pub fn alter(&mut self, alter: impl FnOnce(&mut Value)) {
         let mut body = self.body();
         alter(&mut body);
@@ -128,18 +128,18 @@ fn crc_digits(crc: u32) -> [u8; CRC_DIGITS] {
     })
 }
 
-/// The parts of a line whose checksum holds, as they stand there.
+/// The parts of a line whose checksum is correct, in their order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parts<'a> {
     pub seq: u64,
     pub word: &'a str,
     pub json: &'a str,
     pub chain: &'a str,
-    /// `SEQ TYPE JSON`: what the chain is taken over.
+    /// `SEQ TYPE JSON`: the input of the chain.
     pub said: &'a [u8],
 }
 
-/// Why a line cannot stand alone.
+/// The reason why a line is invalid on its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsound {
     /// It has not the parts of a line.

@@ -28,8 +28,7 @@ pub use recovery::{Recovered, recover};
 pub use storage::Storage;
 pub use writer::{Durability, Journal};
 
-/// The version of the format that is written. Version 1, which is read too, does not say in its first line what was measured
-/// with.
+/// The version of the format that is written. Version 1, which is read too, does not state the equipment in its first line.
 pub const FORMAT: u64 = 2;
 
 /// The oldest version that is read.

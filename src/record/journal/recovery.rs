@@ -1,5 +1,5 @@
-//! Reading back: the bytes of a journal, perhaps of a run that was killed. In: bytes. Out: the whole records and what of
-//! the end is torn, or the damage. It knows no file, and does not know what a record means.
+//! Reading back: the bytes of a run log, perhaps of a run that was killed. In: bytes. Out: the whole entries and the torn
+//! part at the end, or the damage. It knows no file and no meaning of an entry.
 
 use std::ops::Range;
 
@@ -9,27 +9,27 @@ use super::chain::Chain;
 use super::line::{self, LINE_BYTES, Unsound};
 use super::{Damage, EntryKind, FORMAT, Line, OLDEST_FORMAT, Wrong};
 
-/// What of a journal can be trusted.
+/// The part of a run log that can be trusted.
 #[derive(Clone, Debug)]
 pub struct Recovered {
     pub lines: Vec<Line>,
     /// Bytes that are whole records, from the first byte of the file.
     pub whole: u64,
-    /// The bytes after them: a record that was being written when the power went.
+    /// The bytes after them: an entry that was being written when the power failed.
     pub torn: Option<Range<u64>>,
-    /// Whether the last record is END; a run that was cut off has none.
+    /// Whether the last entry is END; an interrupted run has none.
     pub ended: bool,
     pub(super) chain: Chain,
 }
 
 impl Recovered {
-    /// The chain after the last whole record: 64 hexadecimal digits.
+    /// The chain after the last whole entry: 64 hexadecimal digits.
     #[must_use]
     pub fn head(&self) -> &str {
         self.chain.as_str()
     }
 
-    /// The version of the format, as the first record says; 0 where there is none.
+    /// The version of the format, from the first entry; 0 if there is none.
     #[must_use]
     pub fn format(&self) -> u64 {
         self.lines
@@ -38,7 +38,7 @@ impl Recovered {
             .unwrap_or(0)
     }
 
-    /// The last field `step` of a record.
+    /// The last field `step` of an entry.
     #[must_use]
     pub fn last_step(&self) -> Option<u64> {
         self.lines
@@ -55,10 +55,9 @@ impl Recovered {
     }
 }
 
-/// Reads a journal. Without END it is of a run that did not come to its end; without any record, of one that did not
-/// begin. The end of the file is torn if the first bad line is followed by no line whose own checksum holds, and if from
-/// there on there is no LF, or a NUL (a block that was never written). Memory grows with the bytes, and
-/// is little more than theirs.
+/// Reads a run log. Without END the run was not completed; without any entry it did not begin. The end of the file is torn
+/// if the first bad line is followed by no line with a valid checksum, and if from there on there is no LF, or a NUL (a
+/// block that was never written). The memory needed is little more than the bytes.
 ///
 /// # Errors
 /// Any other bad line: the journal was altered.
@@ -99,7 +98,7 @@ pub fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
     Ok(found)
 }
 
-/// The first line without its LF, and what is after it.
+/// The first line without its LF, and the bytes after it.
 fn whole_line(rest: &[u8]) -> Result<(&[u8], &[u8]), Wrong> {
     let reach = &rest[..rest.len().min(LINE_BYTES)];
     match reach.iter().position(|byte| *byte == b'\n') {
@@ -109,8 +108,8 @@ fn whole_line(rest: &[u8]) -> Result<(&[u8], &[u8]), Wrong> {
     }
 }
 
-/// Whether the rest, from its first bad line on, is what a loss of power leaves. A line that is too long is read no
-/// further, unless it holds a NUL.
+/// Whether the bytes from the first bad line on can be the result of a loss of power. A line that is too long is read no
+/// further, unless it has a NUL.
 fn is_torn(rest: &[u8], wrong: &Wrong) -> bool {
     if *wrong == Wrong::TooLong && !rest[..LINE_BYTES].contains(&0) {
         return false;
@@ -121,7 +120,7 @@ fn is_torn(rest: &[u8], wrong: &Wrong) -> bool {
         && !later.any(|line| line.len() < LINE_BYTES && line::parse(line).is_ok())
 }
 
-/// A line as the next record after those found.
+/// A line as the next entry after those found.
 fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
     let parts = line::parse(bytes).map_err(|unsound| match unsound {
         Unsound::Shape => Wrong::Shape,
@@ -151,7 +150,7 @@ fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
     ))
 }
 
-/// Whether a record may stand here.
+/// Whether an entry may be at this position.
 fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> {
     let said = |name: &str| {
         body.get(name)
@@ -183,7 +182,7 @@ fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> 
     }
 }
 
-/// The beginning of what a line says, fit for a message.
+/// The beginning of the content of a line, for a message.
 fn short(text: &str) -> String {
     text.chars()
         .take(80)

@@ -1,5 +1,5 @@
-//! Where a journal lies: bytes that are appended, and the promise that they survive. In: bytes. Out: whether they are
-//! safe. It knows no record.
+//! The storage of a run log: bytes that are appended, and a guarantee that they survive. In: bytes. Out: whether they are
+//! durable. It knows no entry.
 
 use std::io;
 
@@ -11,18 +11,18 @@ pub trait Storage: Send {
     /// They could not all be appended; some may have been.
     fn append(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Gives back once everything appended would survive a loss of power.
+    /// Returns when all appended bytes would survive a loss of power.
     ///
     /// # Errors
     /// The promise cannot be made; it is never asked for again.
     fn sync(&mut self) -> io::Result<()>;
 
-    /// Cuts back to the first `length` bytes: half a line, left by an append that failed, must not spoil the last words.
+    /// Cuts back to the first `length` bytes: half a line, left by a failed append, must not spoil the final entries.
     ///
     /// # Errors
     /// The half line is still there.
     fn cut(&mut self, length: u64) -> io::Result<()>;
 
-    /// Frees what was kept in reserve, so that the last words find room on a full disk.
+    /// Frees the reserve, so that the final entries have space on a full disk.
     fn release_reserve(&mut self) {}
 }

@@ -1,5 +1,5 @@
-//! Writing: records become lines on a storage. In: kinds and bodies, and when they must be safe. Out: the fault that ends
-//! it all. It does not know what a record means, nor where the bytes lie.
+//! Writing: entries become lines on a storage. In: kinds and bodies, and when they must be durable. Out: the fault that
+//! ended the run log. It knows neither the meaning of an entry nor the place of the bytes.
 
 use serde::Serialize;
 use serde_json::json;
@@ -14,8 +14,8 @@ use crate::record::failpoint::{Guarding, on};
 pub enum Durability {
     /// In large writes, made safe at the end and by `sync`: a virtual rig, whose run can be made again.
     Buffered,
-    /// Each at once, made safe at every promise: a real rig.
-    EveryPromise,
+    /// Each entry immediately, made durable at every sync point: a real rig.
+    EverySyncPoint,
 }
 
 /// Bytes kept back before they are written, when buffered.
@@ -29,11 +29,11 @@ pub struct Journal {
     count: u64,
     chain: Chain,
     ended: bool,
-    /// Lines the storage has not taken yet, or not wholly.
-    kept_back: Vec<u8>,
-    /// Bytes of the lines it has taken.
+    /// Lines that the storage has not accepted yet, or not completely.
+    buffered: Vec<u8>,
+    /// Bytes of the lines that it has accepted.
     taken: u64,
-    /// Whether a part of `kept_back` may lie after them.
+    /// Whether a part of `buffered` may lie after them.
     half_line: bool,
     fault: Option<JournalFault>,
 }
@@ -47,15 +47,19 @@ impl Journal {
             count: 0,
             chain: Chain::START,
             ended: false,
-            kept_back: Vec::new(),
+            buffered: Vec::new(),
             taken: 0,
             half_line: false,
             fault: None,
         }
     }
 
-    /// Goes on behind what was recovered; a torn tail was cut off before.
-    pub fn go_on(storage: Box<dyn Storage>, durability: Durability, recovered: &Recovered) -> Self {
+    /// Continues after the recovered entries; a torn tail was cut off before.
+    pub fn reopen(
+        storage: Box<dyn Storage>,
+        durability: Durability,
+        recovered: &Recovered,
+    ) -> Self {
         let mut journal = Self::create(storage, durability);
         journal.count = recovered.lines.len() as u64;
         journal.chain = recovered.chain;
@@ -64,61 +68,61 @@ impl Journal {
         journal
     }
 
-    /// Writes a record.
+    /// Writes an entry.
     ///
     /// # Errors
-    /// The body is no object of finite numbers, is too large or has no place here: nothing was written, and the journal
-    /// can go on. Or the storage failed, now or before.
+    /// The body is not an object of finite numbers, is too large or is in the wrong place: nothing was written, and the run
+    /// log can be continued. Or the storage failed, now or before.
     pub fn append(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), JournalFault> {
         self.healthy()?;
         if kind == EntryKind::End {
             return Err(Refusal::OutOfPlace(kind).into());
         }
-        self.keep_back(kind, body)?;
+        self.buffer(kind, body)?;
         let enough = match self.durability {
             Durability::Buffered => WRITE_BYTES,
-            Durability::EveryPromise => 1,
+            Durability::EverySyncPoint => 1,
         };
-        if self.kept_back.len() >= enough {
-            self.give()
+        if self.buffered.len() >= enough {
+            self.flush()
         } else {
             Ok(())
         }
     }
 
-    /// Everything written so far is safe when this comes back; nothing is promised while buffered.
+    /// All entries written so far are durable when this returns. While buffered, nothing is guaranteed.
     ///
     /// # Errors
-    /// The storage failed, now or before: what was written may be lost.
-    pub fn promise(&mut self) -> Result<(), JournalFault> {
+    /// The storage failed, now or before: entries may be lost.
+    pub fn sync_point(&mut self) -> Result<(), JournalFault> {
         match self.durability {
             Durability::Buffered => self.healthy(),
-            Durability::EveryPromise => self.sync(),
+            Durability::EverySyncPoint => self.sync(),
         }
     }
 
-    /// Everything written so far is safe when this comes back.
+    /// All entries written so far are durable when this returns.
     ///
     /// # Errors
-    /// As `promise`.
+    /// As `sync_point`.
     pub fn sync(&mut self) -> Result<(), JournalFault> {
         self.healthy()?;
-        self.give()?;
+        self.flush()?;
         let synced = self.storage.sync();
-        self.noted(Doing::Sync, synced)
+        self.record_fault(Doing::Sync, synced)
     }
 
-    /// Writes the last record, with the count of records and the chain before it, and makes all of it safe.
+    /// Writes the last entry, with the count of entries and the chain before it, and makes all of them durable.
     ///
     /// # Errors
     /// As `append` and `sync`.
     pub fn end(&mut self, body: &impl Serialize) -> Result<(), JournalFault> {
         self.healthy()?;
-        let (start, chain) = (self.kept_back.len(), self.chain);
-        self.keep_back(EntryKind::End, body)?;
-        if let Err(fault) = self.give() {
-            // It did not end: there is room for last words.
-            self.kept_back.truncate(start);
+        let (start, chain) = (self.buffered.len(), self.chain);
+        self.buffer(EntryKind::End, body)?;
+        if let Err(fault) = self.flush() {
+            // It did not end: final entries are still possible.
+            self.buffered.truncate(start);
             self.chain = chain;
             self.count -= 1;
             self.ended = false;
@@ -129,13 +133,13 @@ impl Journal {
         Ok(())
     }
 
-    /// The last words before a run is given up: frees the reserve, then writes what is left and this record and makes it
-    /// safe, as well as it goes, also when the storage has failed before; after a failed sync it is only written. The
-    /// earlier fault stands for all other calls.
+    /// The final entry before a run is given up: frees the reserve, then writes the buffered lines and this entry and makes
+    /// them durable as far as possible, also if the storage has failed before; after a failed sync they are only written.
+    /// The earlier fault remains for all other calls.
     ///
     /// # Errors
-    /// The record is none or stands after END, or the storage failed now. Nothing more can be done.
-    pub fn last_words(
+    /// The entry is invalid or comes after END, or the storage failed now. Nothing more can be done.
+    pub fn final_entry(
         &mut self,
         kind: EntryKind,
         body: &impl Serialize,
@@ -149,34 +153,35 @@ impl Journal {
                 ..
             })
         );
-        let said = self.say_last(kind, body, unsynced && on(Guarding::FailedSync));
+        let said = self.write_final_entry(kind, body, unsynced && on(Guarding::FailedSync));
         if earlier.is_some() {
             self.fault = earlier;
         }
         said
     }
 
-    fn say_last(
+    fn write_final_entry(
         &mut self,
         kind: EntryKind,
         body: &impl Serialize,
         unsynced: bool,
     ) -> Result<(), JournalFault> {
         if self.half_line {
-            // Behind half a line, any words would make the file one that no one can tell from a forged one: rather none.
+            // After half a line, a further line would make the file indistinguishable from a forged one: so nothing is
+            // written.
             let cut = self.storage.cut(self.taken);
-            self.noted(Doing::Cut, cut)?;
+            self.record_fault(Doing::Cut, cut)?;
             self.half_line = false;
         }
         let kept = if kind == EntryKind::End {
             Err(Refusal::OutOfPlace(kind))
         } else {
-            self.keep_back(kind, body)
+            self.buffer(kind, body)
         };
-        // Also without the record: what was kept back belongs into the file. After a failed sync none is tried again: it
-        // would succeed, and promise what is lost.
+        // The buffered lines belong into the file, also without the entry. After a failed sync no other is attempted: it
+        // would succeed although data are lost.
         if unsynced {
-            self.give()?;
+            self.flush()?;
         } else {
             self.sync()?;
         }
@@ -192,7 +197,7 @@ impl Journal {
         self.count == 0
     }
 
-    /// The chain after the last record: 64 hexadecimal digits.
+    /// The chain after the last entry: 64 hexadecimal digits.
     pub fn head(&self) -> &str {
         self.chain.as_str()
     }
@@ -202,8 +207,8 @@ impl Journal {
         self.fault.as_ref()
     }
 
-    /// A storage that failed is not asked again: after a failed sync the kernel forgets what it could not write, and the
-    /// next sync would promise what is lost.
+    /// A storage that failed is not used again: after a failed sync the kernel forgets the data that it could not write,
+    /// and the next sync would succeed although they are lost.
     fn healthy(&self) -> Result<(), JournalFault> {
         match &self.fault {
             Some(JournalFault::Storage {
@@ -214,9 +219,9 @@ impl Journal {
         }
     }
 
-    /// Makes the line of a record; a refused one leaves no trace.
-    fn keep_back(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), Refusal> {
-        let start = self.kept_back.len();
+    /// Makes the line of an entry; a refused one leaves no trace.
+    fn buffer(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), Refusal> {
+        let start = self.buffered.len();
         let made = self.make_line(start, kind, body);
         match made {
             Ok(chain) => {
@@ -226,8 +231,8 @@ impl Journal {
                 Ok(())
             }
             Err(refusal) => {
-                self.kept_back.truncate(start);
-                self.kept_back.shrink_to(2 * WRITE_BYTES);
+                self.buffered.truncate(start);
+                self.buffered.shrink_to(2 * WRITE_BYTES);
                 Err(refusal)
             }
         }
@@ -242,7 +247,7 @@ impl Journal {
         if self.ended || (kind == EntryKind::Header) != (self.count == 0) {
             return Err(Refusal::OutOfPlace(kind));
         }
-        let out = &mut self.kept_back;
+        let out = &mut self.buffered;
         line::open(out, self.count + 1, kind);
         match kind {
             EntryKind::Header => body::write_with(out, &[("format", json!(FORMAT))], body)?,
@@ -262,20 +267,24 @@ impl Journal {
         Ok(line::close(out, start, &self.chain))
     }
 
-    /// Gives the storage what was kept back.
-    fn give(&mut self) -> Result<(), JournalFault> {
-        if self.kept_back.is_empty() {
+    /// Writes the buffered lines to the storage.
+    fn flush(&mut self) -> Result<(), JournalFault> {
+        if self.buffered.is_empty() {
             return Ok(());
         }
-        let appended = self.storage.append(&self.kept_back);
+        let appended = self.storage.append(&self.buffered);
         self.half_line = appended.is_err();
-        self.noted(Doing::Append, appended)?;
-        self.taken += self.kept_back.len() as u64;
-        self.kept_back.clear();
+        self.record_fault(Doing::Append, appended)?;
+        self.taken += self.buffered.len() as u64;
+        self.buffered.clear();
         Ok(())
     }
 
-    fn noted(&mut self, doing: Doing, done: std::io::Result<()>) -> Result<(), JournalFault> {
+    fn record_fault(
+        &mut self,
+        doing: Doing,
+        done: std::io::Result<()>,
+    ) -> Result<(), JournalFault> {
         done.map_err(|error| {
             let fault = JournalFault::storage(doing, &error);
             self.fault = Some(fault.clone());
@@ -284,11 +293,11 @@ impl Journal {
     }
 }
 
-/// What was kept back reaches the file also when the run is left early; nothing is promised of it.
+/// The buffered lines reach the file also if the run is left early; this is not guaranteed.
 impl Drop for Journal {
     fn drop(&mut self) {
         if self.fault.is_none() {
-            let _ = self.give();
+            let _ = self.flush();
         }
     }
 }

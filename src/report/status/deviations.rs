@@ -23,7 +23,7 @@ pub(in crate::report) fn of_run(run: &Run<'_>) -> Vec<String> {
         .collect();
     let set = |(name, value): &(String, String)| wording::parameter_set(name, value);
     found.extend(run.plan.settings.iter().map(set));
-    if let Some(text) = rehearsal::told(run.plan) {
+    if let Some(text) = rehearsal::rehearsed_plan(run.plan) {
         found.insert(0, wording::rehearsal(text));
     }
     match &run.record.outcome {

@@ -81,7 +81,7 @@ pub fn missing_particulars(run: &Run<'_>) -> Vec<String> {
 }
 
 fn is_rehearsal(run: &Run<'_>) -> bool {
-    run.record.rig.simulated || rehearsal::told(run.plan).is_some()
+    run.record.rig.simulated || rehearsal::rehearsed_plan(run.plan).is_some()
 }
 
 /// The fields of operator, calibration and program that the report on a real rig must state and cannot. A simulated rig has

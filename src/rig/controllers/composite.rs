@@ -1,17 +1,17 @@
-//! Several devices of one role as one: each drives or weighs some of the rig's axes, on a line of its own. In: targets of all
-//! axes. Out: one move, one reading. A move is offered to every one of them before it is begun by any; what one of them does
-//! not accept, none of them begins. It knows no dialect.
+//! Several devices of one role as one device: each drives or measures some of the rig's axes, on its own line. In: targets
+//! of all axes. Out: one move, one reading. A move is proposed to every device before any of them begins; if one refuses,
+//! none begins. It knows no protocol.
 
-use super::{Channel, Device, DeviceFault, DeviceIdentity, Move, Sample};
+use super::{Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Sample};
 use crate::plan::Limits;
-use crate::rig::{NO_POWER_UP, Tally};
+use crate::rig::{LineStatistics, NO_POWER_UP};
 
 /// One of them.
 pub struct Member {
     pub device: Box<dyn Device>,
-    /// The axes of the rig that it drives or weighs, by place, in the order of its own.
+    /// Indices of the rig's axes that it drives or measures, in the order of its own axes.
     pub axes: Vec<usize>,
-    /// The device must give this serial number.
+    /// Serial number that the device must report.
     pub serial_number: Option<String>,
 }
 
@@ -20,9 +20,9 @@ pub struct Several {
     members: Vec<Member>,
     /// Axes of the rig.
     axes: usize,
-    /// What each makes of the last move that was encoded.
-    proposed: Vec<Move>,
-    culprit: Option<usize>,
+    /// The last encoded move, one entry per device.
+    proposed: Vec<DeviceMove>,
+    faulty_member: Option<usize>,
 }
 
 /// The devices of one role of a rig of so many axes: one that has them all is itself.
@@ -38,7 +38,7 @@ pub fn together(mut members: Vec<Member>, axes: usize) -> Option<Box<dyn Device>
         members,
         axes,
         proposed: Vec::new(),
-        culprit: None,
+        faulty_member: None,
     }))
 }
 
@@ -53,7 +53,7 @@ impl Several {
             match call(place, member) {
                 Ok(value) => made.push(value),
                 Err(fault) => {
-                    self.culprit = Some(place);
+                    self.faulty_member = Some(place);
                     return Err(fault);
                 }
             }
@@ -61,14 +61,14 @@ impl Several {
         Ok(made)
     }
 
-    /// Every one accepts the move, or it is taken back from those that have.
-    fn offer_to_all(&mut self, moves: &[Move]) -> Result<(), DeviceFault> {
-        let offered = self.each(|place, member| member.device.offer(&moves[place]));
+    /// Every device accepts the move, or it is cancelled on those that have accepted.
+    fn offer_to_all(&mut self, moves: &[DeviceMove]) -> Result<(), DeviceFault> {
+        let offered = self.each(|place, member| member.device.propose(&moves[place]));
         if offered.is_err() {
-            let accepted = self.culprit.unwrap_or(0);
+            let accepted = self.faulty_member.unwrap_or(0);
             for (member, going) in self.members.iter_mut().zip(moves).take(accepted) {
-                // One that does not hear it executes nothing either: it is never told to.
-                member.device.withdraw(going).ok();
+                // A device that did not receive this executes nothing either, because it receives no command to execute.
+                member.device.cancel(going).ok();
             }
         }
         offered.map(drop)
@@ -119,7 +119,7 @@ impl Device for Several {
         self.axes
     }
 
-    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         if targets.len() != self.axes {
             return Err(DeviceFault::Unfit(format!(
                 "it has {} axes, not {}",
@@ -143,7 +143,7 @@ impl Device for Several {
             .collect();
         let speed = moves.iter().map(|going| going.speed).fold(0.0, f64::max);
         self.proposed = moves;
-        Ok(Move {
+        Ok(DeviceMove {
             frames,
             targets: said,
             speed,
@@ -151,7 +151,7 @@ impl Device for Several {
         })
     }
 
-    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let moves = std::mem::take(&mut self.proposed);
         let ours = moves
             .iter()
@@ -200,14 +200,14 @@ impl Device for Several {
         })
     }
 
-    /// Every one is told, also where one of them does not hear it.
+    /// Every device receives the command, also if one of them does not answer.
     fn hold(&mut self) -> Result<(), DeviceFault> {
         let mut held = Ok(());
         for (place, member) in self.members.iter_mut().enumerate() {
             if let Err(fault) = member.device.hold()
                 && held.is_ok()
             {
-                self.culprit = Some(place);
+                self.faulty_member = Some(place);
                 held = Err(fault);
             }
         }
@@ -229,14 +229,14 @@ impl Device for Several {
             .map(drop)
     }
 
-    fn culprit(&self) -> Option<usize> {
-        self.culprit
+    fn faulty_member(&self) -> Option<usize> {
+        self.faulty_member
     }
 
-    fn tally(&self) -> Tally {
+    fn line_statistics(&self) -> LineStatistics {
         self.members
             .iter()
-            .map(|member| member.device.tally())
-            .fold(Tally::default(), Tally::plus)
+            .map(|member| member.device.line_statistics())
+            .fold(LineStatistics::default(), LineStatistics::plus)
     }
 }

@@ -1,11 +1,11 @@
-//! A device that weighs and does not move. In: who it is and what it reads. Out: a [`Device`] that refuses every move, has nothing to
-//! hold and nothing to stop. It knows no dialect.
+//! A device that measures force and does not move. In: its identity and its readings. Out: a [`Device`] that refuses every
+//! move and has nothing to hold or stop. It knows no protocol.
 
-use super::{Device, DeviceFault, DeviceIdentity, Move, Sample};
-use crate::rig::Tally;
+use super::{Device, DeviceFault, DeviceIdentity, DeviceMove, Sample};
+use crate::rig::LineStatistics;
 
 /// A load cell on a port of its own. All calls end within a bounded time.
-pub trait Gauge: Send {
+pub trait LoadCell: Send {
     /// As [`Device::identify`].
     ///
     /// # Errors
@@ -23,11 +23,11 @@ pub trait Gauge: Send {
     /// As every call.
     fn sample(&mut self) -> Result<Sample, DeviceFault>;
 
-    /// What was mended on the line so far.
-    fn tally(&self) -> Tally;
+    /// Communication errors recovered so far.
+    fn line_statistics(&self) -> LineStatistics;
 }
 
-impl<G: Gauge> Device for G {
+impl<G: LoadCell> Device for G {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         G::identify(self)
     }
@@ -36,11 +36,11 @@ impl<G: Gauge> Device for G {
         G::axes(self)
     }
 
-    fn encode(&mut self, _: &[f64], _: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, _: &[f64], _: f64) -> Result<DeviceMove, DeviceFault> {
         Err(unmoved())
     }
 
-    fn start(&mut self, _: &Move) -> Result<(), DeviceFault> {
+    fn start(&mut self, _: &DeviceMove) -> Result<(), DeviceFault> {
         Err(unmoved())
     }
 
@@ -56,8 +56,8 @@ impl<G: Gauge> Device for G {
         Vec::new()
     }
 
-    fn tally(&self) -> Tally {
-        G::tally(self)
+    fn line_statistics(&self) -> LineStatistics {
+        G::line_statistics(self)
     }
 }
 

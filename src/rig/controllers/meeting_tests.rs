@@ -1,15 +1,20 @@
-//! The drivers of plant meet the stand-ins of their controllers, which share no parsing with them: what is asked for is
-//! where the bench goes, and what the bench feels is what is read.
+//! Drivers against the emulators of their controllers, which share no parsing code with them: the bench moves to the
+//! commanded position, and its force is the one that is read.
 
 use std::io;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::{Device, DeviceFault, Force, Instron, Mark10, Mark10Gauge, Modbus, Nees, Talk};
+use super::instron::driver::Instron;
+use super::mark10::driver::Mark10;
+use super::mark10::load_cell::Mark10Gauge;
+use super::modbus::driver::Modbus;
+use super::nees::driver::Nees;
+use super::{Device, DeviceFault, Force, LineClient};
 use crate::emulator::firmware::testing::spring;
 use crate::emulator::{Bench, Firmware, firmware};
 use crate::plan::{ModbusMap, ModbusNumber};
-use crate::rig::Wish;
+use crate::rig::StopRequest;
 use crate::rig::testing::VirtualClock;
 use crate::rig::transport::{Clock as _, Emergency, Port};
 
@@ -43,9 +48,9 @@ impl Controller {
         }
     }
 
-    fn talk(&self) -> Talk {
-        Talk::new(Box::new(self.clone()), Box::new(self.clock.clone()), 0.5)
-            .heeding(Wish::default())
+    fn client(&self) -> LineClient {
+        LineClient::new(Box::new(self.clone()), Box::new(self.clock.clone()), 0.5)
+            .observing(StopRequest::default())
     }
 
     fn targets(&self) -> Vec<f64> {
@@ -138,7 +143,13 @@ fn goes_there_and_back(device: &mut dyn Device, controller: &Controller, resolut
         assert!((controller.targets().last().unwrap() - going.targets[0]).abs() < 1e-12);
     }
     assert_eq!(controller.targets().len(), 2);
-    assert_eq!((device.tally().ignored, device.tally().resent), (0, 0));
+    assert_eq!(
+        (
+            device.line_statistics().ignored,
+            device.line_statistics().resent
+        ),
+        (0, 0)
+    );
 }
 
 /// Held, or stopped by the emergency bytes, in the middle of a way of 10 s it stays there.
@@ -171,7 +182,7 @@ fn stays_where_it_is_stopped(device: &mut dyn Device, controller: &Controller) {
 #[test]
 fn the_instron_console() {
     let controller = Controller::new(Box::new(firmware::Instron::new(0.1, 5e4)));
-    let mut device = Instron::new(controller.talk());
+    let mut device = Instron::new(controller.client());
     goes_there_and_back(&mut device, &controller, 1e-9);
     stays_where_it_is_stopped(&mut device, &controller);
 }
@@ -179,13 +190,13 @@ fn the_instron_console() {
 #[test]
 fn the_mark_10_stand_and_the_gauge_alone() {
     let controller = Controller::new(Box::new(firmware::Mark10::new(1.0)));
-    let mut device = Mark10::new(controller.talk());
+    let mut device = Mark10::new(controller.client());
     goes_there_and_back(&mut device, &controller, 1e-9);
     stays_where_it_is_stopped(&mut device, &controller);
     let alone = Controller::new(Box::new(firmware::Mark10Gauge::new(-1.0)));
     alone.shared.lock().unwrap().bench.go(0.001, 0.01);
     alone.clock.advance(1.0);
-    let sample = Mark10Gauge::new(alone.talk()).sample().unwrap();
+    let sample = Mark10Gauge::new(alone.client()).sample().unwrap();
     assert_eq!(
         (sample.force, sample.displacement),
         (Some(Force::Newtons(-100.0)), None)
@@ -216,7 +227,7 @@ fn modbus_drives_of_every_kind_of_number() {
     maps.extend(orders.map(|high_word_first| map(ModbusNumber::Float32 { high_word_first }, 1e-3)));
     for map in maps {
         let controller = Controller::new(Box::new(firmware::Modbus::new(map)));
-        let mut device = Modbus::new(controller.talk(), map, Some(19_200));
+        let mut device = Modbus::new(controller.client(), map, Some(19_200));
         goes_there_and_back(&mut device, &controller, 1e-9);
         stays_where_it_is_stopped(&mut device, &controller);
     }
@@ -229,7 +240,7 @@ fn a_nees_rig() {
         vec![0],
         0.001,
     )));
-    let mut device = Nees::new(controller.talk(), vec!["MDL-00-01".to_owned()], 5.0);
+    let mut device = Nees::new(controller.client(), vec!["MDL-00-01".to_owned()], 5.0);
     goes_there_and_back(&mut device, &controller, 1e-12);
     let beyond = device.encode(&[0.07], 0.001).unwrap();
     let targets = controller.shared.lock().unwrap().bench.targets().len();

@@ -1,6 +1,6 @@
-//! What the guard tells of its rig: what it declares, where its zero lies, where it was found. It moves nothing.
+//! Facts that the guard reports about its rig: declared noise, datum, first reading. It moves nothing.
 
-use crate::rig::{DeclaredNoise, Guard, Tally};
+use crate::rig::{DeclaredNoise, Guard, LineStatistics};
 
 impl Guard<'_> {
     #[must_use]
@@ -8,19 +8,19 @@ impl Guard<'_> {
         self.rig.declared_noise()
     }
 
-    /// What was mended on the lines of the rig so far.
+    /// Communication errors recovered so far.
     #[must_use]
-    pub fn tally(&self) -> Tally {
-        self.rig.tally()
+    pub fn line_statistics(&self) -> LineStatistics {
+        self.rig.line_statistics()
     }
 
-    /// Where the plan's zero lies in the rig's own coordinate, m, one an axis, where the rig has one.
+    /// The position of the plan's zero in the rig's own coordinate \[m\], one per axis, if the rig has one.
     #[must_use]
     pub fn datum(&self) -> Option<Vec<f64>> {
         self.rig.datum()
     }
 
-    /// What was read first: displacements, m, and forces, N.
+    /// The first reading: displacements \[m\] and forces \[N\].
     #[must_use]
     pub fn found(&self) -> (&[f64], &[f64]) {
         (&self.found.0, &self.found.1)

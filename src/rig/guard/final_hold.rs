@@ -1,10 +1,11 @@
-//! The guard at the early end of a run. In: a rig that is to hold for good. Out: what became of it. It judges no reading: the run is over.
+//! The guard at the early end of a run. In: a rig that is to hold finally. Out: the result of that hold. It assesses no
+//! reading, because the run is over.
 
-use crate::rig::{Guard, Halted};
+use crate::rig::{FinalHold, Guard};
 
 impl Guard<'_> {
-    /// Holds for good, and gives what became of it, where anything real moves. What was proposed is forgotten.
-    pub fn halt(&mut self) -> Option<Halted> {
+    /// Holds finally and gives the result, for a rig with moving parts. A proposed move is forgotten.
+    pub fn halt(&mut self) -> Option<FinalHold> {
         self.proposed = None;
         self.going.clear();
         let halted = self.rig.halt();

@@ -1,6 +1,6 @@
-//! The guard of a rig that moves without stopping. In: smooth paths, one after the other. Out: readings on the way, each
-//! inside every limit. A path is judged whole before it begins, at its turning points too, and must go on from where, and
-//! as fast as, the last one ended.
+//! The guard of continuous motion. In: smooth paths, one after the other. Out: readings during the motion, each inside
+//! every limit. A path is checked completely before it begins, at its reversal points too, and must continue the last one
+//! in position and velocity.
 
 use super::outside;
 use super::read::is_finite;
@@ -9,8 +9,8 @@ use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{Guard, LimitedQuantity, RigFault, Traversed};
 
 impl Guard<'_> {
-    /// Follows `paths`, one a degree of freedom, reading at up to `samples` times on the way, the last at the end, or
-    /// where it broke a limit.
+    /// Follows `paths`, one per degree of freedom, and reads at up to `samples` times, the last at the end or where a limit
+    /// was exceeded.
     pub fn glide(&mut self, paths: &[Path], samples: usize) -> Traversed {
         let refused = |fault| Traversed {
             readings: Vec::new(),

@@ -9,17 +9,17 @@ pub(crate) mod path;
 pub(crate) mod read;
 pub(crate) mod speed;
 
-use super::guard::read::is_finite;
 use super::holds::Holds;
 use super::safety::failpoint::{Guarding, on};
 use super::{LimitedQuantity, Reading, Rig, RigFault, named_axis};
 use crate::plan::{Interval, Limits};
+use read::is_finite;
 
-/// A rig and what nothing may drive it past.
+/// A rig and the limits of its motion.
 pub struct Guard<'rig> {
     pub(super) rig: &'rig mut dyn Rig,
     pub(super) limits: Limits,
-    /// Of each axis, where one has limits of its own; empty: those above hold for all.
+    /// Limits of each axis, if one has its own. Empty: `limits` apply to all axes.
     pub(super) own: Vec<Limits>,
     /// The last target carried out, m; at first where the rig was found.
     pub(super) commanded: Vec<f64>,
@@ -27,13 +27,13 @@ pub struct Guard<'rig> {
     pub(super) going: Vec<f64>,
     /// Whether the rig has settled at `commanded`, so that a reading shows the tracking error.
     pub(super) settled: bool,
-    /// Checked, and not yet carried out: targets, m, and the speed that the bytes say, m/s.
+    /// Checked, and not yet executed: targets \[m\] and the speed decoded from the bytes \[m/s\].
     pub(super) proposed: Option<(Vec<f64>, f64)>,
-    /// Of the last way, m/s.
+    /// Of the last motion \[m/s\].
     pub(super) speed: Option<f64>,
     /// Rig time when the rig last answered, s.
     pub(super) heard: f64,
-    /// Where holds are to be told.
+    /// The evaluation of dwells, if it is requested.
     pub(super) holds: Option<Holds>,
     /// The first reading: displacements, m, and forces, N.
     pub(super) found: (Vec<f64>, Vec<f64>),
@@ -41,7 +41,7 @@ pub struct Guard<'rig> {
     pub(super) broken: Option<Reading>,
 }
 
-/// Readings of a traverse, all inside the limits, and what ended it early.
+/// Readings of a traverse, all inside the limits, and the fault that ended it early.
 #[derive(Debug)]
 pub struct Traversed {
     pub readings: Vec<Reading>,
@@ -49,10 +49,10 @@ pub struct Traversed {
 }
 
 impl<'rig> Guard<'rig> {
-    /// Reads where the rig stands.
+    /// Reads the present position of the rig.
     ///
     /// # Errors
-    /// It cannot be read, or stands outside a limit already.
+    /// It cannot be read, or is outside a limit already.
     pub fn new(rig: &'rig mut dyn Rig, limits: Limits) -> Result<Self, RigFault> {
         Self::of_axes(rig, limits, Vec::new())
     }
@@ -98,27 +98,27 @@ impl<'rig> Guard<'rig> {
         &self.commanded
     }
 
-    /// Rig time of the last reading, or of the fault after it, s: what the record knows too. A move or a pause that nothing was
-    /// read after has taken time that no record tells, so that no event may be told at a time within it.
+    /// Rig time \[s\] of the last reading, or of the fault after it: the time that the run log knows too. A move or pause
+    /// without a reading after it has taken time that is not in the run log, so no event may have a time within it.
     #[must_use]
     pub const fn time(&self) -> f64 {
         self.heard
     }
 
-    /// Moves to `targets` (m) in one increment and settles. Without a speed (m/s): the rig's own, else the highest
-    /// that the plan allows.
+    /// Moves to `targets` (m) in one increment and settles. Without a speed (m/s): the rig's own, else the highest that the
+    /// plan allows.
     ///
     /// # Errors
-    /// A limit stands in the way, or the rig fails.
+    /// A limit is exceeded, or the rig fails.
     pub fn move_to(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         self.propose(targets, speed)?;
         self.execute()
     }
 
-    /// The first half of [`Guard::move_to`]: everything is checked, nothing moves. What was proposed before is forgotten.
+    /// The first half of [`Guard::move_to`]: everything is checked, nothing moves. An earlier proposal is forgotten.
     ///
     /// # Errors
-    /// A limit stands in the way, or the rig refuses.
+    /// A limit is exceeded, or the rig refuses.
     pub fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         self.proposed = None;
         let high = Some(self.limits.speed.high).filter(|high| high.is_finite());
@@ -140,14 +140,14 @@ impl<'rig> Guard<'rig> {
         }
         let proposed = self.rig.propose(targets, speed);
         let offer = self.or_hold(proposed)?;
-        // What the bytes say is what moves: they are held against the limits once more, as they will be sent.
+        // The decoded bytes are the motion that will happen, so they are compared with the limits once more.
         self.check_targets(&offer.targets)?;
         self.check(LimitedQuantity::Speed, self.limits.speed, offer.speed)?;
         self.proposed = Some((targets.to_vec(), offer.speed));
         Ok(())
     }
 
-    /// The other half: carries out what was proposed last, and settles.
+    /// The second half: executes the last proposal and settles.
     ///
     /// # Errors
     /// The rig fails, or nothing was proposed that may be carried out.
@@ -162,7 +162,7 @@ impl<'rig> Guard<'rig> {
         self.going.clear();
         let executed = self.rig.execute();
         self.or_hold(executed)?;
-        self.went(told);
+        self.note_speed(told);
         self.commanded = targets;
         self.settled = true;
         Ok(())
@@ -180,9 +180,9 @@ impl<'rig> Guard<'rig> {
         Ok(())
     }
 
-    /// Moves at constant velocity (m/s, signed) to `targets`, reading on the way; the last reading is the one that broke a limit, if
-    /// any did. The limit on the increment is not for it, since its target goes along evenly; the one on the tracking error is for
-    /// settled readings.
+    /// Moves at constant velocity (\[m/s\], signed) to `targets` and reads during the motion. If a limit was exceeded, the
+    /// last reading is the one that exceeded it. The limit of the increment does not apply, because the target moves
+    /// uniformly; the limit of the tracking error applies to settled readings only.
     pub fn traverse(&mut self, targets: &[f64], velocity: f64, samples: usize) -> Traversed {
         let refused = |fault| Traversed {
             readings: Vec::new(),
@@ -200,7 +200,7 @@ impl<'rig> Guard<'rig> {
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
         let (mut heard, mut broken) = (self.heard, None);
-        // Each reading is judged as it comes: a rig that is past a limit is held before its stroke ends.
+        // Each reading is checked as it is made: a rig beyond a limit is held before its stroke ends.
         let traversed = self
             .rig
             .traverse(targets, velocity, samples, &mut |reading| {
@@ -222,7 +222,7 @@ impl<'rig> Guard<'rig> {
         Traversed { readings, fault }
     }
 
-    /// Holds the rig if the energy error (a fraction of the input) lies outside its limit, where one is set.
+    /// Holds the rig if the energy error (a fraction of the input energy) is outside its limit, if there is one.
     ///
     /// # Errors
     /// It does.
@@ -237,8 +237,8 @@ impl<'rig> Guard<'rig> {
         )
     }
 
-    /// Holds the rig if what tracking puts into the test or takes out (a share of its input energy), or the NRMS tracking
-    /// error, lies outside its limit. The first has a limit always.
+    /// Holds the rig if the tracking-error energy (a fraction of the input energy) or the NRMS tracking error is outside
+    /// its limit. The first always has a limit.
     ///
     /// # Errors
     /// It does.
@@ -262,7 +262,7 @@ impl<'rig> Guard<'rig> {
         self.limits.held().tracking_energy_error
     }
 
-    /// Stops all motion and keeps the load. What was proposed is forgotten.
+    /// Stops all motion and keeps the load. A proposed move is forgotten.
     pub fn hold(&mut self) {
         self.proposed = None;
         self.going.clear();
@@ -287,7 +287,7 @@ impl<'rig> Guard<'rig> {
             .try_for_each(|(place, target)| self.check_target(place, *target))
     }
 
-    /// Whether the axis at `place` may go to `target` (m).
+    /// Whether the axis with this index may move to `target` \[m\].
     pub(super) fn check_target(&mut self, place: usize, target: f64) -> Result<(), RigFault> {
         let limit = self.own.get(place).unwrap_or(&self.limits).displacement;
         if inside(limit, target) {
@@ -314,7 +314,7 @@ impl<'rig> Guard<'rig> {
         }
     }
 
-    /// `place`: of the axis, where it is the quantity of one.
+    /// `place`: the index of the axis, for a quantity of one axis.
     pub(super) fn breach(
         &mut self,
         quantity: LimitedQuantity,
@@ -335,7 +335,7 @@ impl<'rig> Guard<'rig> {
 
     pub(super) fn or_hold<T>(&mut self, outcome: Result<T, RigFault>) -> Result<T, RigFault> {
         if let Err(fault) = &outcome {
-            // A limit is the guard's own word.
+            // A fault of a limit comes from the guard itself.
             if !matches!(fault, RigFault::LimitBreached { .. }) {
                 self.heard = self.rig.time();
             }
@@ -345,12 +345,12 @@ impl<'rig> Guard<'rig> {
     }
 }
 
-/// Infinity is inside "no limit", but no place for a rig.
+/// Infinity is inside "no limit", but is not a position of a rig.
 fn inside(limit: Interval, value: f64) -> bool {
     limit.contains(value) && value.is_finite()
 }
 
-/// The first value of a reading that lies outside its limit: those of its axis, where it has any of its own.
+/// The first value of a reading that is outside its limit: that of its axis, if the axis has its own.
 pub(super) fn outside(limits: &Limits, own: &[Limits], reading: &Reading) -> Option<RigFault> {
     let of = |place: usize| own.get(place).unwrap_or(limits);
     let places = (0..).zip(&reading.displacement);
@@ -380,288 +380,11 @@ pub(super) fn outside(limits: &Limits, own: &[Limits], reading: &Reading) -> Opt
         })
 }
 
-/// Size of a change of target, m. The rounding of the subtraction is not held against the plan: 0.3 − 0.2 is not quite 0.1.
+/// Absolute change of a target \[m\]. The rounding of the subtraction is ignored: 0.3 − 0.2 is not exactly 0.1.
 pub(super) fn increment(from: f64, to: f64) -> f64 {
     let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs());
     ((to - from).abs() - rounding).max(0.0)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rig::{DeclaredNoise, EachReading, Identity, Offer};
-
-    /// Says what it is told to say, and remembers what it was asked.
-    #[derive(Default)]
-    struct Scripted {
-        displacement: f64,
-        /// Added to the displacement after a move.
-        error: f64,
-        force: f64,
-        /// Added to a target on its way into the bytes.
-        misspoken: f64,
-        proposed: Vec<(f64, Option<f64>)>,
-        held: bool,
-    }
-
-    impl Rig for Scripted {
-        fn identity(&self) -> Identity {
-            let nothing = String::new;
-            Identity {
-                name: nothing(),
-                model: nothing(),
-                serial: nothing(),
-                firmware: nothing(),
-                boot: None,
-                simulated: true,
-            }
-        }
-        fn degrees_of_freedom(&self) -> usize {
-            1
-        }
-        fn time(&self) -> f64 {
-            0.0
-        }
-        fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
-            self.proposed.push((targets[0], speed));
-            let said = targets[0] + self.misspoken;
-            Ok(Offer {
-                targets: vec![said],
-                speed: speed.unwrap_or(0.0),
-                wire: Vec::new(),
-                move_id: None,
-                at_the_rig: None,
-            })
-        }
-        fn execute(&mut self) -> Result<(), RigFault> {
-            self.displacement = self.proposed.last().unwrap().0 + self.error;
-            Ok(())
-        }
-        fn pause(&mut self, _: f64) -> Result<(), RigFault> {
-            Ok(())
-        }
-        fn read(&mut self) -> Result<Reading, RigFault> {
-            Ok(Reading {
-                time: 0.0,
-                displacement: vec![self.displacement],
-                force: vec![self.force],
-                raw: Vec::new(),
-            })
-        }
-        fn traverse(
-            &mut self,
-            _: &[f64],
-            _: f64,
-            samples: usize,
-            each: EachReading<'_>,
-        ) -> Result<(), RigFault> {
-            let force = |sample: usize| if sample < 2 { self.force } else { f64::NAN };
-            let reading = |sample| Reading {
-                time: 0.0,
-                displacement: vec![0.0],
-                force: vec![force(sample)],
-                raw: Vec::new(),
-            };
-            (0..samples).map(reading).try_for_each(each)
-        }
-        fn hold(&mut self) {
-            self.held = true;
-        }
-        fn declared_noise(&self) -> DeclaredNoise {
-            DeclaredNoise::default()
-        }
-    }
-
-    const LIMITS: Limits = Limits {
-        displacement: Interval {
-            low: -0.002,
-            high: 0.025,
-        },
-        force: Interval {
-            low: -100.0,
-            high: 100.0,
-        },
-        speed: Interval {
-            low: 0.0,
-            high: 0.01,
-        },
-        increment: Interval {
-            low: 0.0,
-            high: 0.001,
-        },
-        tracking_error: Interval {
-            low: 0.0,
-            high: 1e-4,
-        },
-        energy_error: Interval {
-            low: 0.0,
-            high: 0.05,
-        },
-        ..Limits::NONE
-    };
-
-    fn quantity(fault: RigFault) -> LimitedQuantity {
-        match fault {
-            RigFault::LimitBreached { quantity, .. } => quantity,
-            other => panic!("{other:?}"),
-        }
-    }
-
-    /// What one move breaches, having proposed nothing.
-    fn refused(target: f64, speed: Option<f64>) -> LimitedQuantity {
-        let mut rig = Scripted::default();
-        let fault = Guard::new(&mut rig, LIMITS)
-            .unwrap()
-            .move_to(&[target], speed)
-            .unwrap_err();
-        assert!(
-            rig.proposed.is_empty(),
-            "nothing beyond a limit is proposed"
-        );
-        assert!(rig.held);
-        quantity(fault)
-    }
-
-    #[test]
-    fn targets_increments_and_speeds_beyond_a_limit_are_never_proposed() {
-        assert_eq!(refused(-0.003, None), LimitedQuantity::TargetDisplacement);
-        assert_eq!(refused(f64::NAN, None), LimitedQuantity::TargetDisplacement);
-        assert_eq!(refused(0.0015, None), LimitedQuantity::Increment);
-        assert_eq!(refused(0.001, Some(0.02)), LimitedQuantity::Speed);
-        assert_eq!(refused(0.001, Some(f64::NAN)), LimitedQuantity::Speed);
-    }
-
-    #[test]
-    fn what_the_bytes_say_is_held_against_the_limits_too() {
-        // 25 mm is allowed; rounded into the bytes it would be more.
-        let mut rig = Scripted {
-            displacement: 0.0248,
-            misspoken: 3e-4,
-            ..Scripted::default()
-        };
-        let fault = Guard::new(&mut rig, LIMITS)
-            .unwrap()
-            .move_to(&[0.0249], None)
-            .unwrap_err();
-        assert_eq!(quantity(fault), LimitedQuantity::TargetDisplacement);
-        assert!(rig.held && rig.displacement == 0.0248, "not carried out");
-    }
-
-    #[test]
-    fn what_was_refused_or_carried_out_is_not_carried_out_again() {
-        let mut rig = Scripted::default();
-        let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
-        assert!(guard.execute().is_err(), "nothing was proposed");
-        guard.propose(&[0.0005], None).unwrap();
-        assert_eq!(guard.commanded(), [0.0], "nothing moved yet");
-        assert!(guard.propose(&[0.03], None).is_err());
-        assert!(
-            guard.execute().is_err(),
-            "the proposal before it is forgotten"
-        );
-        guard.propose(&[0.0005], None).unwrap();
-        guard.hold();
-        assert!(guard.execute().is_err(), "held in between");
-        guard.propose(&[0.0005], None).unwrap();
-        guard.execute().unwrap();
-        assert_eq!(guard.commanded(), [0.0005]);
-        assert!(guard.execute().is_err());
-        assert_eq!(rig.displacement, 0.0005);
-    }
-
-    #[test]
-    fn without_limits_a_target_that_is_no_number_still_never_passes() {
-        for target in [f64::NAN, f64::INFINITY] {
-            let mut rig = Scripted::default();
-            assert!(
-                Guard::new(&mut rig, Limits::NONE)
-                    .unwrap()
-                    .move_to(&[target], None)
-                    .is_err()
-            );
-            assert!(rig.held && rig.proposed.is_empty());
-        }
-    }
-
-    #[test]
-    fn a_reading_that_is_no_number_or_beyond_a_limit_holds_the_rig() {
-        for (force, error, expected) in [
-            (f64::NAN, 0.0, LimitedQuantity::Force),
-            (101.0, 0.0, LimitedQuantity::Force),
-            (0.0, f64::NAN, LimitedQuantity::MeasuredDisplacement),
-            (0.0, 2e-4, LimitedQuantity::TrackingError),
-        ] {
-            let mut rig = Scripted {
-                error,
-                ..Scripted::default()
-            };
-            let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
-            guard.move_to(&[0.001], None).unwrap();
-            rig.force = force;
-            let (commanded, own, going, holds, speed) =
-                (vec![0.001], Vec::new(), Vec::new(), None, None);
-            let (settled, proposed, heard, found) = (true, None, 0.0, (Vec::new(), Vec::new()));
-            let mut guard = Guard {
-                rig: &mut rig,
-                limits: LIMITS,
-                own,
-                commanded,
-                going,
-                settled,
-                proposed,
-                speed,
-                heard,
-                holds,
-                found,
-                broken: None,
-            };
-            assert_eq!(quantity(guard.read().unwrap_err()), expected);
-            assert!(rig.held);
-        }
-        let mut rig = Scripted {
-            force: f64::NAN,
-            ..Scripted::default()
-        };
-        assert!(Guard::new(&mut rig, Limits::NONE).is_err());
-    }
-
-    #[test]
-    fn the_bound_itself_is_inside_and_rounding_of_an_increment_is_not_held_against_it() {
-        let mut rig = Scripted::default();
-        let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
-        for step in 1..=25 {
-            guard
-                .move_to(&[f64::from(step) * 0.001], Some(0.01))
-                .unwrap();
-        }
-        assert_eq!(guard.commanded(), [0.025]);
-        assert_eq!(guard.way_to(&[0.0]).len(), 25);
-        for target in guard.way_to(&[0.0]) {
-            guard.move_to(&target, None).unwrap();
-        }
-        assert_eq!(
-            rig.proposed.last(),
-            Some(&(0.0, Some(0.01))),
-            "the limit is the speed where none is asked"
-        );
-    }
-
-    #[test]
-    fn a_traverse_keeps_what_was_read_before_a_bad_reading() {
-        let mut rig = Scripted::default();
-        let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
-        let traversed = guard.traverse(&[0.01], 0.01, 5);
-        assert_eq!(traversed.readings.len(), 2);
-        assert_eq!(quantity(traversed.fault.unwrap()), LimitedQuantity::Force);
-        assert_eq!(
-            quantity(guard.traverse(&[0.01], -0.02, 5).fault.unwrap()),
-            LimitedQuantity::Speed
-        );
-        assert!(guard.check_energy_error(-0.05).is_ok());
-        assert_eq!(
-            quantity(guard.check_energy_error(f64::NAN).unwrap_err()),
-            LimitedQuantity::EnergyError
-        );
-        assert!(rig.held);
-    }
-}
+mod tests;

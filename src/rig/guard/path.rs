@@ -1,16 +1,16 @@
-//! Ways of several moves: what the plan asks for as one, a limited increment makes several. In: where the rig stands, where it
-//! is to go. Out: targets, none farther from the one before than the limit. It moves nothing.
+//! Motions of several moves: a limit of the increment divides one requested motion into several. In: the position of the
+//! rig and its target. Out: targets whose increments are inside the limit. It moves nothing.
 
 use super::{Guard, increment};
 
-/// Moves of one way, at most.
+/// Moves of one motion, at most.
 const MOST: f64 = 1e5;
 
 impl Guard<'_> {
-    /// The targets on the way to `targets`, in equal increments none of which is longer than the limit; the last is
-    /// `targets` itself.
+    /// The targets on the path to `targets`, in equal increments that are not longer than the limit. The last is `targets`
+    /// itself.
     #[must_use]
-    pub fn way_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
+    pub fn increments_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
         let longest = targets
             .iter()
             .zip(&self.commanded)
@@ -19,23 +19,24 @@ impl Guard<'_> {
         let parts = (longest / self.limits.increment.high * (1.0 - 4.0 * f64::EPSILON))
             .ceil()
             .max(1.0);
-        // A limit of nothing allows no way at all: the one move is then refused as it should be.
+        // A limit of zero allows no motion: the single move is then refused as it should be.
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "between 1 and 1e5"
         )]
         let parts = if parts <= MOST { parts as u32 } else { 1 };
-        let way = self.way_in(parts, targets);
-        // Places far from 0 are rounded more coarsely than a short increment near 0 allows for: in one more they fit.
+        let way = self.increments_in(parts, targets);
+        // Positions far from 0 are rounded more coarsely than a short increment near 0 allows. With one increment more they
+        // fit.
         if parts == 1 || self.fits(&way) {
             way
         } else {
-            self.way_in(parts + 1, targets)
+            self.increments_in(parts + 1, targets)
         }
     }
 
-    fn way_in(&self, parts: u32, targets: &[f64]) -> Vec<Vec<f64>> {
+    fn increments_in(&self, parts: u32, targets: &[f64]) -> Vec<Vec<f64>> {
         let between = (1..parts).map(|part| {
             let fraction = f64::from(part) / f64::from(parts);
             self.commanded
@@ -47,7 +48,7 @@ impl Guard<'_> {
         between.chain(std::iter::once(targets.to_vec())).collect()
     }
 
-    /// Whether no step of a way is longer than the limit.
+    /// Whether no increment is longer than the limit.
     fn fits(&self, way: &[Vec<f64>]) -> bool {
         let limit = self.limits.increment;
         let steps = std::iter::once(&self.commanded).chain(way).zip(way);
@@ -64,7 +65,8 @@ mod tests {
     use crate::rig::{VirtualRig, virtual_rig};
     use crate::tests::testing::elastic_plan;
 
-    /// Home from 10 mm by 0.1 mm, where the places before 1 mm were rounded by more than their increments.
+    /// Back to 0 from 10 mm in increments of 0.1 mm: the positions beyond 1 mm were rounded by more than the tolerance of
+    /// an increment.
     #[test]
     fn every_way_out_and_back_fits_its_own_limit() {
         let plan = elastic_plan(300.0, Vec::new());
@@ -78,7 +80,7 @@ mod tests {
             };
             let mut guard = Guard::new(rig.as_mut(), limits).unwrap();
             for end in [0.01, 0.0, -0.01, 0.01] {
-                let way = guard.way_to(&[end]);
+                let way = guard.increments_to(&[end]);
                 let straight = (end - guard.commanded()[0]).abs() / high;
                 #[expect(clippy::cast_precision_loss, reason = "some hundred")]
                 let moves = way.len() as f64;

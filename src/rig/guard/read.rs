@@ -1,5 +1,5 @@
-//! Readings at rest: each inside its limits, and where the rig has settled near its target. In: what a procedure asks for. Out: a reading,
-//! or the rig held.
+//! Readings at rest: each inside its limits and, after settling, near its target. In: the request of a procedure. Out: a
+//! reading, or the rig on hold.
 
 use super::outside;
 use crate::rig::safety::failpoint::{Guarding, on};
@@ -9,13 +9,13 @@ impl Guard<'_> {
     /// Reads once.
     ///
     /// # Errors
-    /// The reading lies outside a limit or is no number, or the rig fails.
+    /// The reading is outside a limit or not finite, or the rig fails.
     pub fn read(&mut self) -> Result<Reading, RigFault> {
         let reading = self.rig.read();
         self.judged(reading)
     }
 
-    /// The same, with when the rig went on its last move: begin and end of the even motion that stands for it, s.
+    /// The same, with the time of the last move: start and end of the equivalent uniform motion \[s\].
     ///
     /// # Errors
     /// As [`Guard::read`].
@@ -76,7 +76,7 @@ impl Guard<'_> {
     }
 }
 
-/// Whether a reading is of numbers: what is none is not kept.
+/// Whether all values of a reading are finite. A reading that is not finite is not kept.
 pub(crate) fn is_finite(reading: &Reading) -> bool {
     reading
         .displacement

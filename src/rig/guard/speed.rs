@@ -1,21 +1,22 @@
-//! How fast the rig went last. In: what the bytes of a move said, and what was seen of it. Out: a speed for who watches. It
-//! judges nothing: before a move leaves, the guard has held its speed against the limit.
+//! The speed of the last motion. In: the speed decoded from a move, and the speed that was seen. Out: a speed for display.
+//! It checks nothing: the guard has compared the speed of a move with the limit before it is sent.
 
 use crate::rig::Guard;
 
-/// A share of the speed that was told, by which what is seen must be beyond it to count: the rounding of clocks and places is less.
+/// Fraction of the commanded speed by which the seen speed must exceed it to count: the rounding of clocks and positions is
+/// less.
 const BEYOND: f64 = 1e-3;
 
 impl Guard<'_> {
-    /// Speed of the last way, m/s: of a move what the rig was told, or more where it was there sooner; of a stroke what it was
-    /// told; of smooth paths the fastest place of the fastest. None before the first.
+    /// Speed of the last motion \[m/s\]. For a move: the commanded speed, or the seen speed if that was higher. For a
+    /// stroke: the commanded speed. For smooth paths: the highest speed of the fastest axis. None before the first motion.
     #[must_use]
     pub const fn speed(&self) -> Option<f64> {
         self.speed
     }
 
-    /// A move is done that the rig was told this speed of, m/s.
-    pub(crate) fn went(&mut self, told: f64) {
+    /// Notes that a move with this commanded speed \[m/s\] is done.
+    pub(crate) fn note_speed(&mut self, told: f64) {
         let seen = self
             .rig
             .seen_speed()

@@ -1,5 +1,5 @@
-//! The coordinate of one axis: how places and forces of its devices count in the plan. In: numbers of one side. Out: those of the
-//! other. It knows no device and no record.
+//! The coordinate of one axis: conversion of positions and forces between its devices and the plan. In: numbers of one
+//! side. Out: those of the other. It knows no device and no run log.
 
 use crate::plan::{Interval, Limits};
 
@@ -8,19 +8,19 @@ use crate::plan::{Interval, Limits};
 pub(super) struct Coordinate {
     /// +1 or −1.
     pub(super) sign: f64,
-    /// Where the plan's zero lies in the device's own coordinate, m.
+    /// The position of the plan's zero in the device's own coordinate \[m\].
     pub(super) datum: f64,
 }
 
 impl Coordinate {
-    /// Of an axis whose own zero is the plan's.
+    /// For an axis whose own zero is the plan's.
     pub(super) const fn of_sign(sign: f64) -> Self {
         Self { sign, datum: 0.0 }
     }
 
-    /// A place of the device, m, as the plan has it.
+    /// A position of the device \[m\], in the plan's coordinate.
     pub(super) fn in_plan(self, place: f64) -> f64 {
-        // Where the zero lies elsewhere, it is read as 0 and not as −0.
+        // With a different zero, the zero is read as 0 and not as −0.
         if self.datum == 0.0 {
             self.sign * place
         } else {
@@ -28,7 +28,7 @@ impl Coordinate {
         }
     }
 
-    /// A place of the plan, m, as the device has it.
+    /// A position of the plan \[m\], in the device's coordinate.
     pub(super) fn at_device(self, place: f64) -> f64 {
         let turned = self.sign * place;
         // A sum with 0 would make 0 of −0, and other bytes of it.

@@ -1,55 +1,57 @@
-//! The last hold of a run that ends early. In: devices that may be deaf, or dead. Out: whether the rig was seen at rest after it was
-//! told to hold, and where; every wait is bounded. What it is held for is not its business.
+//! The final hold of a run that ends early. In: devices that may not answer. Out: whether the rig was seen at rest after
+//! the command, and where. Every wait is bounded. The reason of the hold is not known here.
 
 use super::{Part, RealRig};
 use crate::rig::controllers::{DeviceFault, SLICE};
 use crate::rig::safety;
-use crate::rig::{Halted, RigFault};
+use crate::rig::{FinalHold, RigFault};
 
-/// A rig that was told to hold and still moves is waited for so long, s.
+/// Longest wait for a rig that still moves after the command to hold \[s\].
 const COMES_TO_REST: f64 = 5.0;
 
 /// Displacement (m) and force (N) of every axis, where they could be read, with their bytes.
 type Found = (Option<(Vec<f64>, Vec<f64>)>, Vec<Vec<u8>>);
 
 impl RealRig {
-    /// Tells it to hold, and gives whether it heard; where that finds no ear, sends what needs no answer.
-    pub(super) fn tell_to_hold(&mut self) -> Result<(), String> {
-        self.wish.heed();
+    /// Commands a hold and gives whether a device confirmed it. Without a confirmation, sends the bytes that need no
+    /// answer.
+    pub(super) fn command_hold(&mut self) -> Result<(), String> {
+        self.stop_request.acknowledge();
         (self.proposed, self.settled) = (None, None);
         self.axes.iter_mut().for_each(|axis| axis.way = None);
         if !self.deaf {
             let mut heard = self.actuator.hold();
             if heard == Err(DeviceFault::Interrupted) {
-                // Another wish to hold, while it was being held.
-                self.wish.heed();
+                // Another request to hold, while the hold was in progress.
+                self.stop_request.acknowledge();
                 heard = self.actuator.hold();
             }
             let Err(fault) = heard else { return Ok(()) };
-            self.unheard = self.told(Part::Actuator, &fault).to_string();
+            self.unheard = self.device_fault(Part::Actuator, &fault).to_string();
             self.deaf = true;
         }
         safety::hold_everything();
         Err(self.unheard.clone())
     }
 
-    /// Tells it to hold, waits until it is seen at rest, and reads it once.
-    pub(super) fn held_for_good(&mut self) -> Halted {
-        let held = self.tell_to_hold().and_then(|()| self.until_at_rest());
+    /// Commands a hold, waits until the rig is seen at rest, and reads it once.
+    pub(super) fn hold_finally(&mut self) -> FinalHold {
+        let held = self.command_hold().and_then(|()| self.until_at_rest());
         let (found, raw) = if held.is_ok() {
             self.reading_at_rest()
         } else {
             (None, Vec::new())
         };
-        Halted {
+        FinalHold {
             time: self.clock.now() - self.began,
-            doubt: held.err(),
+            unconfirmed: held.err(),
             found,
             raw,
         }
     }
 
-    /// Until the actuator says that it does not move; of one that does not say so, until it is seen twice at one place.
+    /// Waits until the actuator reports that it does not move; an actuator that does not report this must be seen twice at
+    /// one position.
     fn until_at_rest(&mut self) -> Result<(), String> {
         let began = self.clock.now();
         // At its own speed it would be several bands farther.
@@ -80,25 +82,25 @@ impl RealRig {
                     before = Some(places);
                     "it still moves".clone_into(&mut last);
                 }
-                Err(DeviceFault::Interrupted) => self.wish.heed(),
+                Err(DeviceFault::Interrupted) => self.stop_request.acknowledge(),
                 Err(fault @ (DeviceFault::NoReading { .. } | DeviceFault::Impossible { .. })) => {
-                    last = self.told(Part::Actuator, &fault).to_string();
+                    last = self.device_fault(Part::Actuator, &fault).to_string();
                 }
-                Err(fault) => return Err(self.told(Part::Actuator, &fault).to_string()),
+                Err(fault) => return Err(self.device_fault(Part::Actuator, &fault).to_string()),
             }
             self.sleep(between);
         }
         Err(last)
     }
 
-    /// Displacement (m) and force (N) of every axis where it stands, with their bytes.
+    /// Displacement \[m\] and force \[N\] of every axis at rest, with their bytes.
     fn reading_at_rest(&mut self) -> Found {
-        // However long it was silent before: what counts is that it answers now.
+        // Earlier silence does not matter: the device answers now.
         self.heard = self.clock.now();
-        let _ = self.wish.take_absence();
+        let _ = self.stop_request.take_line_gap();
         let mut read = self.poll();
         if matches!(read, Err(RigFault::Interrupted)) {
-            self.wish.heed();
+            self.stop_request.acknowledge();
             read = self.poll();
         }
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
@@ -110,7 +112,7 @@ impl RealRig {
         }
     }
 
-    /// Waits without heeding a wish: it is being heeded.
+    /// Waits without observing a stop request, because it is being carried out.
     fn sleep(&mut self, seconds: f64) {
         let until = self.clock.now() + seconds;
         loop {

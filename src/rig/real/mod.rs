@@ -1,6 +1,6 @@
-//! A rig that moves a real specimen. In: one target per axis, and the devices. Out: settled
-//! readings in the polarity of the plan, judged axis by axis; a fault of one axis holds all. It
-//! knows no protocol and no procedure; the guard decides which motions are allowed.
+//! A rig that moves a real specimen. In: one target per axis, and the devices. Out: settled readings in the polarity of the
+//! plan, validated axis by axis; a fault of one axis holds all. It knows no protocol and no procedure; the guard decides
+//! which motions are allowed.
 
 mod coordinate;
 mod halt;
@@ -8,7 +8,6 @@ mod motion;
 mod open;
 mod path;
 mod poll;
-mod raw_decode;
 mod settle;
 mod stroke;
 mod validity;
@@ -16,57 +15,56 @@ mod validity;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
 
-use super::controllers::{Device, DeviceFault, Move};
-use super::motion::of_places;
+use super::controllers::{Device, DeviceFault, DeviceMove};
+use super::motion::from_positions;
 use super::safety::failpoint::{Guarding, on};
 use super::transport::Clock;
 use super::{
-    CutOff, DeclaredNoise, EachReading, Halted, Identity, LastMove, Live, Offer, Reading, Rig,
-    RigFault, Tally, Wish,
+    CutOff, DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, LastMove, LineStatistics,
+    Live, Reading, Rig, RigFault, StopRequest,
 };
 use coordinate::Coordinate;
 pub use open::commands_only;
-pub use raw_decode::ReadBack;
-use validity::Judge;
+use validity::ReadingValidator;
 
-/// What six decimals of a millimetre cannot say, m.
+/// The rounding of six decimals of a millimetre \[m\].
 const WIRE_ROUNDING: f64 = 0.5e-9;
 
-/// Actuators and what weighs what they bend.
+/// Actuators with their load cells.
 pub struct RealRig {
     link: RealLink,
     settle: Settle,
     axes: Vec<Axis>,
     identity: Identity,
-    /// The replies in which its devices said so.
+    /// The replies with the identity of its devices.
     introduction: Vec<Vec<u8>>,
     actuator: Box<dyn Device>,
     load_cell: Option<Box<dyn Device>>,
     clock: Box<dyn Clock>,
-    wish: Wish,
+    stop_request: StopRequest,
     /// The clock when it was opened, s.
     began: f64,
-    /// The clock when the devices were last heard, s.
+    /// Time of the last answer of the devices \[s\], by the clock.
     heard: f64,
     proposed: Option<Proposed>,
-    /// Where it has settled, m; None while it is on its way, and where nobody waited for it to settle.
+    /// The position where it has settled \[m\]. None during a motion, and after a motion without settling.
     settled: Option<Vec<f64>>,
-    /// Of each axis when the dwell in which it settled began, s, and the median force of it, N.
+    /// For each axis, the start of the dwell in which it settled \[s\] and its median force \[N\].
     rested: Vec<Option<(f64, f64)>>,
-    /// Mean speed of the last move as it was seen, m/s.
+    /// Mean speed of the last move as it was seen \[m/s\].
     seen_speed: Option<f64>,
-    /// Times (s, by the clock) and places (m) of the first axis on the last move, as it was seen.
+    /// Times (\[s\], by the clock) and positions \[m\] of the first axis during the last move, as they were seen.
     seen_places: Vec<(f64, f64)>,
     reread: u64,
-    /// It was sent on a way since it was opened.
+    /// It has moved since it was opened.
     moved: bool,
     /// Why its position is not to be trusted.
     untrusted: Option<String>,
-    /// The words that hold it found no ear: only those that need no answer are left.
+    /// The hold command was not received: only the bytes that need no answer are left.
     deaf: bool,
     /// Why they found none.
     unheard: String,
-    /// Where readings are shown as they come.
+    /// Publishes readings as they are made.
     live: Live,
 }
 
@@ -79,47 +77,48 @@ struct Axis {
     calibration: Calibration,
     /// Another device than the one that moves it reads its force.
     weighed_apart: bool,
-    judge: Judge,
-    /// The last reading on the way was outside a limit.
+    validator: ReadingValidator,
+    /// The last reading during the motion was outside a limit.
     outside: bool,
-    /// Between the farthest places of the last path, m; 0 where a move came after it.
+    /// Distance between the extreme positions of the last path \[m\]. 0 after a move.
     span: f64,
-    /// Between where it set off and where it was sent, with what a ram may overshoot, m; None where it follows a path.
+    /// The range between the start and the target of the move, with the possible overshoot of an actuator \[m\]. None on a
+    /// path.
     way: Option<Interval>,
-    /// The last reading on the way was off it.
+    /// The last reading during the motion was outside this range.
     off: bool,
 }
 
 /// A move that was offered and not yet sent.
 #[derive(Clone, Debug)]
 struct Proposed {
-    going: Move,
+    going: DeviceMove,
     /// m, in the plan's sign.
     targets: Vec<f64>,
-    /// Where it stood when it was offered, m.
+    /// The position at the time of the proposal \[m\].
     from: Vec<f64>,
 }
 
 impl RealRig {
-    /// Whether its position and readings are still to be trusted: no device started anew or lost its reference.
+    /// Whether its position and readings are to be trusted: no device restarted or lost its reference.
     #[must_use]
     pub const fn trusted(&self) -> bool {
         self.untrusted.is_none()
     }
 
-    /// Where its readings are to be seen as they come, on the way too.
+    /// Publishes its readings as they are made, also during a motion.
     #[must_use]
     pub fn live(&self) -> Live {
         self.live.clone()
     }
 
-    /// Whether its displacement is what was commanded and nothing measures it.
+    /// Whether its displacement is the command and is not measured.
     #[must_use]
     pub fn open_loop(&self) -> bool {
         open::commands_only(&self.link)
     }
 
-    /// Places of the devices, m, one an axis, as the plan has them.
+    /// Positions of the devices \[m\], one per axis, in the plan's coordinate.
     fn in_plan(&self, places: &[f64]) -> Vec<f64> {
         self.axes
             .iter()
@@ -128,20 +127,26 @@ impl RealRig {
             .collect()
     }
 
-    /// The wall clock, for the record.
+    /// The wall clock, for the run log.
     #[must_use]
     pub fn wall(&self) -> Option<String> {
         self.clock.wall()
     }
 
-    /// A fault of a device, said of the rig.
-    fn told(&mut self, part: Part, fault: &DeviceFault) -> RigFault {
-        let (role, behind, culprit) = match (part, &self.load_cell) {
-            (Part::LoadCell, Some(cell)) => ("load cell", self.link.load_cells(), cell.culprit()),
-            _ => ("actuator", self.link.actuators(), self.actuator.culprit()),
+    /// A fault of a device as a fault of the rig.
+    fn device_fault(&mut self, part: Part, fault: &DeviceFault) -> RigFault {
+        let (role, behind, faulty_member) = match (part, &self.load_cell) {
+            (Part::LoadCell, Some(cell)) => {
+                ("load cell", self.link.load_cells(), cell.faulty_member())
+            }
+            _ => (
+                "actuator",
+                self.link.actuators(),
+                self.actuator.faulty_member(),
+            ),
         };
-        // Of several the one it is the fault of; where that is not known the first.
-        let place = behind.get(culprit.unwrap_or(0)).map_or_else(
+        // Among several devices the one with the fault; the first if that is not known.
+        let place = behind.get(faulty_member.unwrap_or(0)).map_or_else(
             || role.to_owned(),
             |behind| format!("{} on {}", behind.name(role), behind.link.port),
         );
@@ -205,7 +210,7 @@ impl Rig for RealRig {
         self.clock.now() - self.began
     }
 
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         self.proposed = None;
         if let Some(reason) = &self.untrusted {
             return Err(RigFault::Device(format!("not moved any more: {reason}")));
@@ -224,8 +229,8 @@ impl Rig for RealRig {
             )));
         }
         let speed = speed.unwrap_or(self.link.own_speed);
-        // Asked before the bytes are made, for between them and their sending nothing is asked.
-        // What it says of itself there may be a reason to hold, as anywhere.
+        // Polled before the bytes are made, because nothing is polled between them and their sending. The status flags may
+        // be a reason to hold, as with any reading.
         let polled = self.poll();
         let from = self.or_hold(polled)?.displacement;
         let turned: Vec<f64> = self
@@ -237,9 +242,9 @@ impl Rig for RealRig {
         let going = self
             .actuator
             .encode(&turned, speed)
-            .map_err(|fault| self.told(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         let said = self.in_plan(&going.targets);
-        // What the devices resolve is as near as they can say it.
+        // The resolution of the devices bounds how close the decoded target can be.
         let apt = |(axis, (said, target)): (&Axis, (&f64, &f64))| {
             let allowed = WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6);
             (said - target).abs() <= allowed
@@ -261,7 +266,7 @@ impl Rig for RealRig {
             .iter()
             .any(|axis| axis.coordinate.datum != 0.0)
             .then(|| going.targets.clone());
-        let offer = Offer {
+        let propose = EncodedMove {
             targets: said,
             speed: going.speed,
             wire: going.frames.concat(),
@@ -273,7 +278,7 @@ impl Rig for RealRig {
             targets: targets.to_vec(),
             from,
         });
-        Ok(offer)
+        Ok(propose)
     }
 
     fn execute(&mut self) -> Result<(), RigFault> {
@@ -292,7 +297,7 @@ impl Rig for RealRig {
     }
 
     fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
-        let moved = of_places(&self.seen_places).map(|ends| ends.map(|end| end - self.began));
+        let moved = from_positions(&self.seen_places).map(|ends| ends.map(|end| end - self.began));
         Ok((self.read()?, moved))
     }
 
@@ -334,18 +339,18 @@ impl Rig for RealRig {
         done: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        let followed = self.rest_of_way(paths, samples.saturating_sub(done), each);
+        let followed = self.rest_of_path(paths, samples.saturating_sub(done), each);
         self.or_hold(followed)
     }
 
-    /// Says so, and where that finds no ear sends what needs no answer.
+    /// Sends the hold command, and without a confirmation the bytes that need no answer.
     fn hold(&mut self) {
-        // Whether it was heard is told at the end of the run.
-        let _ = self.tell_to_hold();
+        // Whether it was received is reported at the end of the run.
+        let _ = self.command_hold();
     }
 
-    fn halt(&mut self) -> Option<Halted> {
-        Some(self.held_for_good())
+    fn halt(&mut self) -> Option<FinalHold> {
+        Some(self.hold_finally())
     }
 
     fn datum(&self) -> Option<Vec<f64>> {
@@ -381,13 +386,13 @@ impl Rig for RealRig {
         })
     }
 
-    fn tally(&self) -> Tally {
+    fn line_statistics(&self) -> LineStatistics {
         let cell = self
             .load_cell
             .as_ref()
-            .map_or_else(Tally::default, |cell| cell.tally());
-        let actuator = self.actuator.tally();
-        Tally {
+            .map_or_else(LineStatistics::default, |cell| cell.line_statistics());
+        let actuator = self.actuator.line_statistics();
+        LineStatistics {
             resent: actuator.resent + cell.resent,
             ignored: actuator.ignored + cell.ignored,
             reread: actuator.reread + cell.reread + self.reread,
@@ -395,13 +400,5 @@ impl Rig for RealRig {
     }
 }
 
-#[cfg(test)]
-mod disturbed_tests;
-#[cfg(test)]
-mod halt_tests;
-#[cfg(test)]
-mod speed_tests;
-#[cfg(test)]
-mod straying_tests;
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,5 @@
-//! Motion of a real rig. In: a move that was offered. Out: the rig at its target and settled, or why not.
-//! Every wait is bounded, sees a wish to hold, and keeps the devices hearing that the program lives.
+//! Motion of a real rig. In: a proposed move. Out: the rig settled at its target, or the reason why not. Every wait is
+//! bounded, observes stop requests, and keeps the heartbeat of the devices alive.
 
 use super::poll::Point;
 use super::settle::Settling;
@@ -10,8 +10,8 @@ use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{LimitedQuantity, Reading, RigFault, named_axis, who};
 use crate::units::{Dimension, display};
 
-/// How far off its way an axis may be before it is held: so many settle bands, and this share of the farthest way. A servo passes
-/// its target by less, and the axis of a neighbour that moves is moved by less.
+/// Largest deviation of an axis from its path before it is held: a number of settling bands, and a fraction of the longest
+/// travel. The overshoot of a servo is smaller, and so is the motion that a moving neighbour causes.
 const BESIDE_BANDS: f64 = 2.0;
 const BESIDE_WAY: f64 = 0.25;
 /// Standard deviations of the noise between two readings of the same force that no chance brings.
@@ -27,15 +27,16 @@ impl RealRig {
         let (targets, seconds) = self.set_off()?;
         let there = self.settle_at(&targets, self.clock.now() + seconds)?;
         self.settled = Some(targets);
-        // The time on the line counts as time under way: it was no slower than this.
+        // The time on the line counts as part of the motion: it was not slower than this.
         self.seen_speed = told
             .map(|told| told * seconds / (there - began))
             .filter(|speed| speed.is_finite());
         Ok(())
     }
 
-    /// Waits until every axis has settled, all in one sampling: an axis that another disturbs begins its dwell anew. `arrival` (s, by
-    /// the clock) is when the farthest of them should be there; given is when they were seen to be, s.
+    /// Waits until every axis has settled, all in one sampling: an axis that another one disturbs begins its dwell again.
+    /// `arrival` (\[s\], by the clock) is the expected arrival of the axis with the longest travel. Gives the time when all
+    /// were seen to be settled \[s\].
     pub(super) fn settle_at(&mut self, targets: &[f64], arrival: f64) -> Result<f64, RigFault> {
         let mut settling = Settling::of(self.settle, targets);
         let mut rested = None;
@@ -45,7 +46,8 @@ impl RealRig {
             self.seen_places.push((now, point.displacement[0]));
             self.watch(&point)?;
             let astray = first_astray(&settling, &point);
-            // One that cannot say whether it moves, or says so before it has begun, is given the time that the way takes.
+            // A device that cannot report whether it moves, or reports rest before it has begun, is given the duration of
+            // the travel.
             let there = point.moving == Some(false) && astray.is_none();
             let rests = there || point.moving != Some(true) && now >= arrival;
             if rests {
@@ -59,7 +61,7 @@ impl RealRig {
                 .iter_mut()
                 .zip(point.displacement.iter().zip(&point.force));
             let met: Vec<bool> = readings
-                .map(|(axis, (x, force))| axis.met(now, *x, *force, steady))
+                .map(|(axis, (x, force))| axis.add_reading(now, *x, *force, steady))
                 .collect();
             let Some(unmet) = met.iter().position(|met| !met) else {
                 self.rested = settling.iter().map(Settling::rested).collect();
@@ -79,10 +81,9 @@ impl RealRig {
         }
     }
 
-    /// Stays until the moment `until` (s, by the clock), and asks often enough that the devices hear that the program
-    /// lives.
+    /// Waits until the time `until` (\[s\], by the clock), and polls often enough for the heartbeat of the devices.
     pub(super) fn stay_until(&mut self, until: f64) -> Result<(), RigFault> {
-        // Reckoned from when the rig was last heard: many short stays are one long silence else.
+        // Counted from the last answer of the rig: otherwise many short waits would be one long silence.
         while self.heard + self.link.watchdog / 4.0 < until {
             self.wait_until(self.heard + self.link.watchdog / 4.0)?;
             let point = self.poll()?;
@@ -91,7 +92,8 @@ impl RealRig {
         self.wait_until(until)
     }
 
-    /// Holds a reading on the way against the limits: the settled one would come too late. One alone may be a spike.
+    /// Compares a reading during the motion with the limits, because the settled one would come too late. A single reading
+    /// may be a spike.
     pub(super) fn watch(&mut self, point: &Point) -> Result<(), RigFault> {
         let count = self.axes.len();
         let mut found = None;
@@ -120,12 +122,12 @@ impl RealRig {
                 },
             ));
         }
-        found.map_or_else(|| self.stays_on_its_way(point), Err)
+        found.map_or_else(|| self.check_path_deviation(point), Err)
     }
 
-    /// An axis that goes where nobody sent it is held before it is there: a target may have been heard wrong, a limit forgotten.
-    /// One reading alone may be a spike.
-    fn stays_on_its_way(&mut self, point: &Point) -> Result<(), RigFault> {
+    /// An axis that leaves its path is held before it arrives elsewhere: a target may have been received wrong, or a limit
+    /// forgotten. A single reading may be a spike.
+    fn check_path_deviation(&mut self, point: &Point) -> Result<(), RigFault> {
         let count = self.axes.len();
         for (place, axis) in self.axes.iter_mut().enumerate() {
             let at = point.displacement[place];
@@ -133,7 +135,7 @@ impl RealRig {
                 axis.off = false;
                 continue;
             };
-            if std::mem::replace(&mut axis.off, true) && on(Guarding::Straying) {
+            if std::mem::replace(&mut axis.off, true) && on(Guarding::PathDeviation) {
                 let shown = |place| display::plain(place, Dimension::LENGTH, 6);
                 let (who, at, low, high) = (
                     who(named_axis(place, count)),
@@ -152,7 +154,7 @@ impl RealRig {
     /// Waits without asking anything.
     pub(super) fn wait_until(&mut self, until: f64) -> Result<(), RigFault> {
         loop {
-            if self.wish.wants_hold() {
+            if self.stop_request.hold_requested() {
                 return Err(RigFault::Interrupted);
             }
             let left = until - self.clock.now();
@@ -164,7 +166,7 @@ impl RealRig {
         }
     }
 
-    /// Sends the offered move. Gives its targets (m) and the time the farthest way takes, s.
+    /// Sends the proposed move. Gives its targets \[m\] and the duration of the longest travel \[s\].
     pub(super) fn set_off(&mut self) -> Result<(Vec<f64>, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
         let Proposed {
@@ -175,7 +177,7 @@ impl RealRig {
         self.moved = true;
         self.actuator
             .start(&going)
-            .map_err(|fault| self.told(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         (self.deaf, self.settled) = (false, None);
         self.seen_places = vec![(self.clock.now(), from[0])];
         for axis in &mut self.axes {
@@ -205,26 +207,27 @@ impl RealRig {
             .then_some(Disturbed { astray })
     }
 
-    /// Whether the force of a reading is none that the dwell before it leads to: further from the median of that dwell than noise, and a
-    /// force that changes as fast as settling allows, can bring it. Most readings of one median may have lost a digit on the line.
-    pub(super) fn leaps(&self, reading: &Reading) -> bool {
+    /// Whether the force of a reading does not follow from the dwell before it: its distance from the median of that dwell
+    /// is more than noise and the force rate that settling allows. Most readings of one median may have lost a digit on the
+    /// line.
+    pub(super) fn force_jumps(&self, reading: &Reading) -> bool {
         let (now, rate) = (self.clock.now(), self.settle.force_rate);
-        let leaps = |axis: &Axis, rested: Option<(f64, f64)>, force: f64| {
+        let force_jumps = |axis: &Axis, rested: Option<(f64, f64)>, force: f64| {
             rested.is_some_and(|(began, before)| {
                 let allowed = LEAP * axis.rules.noise + rate * (now - began);
                 axis.rules.noise > 0.0 && rate > 0.0 && (force - before).abs() > allowed
             })
         };
         let read = self.rested.iter().zip(&reading.force);
-        on(Guarding::Leap)
+        on(Guarding::ForceJump)
             && self
                 .axes
                 .iter()
                 .zip(read)
-                .any(|(axis, (rested, force))| leaps(axis, *rested, *force))
+                .any(|(axis, (rested, force))| force_jumps(axis, *rested, *force))
     }
 
-    /// It says that it has arrived, and the axis at this place stands elsewhere.
+    /// The rig reports that it has arrived, and the axis with this index is at a different position.
     pub(super) fn following(&self, place: usize, point: &Point, targets: &[f64]) -> RigFault {
         let error = (point.displacement[place] - targets[place]).abs();
         RigFault::Following {
@@ -234,7 +237,7 @@ impl RealRig {
         }
     }
 
-    /// Too late; the axis at `place` is the first of those that kept it waiting, where that is known.
+    /// Too late. The axis with this index is the first of those that delayed settling, if that is known.
     pub(super) fn unsettled(&self, place: Option<usize>) -> RigFault {
         let axis = place.and_then(|place| named_axis(place, self.axes.len()));
         RigFault::NotSettled {
@@ -244,10 +247,11 @@ impl RealRig {
     }
 }
 
-/// What had settled has not.
+/// The rig is no longer settled.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disturbed {
-    /// The first axis that left its band, by place; None: a device says that it moves, or that its reading has not settled.
+    /// The first axis that left its band, by index. None: a device reports that it moves, or that its reading has not
+    /// settled.
     pub(super) astray: Option<usize>,
 }
 

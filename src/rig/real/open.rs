@@ -1,17 +1,17 @@
-//! Opening a real rig. In: the plan's rig and its devices. Out: a rig that is who the plan says, has been told the limits
-//! and has been read once, or why not. Nothing moves.
+//! Opening a real rig. In: the plan's rig and its devices. Out: a rig that has the identity stated in the plan, has
+//! received the limits and was read once, or the reason why not. Nothing moves.
 
 use super::coordinate::Coordinate;
-use super::validity::Judge;
+use super::validity::ReadingValidator;
 use super::{Axis, Part, RealRig, degrees_of_freedom};
 use crate::plan::{Behind, Datum, DeviceLink, Dialect, Limits, RealLink, RigPlan};
 use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::transport::Clock;
-use crate::rig::{Identity, Live, Rig as _, RigFault, Wish, named_axis};
+use crate::rig::{Identity, Live, Rig as _, RigFault, StopRequest, named_axis};
 
 impl RealRig {
-    /// Asks both devices who they are, tells them the limits, and reads once. Where the plan's zero is where the rig stands it reads
-    /// that first.
+    /// Requests the identity of both devices, sends them the limits and reads once. If the plan's zero is the present
+    /// position, that is read first.
     ///
     /// # Errors
     /// A device does not answer, is another one than the plan's, or is not fit; or the reading is not to be used.
@@ -21,7 +21,7 @@ impl RealRig {
         actuator: Box<dyn Device>,
         load_cell: Option<Box<dyn Device>>,
         clock: Box<dyn Clock>,
-        wish: Wish,
+        stop_request: StopRequest,
     ) -> Result<Self, RigFault> {
         let link = plan
             .link
@@ -37,7 +37,7 @@ impl RealRig {
             actuator,
             load_cell,
             clock,
-            wish,
+            stop_request,
             began,
             heard: began,
             proposed: None,
@@ -53,7 +53,7 @@ impl RealRig {
             live: Live::default(),
             link,
         };
-        rig.meet()?;
+        rig.identify_devices()?;
         rig.count_axes()?;
         match rig.link.datum.clone() {
             Datum::Machine => {}
@@ -80,10 +80,10 @@ impl RealRig {
     /// One device was not looked at while another was met.
     fn heard_now(&mut self) {
         self.heard = self.clock.now();
-        let _ = self.wish.take_absence();
+        let _ = self.stop_request.take_line_gap();
     }
 
-    /// The plan's zero lies at these places of the devices, m, one an axis.
+    /// The plan's zero is at these positions of the devices \[m\], one per axis.
     fn begin_at(&mut self, places: &[f64]) -> Result<(), RigFault> {
         if places.len() != self.axes.len() || !places.iter().all(|place| place.is_finite()) {
             return Err(RigFault::Device(format!(
@@ -97,7 +97,7 @@ impl RealRig {
         Ok(())
     }
 
-    /// Reads once; a rig that moves before it is told to is held.
+    /// Reads once; a rig that moves without a command is held.
     fn stands_still(&mut self) -> Result<(), RigFault> {
         if self.poll()?.moving == Some(true) {
             self.hold();
@@ -108,19 +108,19 @@ impl RealRig {
         Ok(())
     }
 
-    /// Asks who is there.
-    fn meet(&mut self) -> Result<(), RigFault> {
+    /// Requests the identity of every device.
+    fn identify_devices(&mut self) -> Result<(), RigFault> {
         let actuator = self
             .actuator
             .identify()
-            .map_err(|fault| self.told(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         // Several devices of one role know each its own serial number.
         let alone = |behind: Vec<Behind<'_>>| match behind.as_slice() {
             [one] => Some(one.link.clone()),
             _ => None,
         };
         let fit = alone(self.link.actuators()).map_or(Ok(()), |link| pinned(&link, &actuator));
-        fit.map_err(|fault| self.told(Part::Actuator, &fault))?;
+        fit.map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         let mut said = vec![actuator];
         let cell_link = alone(self.link.load_cells());
         if let Some(cell) = &mut self.load_cell {
@@ -130,14 +130,14 @@ impl RealRig {
             let met = cell
                 .identify()
                 .and_then(|identity| fit(&identity).map(|()| identity));
-            said.push(met.map_err(|fault| self.told(Part::LoadCell, &fault))?);
+            said.push(met.map_err(|fault| self.device_fault(Part::LoadCell, &fault))?);
         }
         self.identity = identity_of(&self.identity.name, &self.link, &said);
         self.introduction = said.into_iter().flat_map(|identity| identity.raw).collect();
         Ok(())
     }
 
-    /// Whether the devices have as many axes as the plan says, no more and no less.
+    /// Whether the devices have exactly as many axes as the plan.
     fn count_axes(&mut self) -> Result<(), RigFault> {
         let wanted = self.axes.len();
         let cell = self
@@ -150,14 +150,14 @@ impl RealRig {
             .find(|(_, axes)| *axes != wanted);
         other.map_or(Ok(()), |(part, axes)| {
             let wanted = degrees_of_freedom(wanted);
-            Err(self.told(
+            Err(self.device_fault(
                 part,
                 &DeviceFault::Unfit(format!("it has {axes}, and the plan's rig is of {wanted}")),
             ))
         })
     }
 
-    /// Tells the devices the limits, in their own sign.
+    /// Sends the limits to the devices, in their own polarity.
     fn narrow(&mut self) -> Result<(), RigFault> {
         let own: Vec<Limits> = self
             .axes
@@ -166,16 +166,16 @@ impl RealRig {
             .collect();
         self.actuator
             .narrow_limits(&own)
-            .map_err(|fault| self.told(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         if let Some(cell) = &mut self.load_cell {
             cell.narrow_limits(&own)
-                .map_err(|fault| self.told(Part::LoadCell, &fault))?;
+                .map_err(|fault| self.device_fault(Part::LoadCell, &fault))?;
         }
         Ok(())
     }
 }
 
-/// Who a rig of this name is whose devices, those that move first, say this of themselves.
+/// The identity of a rig with this name and these devices, the actuators first.
 pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) -> Identity {
     let all = |field: fn(&DeviceIdentity) -> &str| {
         said.iter()
@@ -204,7 +204,7 @@ pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) 
     }
 }
 
-/// What the plan says of each axis.
+/// The settings of each axis in the plan.
 fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
     let count = plan.axes().unwrap_or(1);
     let axis = |place| Axis {
@@ -216,7 +216,7 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
             .load_cells()
             .iter()
             .any(|cell| cell.axes.contains(&place)),
-        judge: Judge::of_axis(named_axis(place, count)),
+        validator: ReadingValidator::of_axis(named_axis(place, count)),
         outside: false,
         span: 0.0,
         way: None,
@@ -244,7 +244,7 @@ fn nobody(name: &str) -> Identity {
     }
 }
 
-/// The plan may say which device it must be.
+/// The plan may state the serial number of the device.
 fn pinned(link: &DeviceLink, identity: &DeviceIdentity) -> Result<(), DeviceFault> {
     match &link.serial_number {
         Some(wanted) if *wanted != identity.serial => Err(DeviceFault::Unfit(format!(

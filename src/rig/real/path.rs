@@ -1,6 +1,7 @@
-//! A way of a real rig along smooth paths, read as it goes and not stopped at its end. In: a path an axis, how many readings
-//! are wanted. Out: as many as the line can carry, each with its own time and place, the last at the end of the way or
-//! right after it. When a way ends is the rig's word, so that two clocks do not part over a long run.
+//! Continuous motion of a real rig along smooth paths, read during the motion and not stopped at its end. In: a path per
+//! axis, the number of readings requested. Out: as many readings as the line can carry, each with its own time and
+//! position, the last at the end or immediately after it. The rig itself reports when a path ends, so that two clocks do
+//! not diverge over a long run.
 
 use super::RealRig;
 use super::{Part, WIRE_ROUNDING};
@@ -61,9 +62,9 @@ impl RealRig {
         }
     }
 
-    /// What is left of a way that was cut off. The rig went on past it, or holds on it, and cannot be set on it again as fast as it
-    /// was: it goes to the end of the way as to any target, and one reading is made there, late and at rest, if any is left.
-    pub(super) fn rest_of_way(
+    /// The rest of an interrupted motion. The rig has passed it or holds on it, and cannot continue at its former velocity:
+    /// it moves to the end as to any target, and one late reading is made there at rest, if any is left.
+    pub(super) fn rest_of_path(
         &mut self,
         paths: &[Path],
         left: usize,
@@ -79,7 +80,7 @@ impl RealRig {
         }
     }
 
-    /// Sends the way. When it ends, s by the clock.
+    /// Sends the paths. Gives the time of their end \[s\], by the clock.
     fn begin(&mut self, paths: &[Path]) -> Result<f64, RigFault> {
         let turned = |(axis, path): (&super::Axis, &Path)| Path {
             from: axis.coordinate.at_device(path.from),
@@ -91,8 +92,8 @@ impl RealRig {
         let turned: Vec<Path> = self.axes.iter().zip(paths).map(turned).collect();
         let going = self
             .actuator
-            .encode_way(&turned)
-            .map_err(|fault| self.told(Part::Actuator, &fault))?;
+            .encode_path(&turned)
+            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         let ends = going.targets.iter().zip(&turned);
         let apt = |(axis, (said, path)): (&super::Axis, (&f64, &Path))| {
             (said - path.to).abs() <= WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6)
@@ -108,15 +109,15 @@ impl RealRig {
         self.moved = true;
         let left = self
             .actuator
-            .set_out(&going)
-            .map_err(|fault| self.told(Part::Actuator, &fault))?;
+            .start_path(&going)
+            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         (self.deaf, self.settled) = (false, None);
         self.look_up()?;
         Ok(self.clock.now() + left)
     }
 
-    /// Whether every axis is where it passes, as near as a moving one can be told to be: one that is farther behind than all it
-    /// went on this way and the one before does not follow. What a lag does to the test is for the limits of tracking.
+    /// Whether every axis follows its path: an axis that is farther behind than all its travel on this path and the one
+    /// before does not follow. The effect of a lag on the test is checked by the limits of tracking.
     fn keeps_up(&mut self, paths: &[Path], reading: &Reading) -> Result<(), RigFault> {
         let count = self.axes.len();
         for (place, (axis, path)) in self.axes.iter_mut().zip(paths).enumerate() {

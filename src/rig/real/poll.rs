@@ -1,15 +1,16 @@
-//! One reading of a real rig. In: what actuator and load cell say. Out: displacement and force in the plan's sign, judged,
-//! with the bytes they were made of; what is no reading is asked for again a few times. It moves nothing.
+//! One reading of a real rig. In: the replies of actuator and load cell. Out: displacement and force in the plan's
+//! polarity, validated, with the bytes they were decoded from. An invalid reading is requested again a few times. It moves
+//! nothing.
 
 use super::motion::Disturbed;
-use super::validity::{Invalid, Said};
+use super::validity::{Invalid, RawSample};
 use super::{Part, RealRig};
 use crate::plan::Calibration;
 use crate::rig::controllers::{DeviceFault, Flags, Force, Sample};
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{Reading, RigFault, safety};
 
-/// How often a reading that is none is asked for again.
+/// How often an invalid reading is requested again.
 pub(super) const REREADS: u32 = 3;
 
 /// One usable reading, in the plan's sign.
@@ -21,16 +22,16 @@ pub(super) struct Point {
     pub(super) displacement: Vec<f64>,
     /// One an axis, N.
     pub(super) force: Vec<f64>,
-    /// Whether the actuator says it still moves.
+    /// Whether the actuator reports that it still moves.
     pub(super) moving: Option<bool>,
-    /// A device itself says its reading has not settled.
+    /// A device reports that its reading has not settled.
     pub(super) unsettled: bool,
     /// Also of replies that were no reading.
     pub(super) raw: Vec<Vec<u8>>,
 }
 
 impl RealRig {
-    /// Reads once, as the rig stands.
+    /// Reads once, at rest or in motion.
     pub(super) fn poll(&mut self) -> Result<Point, RigFault> {
         let mut raw = Vec::new();
         let mut left = REREADS;
@@ -68,8 +69,8 @@ impl RealRig {
         }
     }
 
-    /// The median of as many readings as the plan wants. Where it has settled at a target each of them shows all axes settled, or
-    /// it settles anew and all are made again.
+    /// The median of as many readings as the plan requests. After settling at a target each of them must show all axes
+    /// settled; otherwise the rig settles again and all readings are repeated.
     pub(super) fn settled_reading(&mut self) -> Result<Reading, RigFault> {
         let began = self.clock.now();
         let targets = self
@@ -81,7 +82,7 @@ impl RealRig {
             let reading = self.reading_of(points, began);
             let Some(targets) = targets
                 .as_deref()
-                .filter(|_| disturbed.is_some() || self.leaps(&reading))
+                .filter(|_| disturbed.is_some() || self.force_jumps(&reading))
             else {
                 return Ok(reading);
             };
@@ -151,7 +152,7 @@ impl RealRig {
         }
     }
 
-    /// A reading on the way: one, not a median.
+    /// A reading during the motion: a single one, not a median.
     pub(super) fn reading_now(&mut self) -> Result<Reading, RigFault> {
         let Point {
             time,
@@ -177,24 +178,25 @@ impl RealRig {
     fn come_back(&mut self) -> Result<(), RigFault> {
         let now = self.clock.now();
         let away = now - std::mem::replace(&mut self.heard, now);
-        self.not_away(away)
+        self.check_line_gap(away)
     }
 
-    /// The devices were heard, or asked again and again: what counts is how long nobody looked after a line meanwhile.
+    /// The devices have answered, or were polled repeatedly: the longest time without a look at a line is checked.
     pub(super) fn look_up(&mut self) -> Result<(), RigFault> {
         self.heard = self.clock.now();
         safety::beat();
-        let away = self.wish.take_absence();
-        self.not_away(away)?;
-        if self.wish.wants_hold() {
+        let away = self.stop_request.take_line_gap();
+        self.check_line_gap(away)?;
+        if self.stop_request.hold_requested() {
             Err(RigFault::Interrupted)
         } else {
             Ok(())
         }
     }
 
-    /// Away for longer than the watchdog, s, and the rig holds by itself by now: what it does is not what the program thinks.
-    fn not_away(&self, away: f64) -> Result<(), RigFault> {
+    /// After a gap longer than the watchdog \[s\] the rig holds automatically: its state is not the one that the program
+    /// assumes.
+    fn check_line_gap(&self, away: f64) -> Result<(), RigFault> {
         if on(Guarding::Away) && (away.is_nan() || away > self.link.watchdog) {
             return Err(RigFault::Device(format!(
                 "the program was away for {away:.1} s: nothing went between it and the rig for longer than the watchdog's \
@@ -251,7 +253,7 @@ impl RealRig {
             let flags = either(moved_axis.flags, weighed_axis.flags);
             // One clock for all axes: the first judges it.
             let device_time = moved.time.filter(|_| place == 0);
-            let said = Said {
+            let said = RawSample {
                 displacement,
                 force,
                 original,
@@ -259,7 +261,7 @@ impl RealRig {
                 device_time,
             };
             let axis = &mut self.axes[place];
-            let judged = axis.judge.judge(&said, &axis.rules);
+            let judged = axis.validator.validate(&said, &axis.rules);
             point
                 .displacement
                 .push(axis.coordinate.in_plan(displacement));
@@ -270,7 +272,7 @@ impl RealRig {
         Ok(point)
     }
 
-    /// Keeps the bytes, also of what is no reading.
+    /// Keeps the bytes, also those of an invalid reading.
     fn sampled(
         &mut self,
         part: Part,
@@ -283,7 +285,7 @@ impl RealRig {
                 Ok(sample)
             }
             Err(fault) => {
-                let told = self.told(part, &fault);
+                let told = self.device_fault(part, &fault);
                 Err(match fault {
                     DeviceFault::NoReading { raw: bytes, .. } => {
                         raw.push(bytes);
@@ -342,7 +344,7 @@ enum Unusable {
     Fault(RigFault),
 }
 
-/// What a sound rig never says at rest. Nothing is sent to it.
+/// A reading that a sound rig never gives at rest. Nothing is sent to it.
 fn before_the_first_move(fault: RigFault) -> RigFault {
     match fault {
         RigFault::Device(reason) => RigFault::Device(format!(
@@ -352,7 +354,7 @@ fn before_the_first_move(fault: RigFault) -> RigFault {
     }
 }
 
-/// What either device says.
+/// The flags of both devices.
 const fn either(one: Flags, other: Flags) -> Flags {
     Flags {
         saturated: one.saturated || other.saturated,

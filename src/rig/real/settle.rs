@@ -47,9 +47,15 @@ impl Settling {
         ))
     }
 
-    /// One more reading at `time` (s); `steady`: the device is at rest and says nothing against its reading. Gives
+    /// One more reading at `time` \[s\]; `steady`: the device is at rest and reports no objection to its reading. Gives
     /// whether the rig has settled: in position and |dF/dt| within its bound over the whole dwell.
-    pub(super) fn met(&mut self, time: f64, displacement: f64, force: f64, steady: bool) -> bool {
+    pub(super) fn add_reading(
+        &mut self,
+        time: f64,
+        displacement: f64,
+        force: f64,
+        steady: bool,
+    ) -> bool {
         if !steady || !self.in_position(displacement) {
             self.window.clear();
             return false;
@@ -76,7 +82,7 @@ impl Settling {
     }
 }
 
-/// dF/dt, N/s, by least squares: with times t and their mean m, Σ(t − m)·F / Σ(t − m)². None of fewer than two times.
+/// dF/dt \[N/s\] by least squares: with times t and their mean m, Σ(t − m)·F / Σ(t − m)². None for fewer than two times.
 fn slope(window: &VecDeque<(f64, f64)>) -> Option<f64> {
     #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
     let mean = window.iter().map(|(time, _)| time).sum::<f64>() / window.len() as f64;
@@ -108,7 +114,7 @@ mod tests {
         let mut settling = Settling::new(settle, 0.001);
         (0..100)
             .map(|i| f64::from(i) * 0.125)
-            .find(|time| settling.met(*time, displacement(*time), force(*time), true))
+            .find(|time| settling.add_reading(*time, displacement(*time), force(*time), true))
     }
 
     #[test]
@@ -168,9 +174,9 @@ mod tests {
     #[test]
     fn a_device_that_moves_begins_the_dwell_anew() {
         let mut settling = Settling::new(SETTLE, 0.001);
-        assert!(!settling.met(0.0, 0.001, 1.0, true));
-        assert!(!settling.met(0.5, 0.001, 1.0, false));
-        assert!(!settling.met(0.75, 0.001, 1.0, true));
-        assert!(settling.met(1.25, 0.001, 1.0, true));
+        assert!(!settling.add_reading(0.0, 0.001, 1.0, true));
+        assert!(!settling.add_reading(0.5, 0.001, 1.0, false));
+        assert!(!settling.add_reading(0.75, 0.001, 1.0, true));
+        assert!(settling.add_reading(1.25, 0.001, 1.0, true));
     }
 }

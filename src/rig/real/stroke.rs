@@ -1,5 +1,6 @@
-//! A stroke of a real rig: an even way, read as it goes. In: a target, a velocity, how many readings are wanted. Out: as
-//! many as the line can carry, each with its own time and place, and the rig at rest at the end of the way.
+//! A constant-velocity stroke of a real rig, with readings during the motion. In: a target, a velocity, the number of
+//! readings requested. Out: as many readings as the line can carry, each with its own time and position, and the rig at
+//! rest at the end of the stroke.
 
 use super::motion::first_astray;
 use super::settle::Settling;
@@ -7,12 +8,12 @@ use super::{Proposed, RealRig};
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{CutOff, EachReading, Rig as _, RigFault};
 
-/// Readings that a stroke of which more are wanted must give.
+/// Readings that a stroke must give at least, if more than one are requested.
 const LEAST: usize = 2;
 
 impl RealRig {
-    /// Moves evenly to `targets` and reads at up to `samples` equal times on the way. A time that has passed while a
-    /// reading was on the line is left out: what is late is read at once, and not twice.
+    /// Moves uniformly to `targets` and reads at up to `samples` equally spaced times. A time that passed while a reading
+    /// was on the line is skipped: a late reading is made immediately, and not twice.
     pub(super) fn stroke(
         &mut self,
         targets: &[f64],
@@ -63,7 +64,7 @@ impl RealRig {
         self.come_to_rest(&targets, began + seconds)
     }
 
-    /// What is left of a stroke, from where the rig stands. At its end one reading is made, late and at rest, if any is left.
+    /// The rest of a stroke, from the present position. At its end one late reading is made at rest, if any is left.
     pub(super) fn rest_of_stroke(
         &mut self,
         cut_off: &CutOff<'_>,

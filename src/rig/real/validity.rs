@@ -1,5 +1,5 @@
-//! Whether one reading may be used. In: what the devices said, already in SI. Out: yes, "ask again", or why the rig must
-//! hold. It moves nothing and keeps only what shows a sensor that no longer follows.
+//! Validity of one reading. In: the replies of the devices, in SI. Out: valid, "ask again", or the reason why the rig must
+//! hold. It moves nothing and keeps only the history that shows a frozen sensor.
 
 use crate::plan::ReadingRules;
 use crate::rig::controllers::{Flags, Force, NOT_TRUSTED};
@@ -13,7 +13,7 @@ const FROZEN_OVER: f64 = 5.0;
 
 /// One answer of the rig, in its own sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Said {
+pub(super) struct RawSample {
     /// m
     pub(super) displacement: f64,
     /// N
@@ -30,13 +30,13 @@ pub(super) struct Said {
 pub(super) enum Invalid {
     /// The next may be good.
     AskAgain(String),
-    /// No sound rig says it at rest; once it has moved, the next may be good.
+    /// A sound rig never gives this at rest. After a motion, the next reading may be valid.
     Impossible(String),
     /// The rig holds.
     Hold(String),
-    /// The same: the force is at an end of what can be read, or beyond it.
+    /// As `Hold`: the force is at or beyond an end of its range.
     Saturated(String),
-    /// The rig holds, and where it stands is not known any more.
+    /// The rig holds, and its position is no longer known.
     Untrusted(String),
 }
 
@@ -55,9 +55,9 @@ impl Invalid {
     }
 }
 
-/// What earlier readings tell of this one.
+/// The history against which a reading is validated.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Judge {
+pub(super) struct ReadingValidator {
     /// Number of the axis it judges, from 1, where the rig has several.
     axis: Option<usize>,
     same: Option<Same>,
@@ -70,15 +70,16 @@ pub(super) struct Judge {
 struct Same {
     /// N
     force: f64,
-    /// How many of them were each at another place than the one before: the rest of a ram at its target is no sign.
+    /// Number of them at a different position from the one before: an actuator at rest at its target is no sign of a frozen
+    /// sensor.
     places: u32,
-    /// The last of these places, and the lowest and highest, m.
+    /// The last, lowest and highest of these positions \[m\].
     last: f64,
     low: f64,
     high: f64,
 }
 
-impl Judge {
+impl ReadingValidator {
     pub(super) fn of_axis(axis: Option<usize>) -> Self {
         Self {
             axis,
@@ -86,7 +87,11 @@ impl Judge {
         }
     }
 
-    pub(super) fn judge(&mut self, said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
+    pub(super) fn validate(
+        &mut self,
+        said: &RawSample,
+        rules: &ReadingRules,
+    ) -> Result<(), Invalid> {
         self.same_device(said)?;
         whole_rig(said.flags)?;
         let of_axis = flags(said.flags)
@@ -97,8 +102,8 @@ impl Judge {
             .map_err(|invalid| invalid.named(self.axis))
     }
 
-    /// A clock that goes back is that of a device that started anew.
-    fn same_device(&mut self, said: &Said) -> Result<(), Invalid> {
+    /// A clock that goes back belongs to a device that restarted.
+    fn same_device(&mut self, said: &RawSample) -> Result<(), Invalid> {
         let before = self.device_time;
         self.device_time = said.device_time.or(before);
         match (before, said.device_time) {
@@ -112,7 +117,7 @@ impl Judge {
     }
 
     /// The force stays the very same while the specimen is bent.
-    fn frozen(&mut self, said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
+    fn frozen(&mut self, said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
         let x = said.displacement;
         let same = match self.same {
             Some(same) if same.force == said.force && (x - same.last).abs() <= rules.resolution => {
@@ -149,7 +154,7 @@ impl Judge {
     }
 }
 
-/// What befalls all axes at once.
+/// Flags that concern all axes.
 fn whole_rig(flags: Flags) -> Result<(), Invalid> {
     if on(Guarding::Flags) {
         for (set, what) in [
@@ -179,7 +184,7 @@ fn flags(flags: Flags) -> Result<(), Invalid> {
     Ok(())
 }
 
-fn number(said: &Said) -> Result<(), Invalid> {
+fn number(said: &RawSample) -> Result<(), Invalid> {
     let (x, force) = (said.displacement, said.force);
     if !on(Guarding::Invalid) || x.is_finite() && force.is_finite() {
         return Ok(());
@@ -189,9 +194,9 @@ fn number(said: &Said) -> Result<(), Invalid> {
     )))
 }
 
-/// At an end of what converter or cell can say, the truth may lie anywhere beyond. A force that is no number is not
-/// this guard's business.
-fn saturation(said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
+/// At an end of the range of converter or cell, the true force may be anywhere beyond. A force that is not finite is not
+/// checked here.
+fn saturation(said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
     if !on(Guarding::Saturation) {
         return Ok(());
     }
@@ -219,7 +224,7 @@ fn saturation(said: &Said, rules: &ReadingRules) -> Result<(), Invalid> {
         range.low + SATURATION * range.low.abs(),
         range.high - SATURATION * range.high.abs(),
     );
-    // An end that is not given is infinite, and the margin makes it no number: then nothing is held against it.
+    // An end that is not given is infinite and the margin makes it NaN, so nothing is compared with it.
     if said.force <= low || said.force >= high {
         return hold(format!(
             "{} N of {} .. {} N",
@@ -247,8 +252,8 @@ mod tests {
         frozen_after: 4,
     };
 
-    fn said(force: f64) -> Said {
-        Said {
+    fn said(force: f64) -> RawSample {
+        RawSample {
             displacement: 0.001,
             force,
             original: Force::Newtons(force),
@@ -258,14 +263,14 @@ mod tests {
     }
 
     /// The last of these is refused with `guard` on, and is missed without it.
-    fn only_caught_by(guard: Guarding, rules: ReadingRules, readings: &[Said]) -> Invalid {
+    fn only_caught_by(guard: Guarding, rules: ReadingRules, readings: &[RawSample]) -> Invalid {
         let last = || {
-            let mut judge = Judge::default();
+            let mut validator = ReadingValidator::default();
             let (last, before) = readings.split_last().unwrap();
             for said in before {
-                judge.judge(said, &rules).unwrap();
+                validator.validate(said, &rules).unwrap();
             }
-            judge.judge(last, &rules)
+            validator.validate(last, &rules)
         };
         assert_eq!(without(guard, last), Ok(()), "{guard:?}");
         last().unwrap_err()
@@ -277,14 +282,14 @@ mod tests {
             force_range: Interval::ALL,
             ..RULES
         };
-        let stale = Said {
+        let stale = RawSample {
             flags: Flags {
                 stale: true,
                 ..Flags::default()
             },
             ..said(1.0)
         };
-        let nowhere = Said {
+        let nowhere = RawSample {
             displacement: f64::NAN,
             ..said(1.0)
         };
@@ -298,13 +303,13 @@ mod tests {
                 Invalid::Impossible(_)
             ));
         }
-        let infinite = Judge::default().judge(&said(f64::INFINITY), &unbounded);
+        let infinite = ReadingValidator::default().validate(&said(f64::INFINITY), &unbounded);
         assert!(matches!(infinite, Err(Invalid::Impossible(_))));
     }
 
     #[test]
     fn an_end_of_the_range_is_saturated_and_what_lies_inside_is_not() {
-        let counts = |count| Said {
+        let counts = |count| RawSample {
             original: Force::Counts {
                 count,
                 low: -8_388_608,
@@ -312,7 +317,7 @@ mod tests {
             },
             ..said(10.0)
         };
-        let flagged = Said {
+        let flagged = RawSample {
             flags: Flags {
                 saturated: true,
                 ..Flags::default()
@@ -332,13 +337,13 @@ mod tests {
             ));
         }
         for good in [said(998.9), said(-998.9), said(0.0), counts(8_380_000)] {
-            assert_eq!(Judge::default().judge(&good, &RULES), Ok(()));
+            assert_eq!(ReadingValidator::default().validate(&good, &RULES), Ok(()));
         }
     }
 
     #[test]
     fn what_the_device_says_of_itself_holds_the_rig() {
-        let flagged = |flags| Said { flags, ..said(1.0) };
+        let flagged = |flags| RawSample { flags, ..said(1.0) };
         let none = Flags::default();
         for (flags, untrusted) in [
             (
@@ -370,7 +375,7 @@ mod tests {
 
     #[test]
     fn a_clock_that_goes_back_is_that_of_a_device_that_started_anew() {
-        let at = |time| Said {
+        let at = |time| RawSample {
             device_time: Some(time),
             ..said(time)
         };
@@ -380,33 +385,33 @@ mod tests {
 
     #[test]
     fn a_force_that_stays_while_the_specimen_is_bent_is_frozen() {
-        let at = |displacement, force| Said {
+        let at = |displacement, force| RawSample {
             displacement,
             ..said(force)
         };
-        let stuck: Vec<Said> = (0..4).map(|i| at(f64::from(i) * 3e-6, 5.0)).collect();
+        let stuck: Vec<RawSample> = (0..4).map(|i| at(f64::from(i) * 3e-6, 5.0)).collect();
         assert!(matches!(
             only_caught_by(Guarding::Frozen, RULES, &stuck),
             Invalid::Hold(_)
         ));
-        // Where displacement and force are asked for one after the other, the first reading after a move may have the
-        // force of its end with a displacement on the way: resting there is not freezing.
-        let mut judge = Judge::default();
-        judge.judge(&at(1e-5, 5.0), &RULES).unwrap();
+        // If displacement and force are read one after the other, the first reading after a move may combine the force at
+        // the end with a displacement during the motion: resting there is not freezing.
+        let mut validator = ReadingValidator::default();
+        validator.validate(&at(1e-5, 5.0), &RULES).unwrap();
         for _ in 0..50 {
-            judge.judge(&at(3e-5, 5.0), &RULES).unwrap();
+            validator.validate(&at(3e-5, 5.0), &RULES).unwrap();
         }
         // At rest, or with a force that moves, nothing is frozen.
-        let mut judge = Judge::default();
+        let mut validator = ReadingValidator::default();
         for i in 0..50 {
-            judge
-                .judge(&at(1e-6 * f64::from(i % 5), 5.0), &RULES)
+            validator
+                .validate(&at(1e-6 * f64::from(i % 5), 5.0), &RULES)
                 .unwrap();
         }
-        let mut judge = Judge::default();
+        let mut validator = ReadingValidator::default();
         for i in 0..50 {
-            judge
-                .judge(&at(1e-5 * f64::from(i), 5.0 + f64::from(i / 3)), &RULES)
+            validator
+                .validate(&at(1e-5 * f64::from(i), 5.0 + f64::from(i / 3)), &RULES)
                 .unwrap();
         }
     }

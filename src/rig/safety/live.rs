@@ -1,15 +1,15 @@
-//! The reading that a rig made last, on its way too, for whoever watches beside the run. In: every poll. Out: the newest. No part of the
-//! record, and nothing comes of it but a picture.
+//! The last reading of a rig, also during its motion, for display beside the run. In: every reading. Out: the newest. It is
+//! not part of the run log and has no effect on the run.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What was read last; all clones share it.
+/// The last reading; all clones share it.
 #[derive(Clone, Debug, Default)]
-pub struct Live(Arc<Mutex<Option<Felt>>>);
+pub struct Live(Arc<Mutex<Option<Feedback>>>);
 
 /// Displacement (m) and force (N) of every axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Felt {
+pub struct Feedback {
     /// How many readings came before it.
     pub number: u64,
     pub displacement: Vec<f64>,
@@ -19,9 +19,9 @@ pub struct Felt {
 impl Live {
     /// A newer reading.
     pub fn show(&self, displacement: &[f64], force: &[f64]) {
-        let mut felt = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let number = felt.as_ref().map_or(0, |felt| felt.number + 1);
-        *felt = Some(Felt {
+        let mut feedback = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let number = feedback.as_ref().map_or(0, |feedback| feedback.number + 1);
+        *feedback = Some(Feedback {
             number,
             displacement: displacement.to_vec(),
             force: force.to_vec(),
@@ -30,7 +30,7 @@ impl Live {
 
     /// The newest.
     #[must_use]
-    pub fn newest(&self) -> Option<Felt> {
+    pub fn newest(&self) -> Option<Feedback> {
         self.0
             .lock()
             .unwrap_or_else(PoisonError::into_inner)

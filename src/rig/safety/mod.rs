@@ -18,12 +18,12 @@ use std::time::Duration;
 use super::safety::failpoint::{Guarding, on};
 use super::transport::{Clock as _, Emergency, MonotonicClock};
 
-/// Lines, each with the bytes that stop what is on it.
+/// Lines, each with the bytes that stop its device.
 pub type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
 
 /// A line that is armed.
 struct Line {
-    /// Number of who armed it.
+    /// Number of the owner that armed it.
     owner: u64,
     sender: Box<dyn Emergency>,
     bytes: Vec<u8>,
@@ -39,7 +39,7 @@ static TRIPPED: AtomicBool = AtomicBool::new(false);
 const LOOK: Duration = Duration::from_millis(50);
 const TRIES: u32 = 20;
 
-/// The lines are armed as long as it lives.
+/// The lines are armed during its lifetime.
 #[must_use = "dropping it disarms the lines"]
 pub struct Armed {
     number: u64,
@@ -106,18 +106,18 @@ pub fn hold_everything() {
     }
 }
 
-/// A sign of life of whoever drives the rig.
+/// A heartbeat of the code that drives the rig.
 pub fn beat() {
     BEATS.fetch_add(1, Ordering::SeqCst);
 }
 
-/// Whether the beats stayed away since the lines were armed, so that the rig was told to hold.
+/// Whether the heartbeat was absent since the lines were armed, so that the rig was commanded to hold.
 #[must_use]
 pub fn tripped() -> bool {
     TRIPPED.load(Ordering::SeqCst)
 }
 
-/// The lines; None where somebody keeps them, as a panic in the middle of a sending does.
+/// The lines. None if another thread has the lock, such as a thread that panicked while sending.
 fn take_lines() -> Option<MutexGuard<'static, Vec<Line>>> {
     for _ in 0..TRIES {
         match LINES.try_lock() {
@@ -143,7 +143,7 @@ fn hook() {
     });
 }
 
-/// Tells from counted beats and a clock when they stop.
+/// Detects from counted heartbeats and a clock when they stop.
 struct Pulse {
     watchdog: f64,
     beats: u64,
@@ -162,7 +162,7 @@ impl Pulse {
         }
     }
 
-    /// Whether they have just stopped; said once.
+    /// Whether they have just stopped; reported once.
     fn stopped(&mut self, beats: u64, now: f64) -> bool {
         if beats != self.beats {
             (self.beats, self.last) = (beats, now);
@@ -179,7 +179,8 @@ mod tests {
     use std::sync::Arc;
     use std::thread::{ThreadId, current, spawn};
 
-    /// What was sent, and which thread sent it: other tests panic and hold too, and theirs reach every armed line.
+    /// The bytes sent, and the thread that sent them: other tests panic and hold too, and their bytes reach every armed
+    /// line.
     #[derive(Clone, Default)]
     struct Recorder(Arc<Mutex<Vec<Sent>>>);
 
@@ -254,7 +255,7 @@ mod tests {
         assert!(!pulse.stopped(8, 60.0));
     }
 
-    /// Lines whose watch takes any silence for too long, what they are sent, and the thread of the watch.
+    /// Lines with a watch that regards any silence as too long, the bytes sent to them, and the thread of the watch.
     fn nobody_beats() -> (Armed, Recorder, ThreadId) {
         let recorder = Recorder::default();
         let armed = arm(vec![(Box::new(recorder.clone()), b"!".to_vec())]).watched(-1.0);

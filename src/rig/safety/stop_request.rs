@@ -1,5 +1,5 @@
-//! What a person wants of a run that is under way. In: wishes from signal handlers, keys and other threads. Out: the
-//! wish, for whoever waits on a rig. It knows no rig and does nothing itself.
+//! Stop requests during a run. In: requests from signal handlers, keys and other threads. Out: the request, for code that
+//! waits on a rig. It knows no rig and does nothing itself.
 
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,23 +7,23 @@ use std::sync::{Arc, Mutex, PoisonError};
 const NOTHING: u8 = 0;
 const STOP_AFTER_STEP: u8 = 1;
 const HOLD_NOW: u8 = 2;
-/// A wish to hold that has been seen: holding itself must not be interrupted by it.
-const HEEDED: u8 = 3;
+/// A request to hold that has been seen: the hold command itself must not be interrupted by it.
+const ACKNOWLEDGED: u8 = 3;
 
-/// A wish that all clones share.
+/// A stop request that all clones share.
 #[derive(Clone, Debug, Default)]
-pub struct Wish {
+pub struct StopRequest {
     what: Arc<AtomicU8>,
-    /// How often a stop or a hold was requested.
+    /// Number of requests to stop or to hold.
     requests: Arc<AtomicU32>,
-    letting_go: Arc<AtomicBool>,
+    with_release_allowed: Arc<AtomicBool>,
     unasked: Arc<AtomicBool>,
     /// The bits of the longest time, s, that a line was not looked at.
     absence: Arc<AtomicU64>,
     client: Client,
 }
 
-/// Tells whether the client that asked for the move under way is gone; None: no client asked for it.
+/// Whether the client that asked for the present move is disconnected. None: no client asked for it.
 #[derive(Clone, Default)]
 struct Client(Arc<Mutex<Option<IsGone>>>);
 
@@ -49,60 +49,61 @@ impl std::fmt::Debug for Client {
     }
 }
 
-impl Wish {
-    /// A rig that is found held when it is opened is to be let go of: a person has looked at it, and says so.
+impl StopRequest {
+    /// A rig that is found on hold when it is opened may be released: the operator has inspected it and allows this.
     #[must_use]
-    pub fn letting_go(self, wanted: bool) -> Self {
-        self.letting_go.store(wanted, Ordering::SeqCst);
+    pub fn with_release_allowed(self, wanted: bool) -> Self {
+        self.with_release_allowed.store(wanted, Ordering::SeqCst);
         self
     }
 
-    /// Whether a rig that is found held may be let go of.
+    /// Whether a rig that is found on hold may be released.
     #[must_use]
-    pub fn lets_go(&self) -> bool {
-        self.letting_go.load(Ordering::SeqCst)
+    pub fn release_allowed(&self) -> bool {
+        self.with_release_allowed.load(Ordering::SeqCst)
     }
 
-    /// Whoever wants the end is no person at the keys: nothing is to be asked any more.
-    pub fn ask_nobody(&self) {
+    /// The end was not requested at the keyboard: no more prompts.
+    pub fn suppress_prompts(&self) {
         self.unasked.store(true, Ordering::SeqCst);
     }
 
-    /// Whether a person may be asked at the end.
+    /// Whether the operator may be prompted at the end.
     #[must_use]
-    pub fn may_ask(&self) -> bool {
+    pub fn prompts_allowed(&self) -> bool {
         !self.unasked.load(Ordering::SeqCst)
     }
 
-    /// A line was not looked at for this long, s: nobody sent, and nobody waited for an answer.
-    pub fn was_away(&self, seconds: f64) {
-        // Of numbers that are not negative the greater has the greater bits.
+    /// A line was not looked at for this long \[s\]: no code sent to it or waited for its answer.
+    pub fn note_line_gap(&self, seconds: f64) {
+        // For numbers that are not negative, the greater number has the greater bits.
         self.absence
             .fetch_max(seconds.max(0.0).to_bits(), Ordering::SeqCst);
     }
 
     /// The longest time, s, that a line was not looked at since this was asked last.
     #[must_use]
-    pub fn take_absence(&self) -> f64 {
+    pub fn take_line_gap(&self) -> f64 {
         f64::from_bits(self.absence.swap(0, Ordering::SeqCst))
     }
 
-    /// The run is to end when the step under way is done.
+    /// The run is to end after the present step.
     pub fn stop_after_step(&self) {
         self.requests.fetch_add(1, Ordering::SeqCst);
-        // A stronger wish stays.
+        // A stronger request remains.
         self.what
             .compare_exchange(NOTHING, STOP_AFTER_STEP, Ordering::SeqCst, Ordering::SeqCst)
             .ok();
     }
 
-    /// The rig is to hold at once: every wait on it ends.
+    /// The rig is to hold immediately: every wait on it ends.
     pub fn hold_now(&self) {
         self.requests.fetch_add(1, Ordering::SeqCst);
         self.what.store(HOLD_NOW, Ordering::SeqCst);
     }
 
-    /// Does a client's move. The rig is to hold at once where the client is gone meanwhile; the run does not end with that.
+    /// Carries out a client's move. The rig is to hold immediately if the client disconnects meanwhile; the run does not
+    /// end with that.
     pub fn for_client<T>(
         &self,
         is_gone: impl Fn() -> bool + Send + 'static,
@@ -114,17 +115,17 @@ impl Wish {
         moved
     }
 
-    /// Says that the wish to hold was seen, so that the words that hold the rig can be said and answered.
-    pub fn heed(&self) {
+    /// Notes that the request to hold was seen, so that the hold command can be sent and answered.
+    pub fn acknowledge(&self) {
         self.what
-            .compare_exchange(HOLD_NOW, HEEDED, Ordering::SeqCst, Ordering::SeqCst)
+            .compare_exchange(HOLD_NOW, ACKNOWLEDGED, Ordering::SeqCst, Ordering::SeqCst)
             .ok();
         self.client.set(None);
     }
 
-    /// Whether a hold is wanted that nobody has seen yet.
+    /// Whether a hold is requested that has not been acknowledged yet.
     #[must_use]
-    pub fn wants_hold(&self) -> bool {
+    pub fn hold_requested(&self) -> bool {
         self.what.load(Ordering::SeqCst) == HOLD_NOW || self.client.is_gone()
     }
 
@@ -136,7 +137,7 @@ impl Wish {
 
     /// Whether the run is to end, now or after the step.
     #[must_use]
-    pub fn wants_end(&self) -> bool {
+    pub fn end_requested(&self) -> bool {
         self.what.load(Ordering::SeqCst) != NOTHING
     }
 }
@@ -147,47 +148,53 @@ mod tests {
 
     #[test]
     fn a_wish_to_hold_outranks_one_to_stop_and_can_be_heeded_once() {
-        let wish = Wish::default();
-        let clone = wish.clone();
-        assert!(!wish.wants_end());
+        let stop_request = StopRequest::default();
+        let clone = stop_request.clone();
+        assert!(!stop_request.end_requested());
         clone.stop_after_step();
-        assert!(wish.wants_end() && !wish.wants_hold());
+        assert!(stop_request.end_requested() && !stop_request.hold_requested());
         clone.hold_now();
         clone.stop_after_step();
-        assert!(wish.wants_hold(), "not weakened");
-        wish.heed();
-        assert!(!clone.wants_hold() && clone.wants_end());
-        assert_eq!(wish.requests(), 3);
+        assert!(stop_request.hold_requested(), "not weakened");
+        stop_request.acknowledge();
+        assert!(!clone.hold_requested() && clone.end_requested());
+        assert_eq!(stop_request.requests(), 3);
         clone.hold_now();
-        assert!(wish.wants_hold(), "a second wish is a new one");
-        assert_eq!(wish.requests(), 4);
-        assert!(wish.may_ask());
-        clone.ask_nobody();
-        assert!(!wish.may_ask());
-        assert!(!wish.lets_go() && Wish::default().letting_go(true).clone().lets_go());
+        assert!(stop_request.hold_requested(), "a second wish is a new one");
+        assert_eq!(stop_request.requests(), 4);
+        assert!(stop_request.prompts_allowed());
+        clone.suppress_prompts();
+        assert!(!stop_request.prompts_allowed());
+        assert!(
+            !stop_request.release_allowed()
+                && StopRequest::default()
+                    .with_release_allowed(true)
+                    .clone()
+                    .release_allowed()
+        );
     }
 
     #[test]
     fn a_client_that_is_gone_holds_its_own_move_and_ends_nothing() {
-        let wish = Wish::default();
+        let stop_request = StopRequest::default();
         let gone = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&gone);
-        wish.for_client(
+        stop_request.for_client(
             move || seen.load(Ordering::SeqCst),
             || {
-                assert!(!wish.wants_hold(), "it is there");
+                assert!(!stop_request.hold_requested(), "it is there");
                 gone.store(true, Ordering::SeqCst);
-                assert!(wish.clone().wants_hold() && !wish.wants_end());
-                wish.heed();
+                assert!(stop_request.clone().hold_requested() && !stop_request.end_requested());
+                stop_request.acknowledge();
                 assert!(
-                    !wish.wants_hold(),
+                    !stop_request.hold_requested(),
                     "the words that hold are not interrupted"
                 );
             },
         );
-        wish.for_client(|| true, || assert!(wish.wants_hold()));
+        stop_request.for_client(|| true, || assert!(stop_request.hold_requested()));
         assert!(
-            !wish.wants_hold() && !wish.wants_end(),
+            !stop_request.hold_requested() && !stop_request.end_requested(),
             "the next client's rig"
         );
     }

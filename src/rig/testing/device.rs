@@ -1,13 +1,13 @@
-//! A device that moves evenly on a virtual clock and bends a spring, with faults on demand. In: moves, and a script of
-//! what goes wrong. Out: samples. It speaks no bytes worth reading.
+//! A device that moves uniformly on a virtual clock and loads a spring, with faults on demand. In: moves, and a script of
+//! faults. Out: samples. Its bytes have no meaning.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::VirtualClock;
 use crate::plan::Limits;
-use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity, Force, Move, Sample};
+use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity, DeviceMove, Force, Sample};
 use crate::rig::transport::Clock as _;
-use crate::rig::{LastMove, Tally};
+use crate::rig::{LastMove, LineStatistics};
 
 /// What becomes of the n-th sample, counted from 0, on its way out.
 pub type Alteration = Box<dyn FnMut(u64, &mut Sample) -> Result<(), DeviceFault> + Send>;
@@ -117,9 +117,9 @@ impl Device for FakeDevice {
         Ok(self.inside().identity.clone())
     }
 
-    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         let target = targets[0] + self.inside().misspoken;
-        Ok(Move {
+        Ok(DeviceMove {
             frames: vec![format!("{target} {speed}").into_bytes()],
             targets: vec![target],
             speed,
@@ -127,7 +127,7 @@ impl Device for FakeDevice {
         })
     }
 
-    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let mut inside = self.inside();
         inside.started.push(going.targets[0]);
         inside.target = going.targets[0] * inside.reaches;
@@ -198,7 +198,7 @@ impl Device for FakeDevice {
         self.inside().last_move.clone()
     }
 
-    fn tally(&self) -> Tally {
-        Tally::default()
+    fn line_statistics(&self) -> LineStatistics {
+        LineStatistics::default()
     }
 }

@@ -1,4 +1,4 @@
-//! A conversation word by word. In: what is to be sent, each with its answer. Out: whether that was sent, and nothing else.
+//! A conversation, line by line. In: expected requests, each with its answer. Out: whether exactly those were sent.
 
 use super::{Say, ScriptedPort};
 

@@ -1,5 +1,5 @@
-//! The machine's clocks. In: nothing. Out: seconds that only go forward, and the wall clock for the record. A jump of
-//! the wall clock changes no duration.
+//! The machine's clocks. In: nothing. Out: monotonic seconds, and the wall clock for the run log. A jump of the wall clock
+//! changes no duration.
 
 use std::time::Duration;
 
@@ -7,7 +7,8 @@ use rustix::time::{ClockId, clock_gettime};
 
 use super::Clock;
 
-/// Seconds since it was made, by the clock that runs on while the machine is suspended: a rig does not wait for it.
+/// Seconds since it was made, by the clock that continues while the machine is suspended: a rig does not wait for the
+/// machine.
 #[derive(Clone, Copy, Debug)]
 pub struct MonotonicClock(Duration);
 

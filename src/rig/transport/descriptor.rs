@@ -1,5 +1,5 @@
 //! Bytes through a descriptor that never blocks, with a time-out on every call. In: a descriptor and bytes. Out: bytes,
-//! or `TimedOut`, or `BrokenPipe` once what came before a hangup has been read.
+//! `TimedOut`, or `BrokenPipe` after the bytes before a hang-up have been read.
 
 use std::io::{self, ErrorKind};
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
@@ -26,13 +26,13 @@ pub(super) fn write(
             Ok(count) => bytes = &bytes[count..],
             Err(Errno::INTR) => {}
             Err(Errno::AGAIN) => wait(descriptor, PollFlags::OUT, deadline)?,
-            Err(errno) => return Err(gone(errno)),
+            Err(errno) => return Err(hang_up(errno)),
         }
     }
     Ok(())
 }
 
-/// What there is, at least one byte. A line that hung up still gives what came before: it is read, whatever `poll` says.
+/// The available bytes, at least one. The bytes before a hang-up are still read, whatever `poll` reports.
 pub(super) fn read(
     descriptor: BorrowedFd<'_>,
     buffer: &mut [u8],
@@ -45,12 +45,12 @@ pub(super) fn read(
             Ok(count) => return Ok(count),
             Err(Errno::INTR) => {}
             Err(Errno::AGAIN) => wait(descriptor, PollFlags::IN, deadline)?,
-            Err(errno) => return Err(gone(errno)),
+            Err(errno) => return Err(hang_up(errno)),
         }
     }
 }
 
-/// Waits until something can be done, or the line is gone.
+/// Waits until the descriptor is ready, or the line is lost.
 fn wait(descriptor: BorrowedFd<'_>, flags: PollFlags, deadline: Instant) -> io::Result<()> {
     loop {
         let left = deadline.saturating_duration_since(Instant::now());
@@ -63,13 +63,13 @@ fn wait(descriptor: BorrowedFd<'_>, flags: PollFlags, deadline: Instant) -> io::
             Ok(0) => return Err(ErrorKind::TimedOut.into()),
             Ok(_) => return Ok(()),
             Err(Errno::INTR) => {}
-            Err(errno) => return Err(gone(errno)),
+            Err(errno) => return Err(hang_up(errno)),
         }
     }
 }
 
-/// One word for all the ways in which the other side goes away.
-fn gone(errno: Errno) -> io::Error {
+/// One error for all forms of a hang-up.
+fn hang_up(errno: Errno) -> io::Error {
     match errno {
         Errno::IO | Errno::PIPE | Errno::CONNRESET | Errno::NXIO | Errno::NODEV => {
             ErrorKind::BrokenPipe.into()
@@ -89,7 +89,7 @@ impl Sender {
 
 impl Emergency for Sender {
     fn send(&mut self, bytes: &[u8]) {
-        // There is nobody left to tell.
+        // There is no receiver left for an error.
         write(self.0.as_fd(), bytes, EMERGENCY_TIMEOUT).ok();
     }
 }

@@ -16,7 +16,7 @@ pub use clock::MonotonicClock;
 pub use serial::SerialPort;
 pub use tcp::TcpPort;
 
-/// Longest wait for a connection, s.
+/// Longest wait for a connection \[s\].
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Opens the port of a plan. Nothing is sent.
@@ -30,30 +30,30 @@ pub fn open(port: &PortPlan) -> io::Result<Box<dyn Port>> {
     })
 }
 
-/// A line to one device. Every call ends within its time-out; `ErrorKind::TimedOut` says that it was used up.
+/// A line to one device. Every call ends within its time-out; `ErrorKind::TimedOut` reports that it has expired.
 pub trait Port: Send {
     /// Sends all the bytes.
     ///
     /// # Errors
-    /// Not all were taken in time, or the line is gone.
+    /// Not all bytes were accepted in time, or the line is lost.
     fn write(&mut self, bytes: &[u8], timeout: Duration) -> io::Result<()>;
 
-    /// Waits for bytes and gives what there is, at least one.
+    /// Waits for bytes and gives the available ones, at least one.
     ///
     /// # Errors
-    /// Nothing came in time, or the line is gone (`BrokenPipe`; bytes that came before are given first).
+    /// Nothing was received in time, or the line is lost (`BrokenPipe`, after the bytes that were received before).
     fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize>;
 
-    /// Throws away what has come and was not read.
+    /// Discards the bytes that were received and not read.
     ///
     /// # Errors
-    /// The line is gone.
+    /// The line is lost.
     fn discard(&mut self) -> io::Result<()>;
 
-    /// A second hold on the line that can only send: for who must stop the rig whatever this one is doing.
+    /// A second handle of the line that can only send: for the emergency hold, whatever this handle is doing.
     ///
     /// # Errors
-    /// The line is gone.
+    /// The line is lost.
     fn emergency(&self) -> io::Result<Box<dyn Emergency>>;
 }
 
@@ -70,6 +70,6 @@ pub trait Clock: Send {
 
     fn sleep(&mut self, seconds: f64);
 
-    /// Wall clock, for the record: UTC as `2026-05-31T12:00:00.000Z`. None where a run must read nothing of the machine.
+    /// Wall clock for the run log: UTC as `2026-05-31T12:00:00.000Z`. None if a run must not read the machine's clock.
     fn wall(&self) -> Option<String>;
 }

@@ -1,6 +1,6 @@
-//! One psd of this machine speaks with one address. In: the address. Out: the right to it, for as long as it is kept, or that
-//! another has it. The right is a name in the kernel: it goes with the program, however that ends, and leaves no file behind.
-//! It does not know who else on the network speaks with the same device.
+//! Only one psd on this machine uses an address. In: the address. Out: the lock on it, for its lifetime, or that another
+//! program has it. The lock is a name in the kernel: it disappears with the program, however that ends, and leaves no file
+//! behind. Other machines on the network are not known here.
 
 use std::io;
 use std::net::SocketAddr;
@@ -11,7 +11,7 @@ use crate::rig::safety::failpoint::{Guarding, on};
 
 /// The right to one address.
 #[derive(Debug)]
-pub(super) struct Taken {
+pub(super) struct PortLock {
     #[cfg(target_os = "linux")]
     _name: net::UnixListener,
 }
@@ -21,12 +21,12 @@ pub(super) struct Taken {
 /// # Errors
 /// Another program has it.
 #[cfg(target_os = "linux")]
-pub(super) fn take(place: SocketAddr) -> io::Result<Option<Taken>> {
+pub(super) fn lock(place: SocketAddr) -> io::Result<Option<PortLock>> {
     if !on(Guarding::Lock) {
         return Ok(None);
     }
     let ip = place.ip().to_canonical();
-    // Linux takes `0.0.0.0` for this machine; which of its own addresses a listener has cannot be told from outside.
+    // Linux treats `0.0.0.0` as this machine; the address of a listener cannot be determined from outside.
     let host = if ip.is_loopback() || ip.is_unspecified() {
         "this machine".to_owned()
     } else {
@@ -35,7 +35,7 @@ pub(super) fn take(place: SocketAddr) -> io::Result<Option<Taken>> {
     let name = format!("psd rig at {host}:{}", place.port());
     let taken = net::SocketAddr::from_abstract_name(name)
         .and_then(|name| net::UnixListener::bind_addr(&name));
-    taken.map(|name| Some(Taken { _name: name })).map_err(|error| match error.kind() {
+    taken.map(|name| Some(PortLock { _name: name })).map_err(|error| match error.kind() {
         io::ErrorKind::AddrInUse => io::Error::new(
             io::ErrorKind::ResourceBusy,
             "another program on this machine speaks with it: end that one, for two cannot drive one rig",
@@ -46,6 +46,6 @@ pub(super) fn take(place: SocketAddr) -> io::Result<Option<Taken>> {
 
 /// Other systems have no such names.
 #[cfg(not(target_os = "linux"))]
-pub(super) fn take(_: SocketAddr) -> io::Result<Option<Taken>> {
-    Ok(on(Guarding::Lock).then_some(Taken {}))
+pub(super) fn lock(_: SocketAddr) -> io::Result<Option<PortLock>> {
+    Ok(on(Guarding::Lock).then_some(PortLock {}))
 }

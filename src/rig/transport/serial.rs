@@ -1,5 +1,5 @@
-//! A serial line: 8 data bits, no parity, 1 stop bit, no flow control, for this program alone. In: a device path and a
-//! rate. Out: a [`Port`]. It knows no dialect.
+//! A serial line: 8 data bits, no parity, 1 stop bit, no flow control, for this program alone. In: a device path and a baud
+//! rate. Out: a [`Port`]. It knows no protocol.
 
 use std::io;
 use std::os::fd::{AsFd as _, OwnedFd};
@@ -15,21 +15,21 @@ use super::{Emergency, Port};
 
 /// An open serial line.
 pub struct SerialPort {
-    /// The program's own descriptor, which never blocks: the crate's write can block beyond its time-out, and its read
-    /// refuses what came before a hangup.
+    /// The program's own descriptor, which never blocks. The write of the crate can block beyond its time-out, and its read
+    /// refuses the bytes before a hang-up.
     descriptor: OwnedFd,
-    /// Sets the line up and keeps others out as long as it lives.
+    /// Configures the line and keeps other programs out during its lifetime.
     _line: TTYPort,
 }
 
 impl SerialPort {
-    /// Opens `path` at `baud` bits a second. What is no serial line is not even opened.
+    /// Opens `path` at `baud` \[bit/s\]. A path that is not a serial line is not opened.
     ///
     /// # Errors
     /// It is no serial line, is in use, or cannot be set up.
     pub fn open(path: &str, baud: u32) -> io::Result<Self> {
         let kind = std::fs::metadata(path)
-            .map_err(|error| told(&error))?
+            .map_err(|error| readable_error(&error))?
             .file_type();
         let refuse = |what: &str| {
             Err(io::Error::new(
@@ -46,15 +46,15 @@ impl SerialPort {
         if !kind.is_char_device() {
             return refuse("no device of characters");
         }
-        // Opened before the line is made exclusive, which keeps out all who come later, this program too.
+        // Opened before the line is made exclusive, which keeps out all later openers, this program too.
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-        let descriptor =
-            rustix::fs::open(path, flags, Mode::empty()).map_err(|errno| told(&errno.into()))?;
+        let descriptor = rustix::fs::open(path, flags, Mode::empty())
+            .map_err(|errno| readable_error(&errno.into()))?;
         if !rustix::termios::isatty(&descriptor) {
             return refuse("a device");
         }
-        let line =
-            TTYPort::open(&serialport::new(path, baud)).map_err(|error| told(&error.into()))?;
+        let line = TTYPort::open(&serialport::new(path, baud))
+            .map_err(|error| readable_error(&error.into()))?;
         Ok(Self {
             descriptor,
             _line: line,
@@ -62,8 +62,8 @@ impl SerialPort {
     }
 }
 
-/// The error in words that lead on: whoever reads it may have nothing but a cable in hand.
-fn told(error: &io::Error) -> io::Error {
+/// The error in words that help a reader who may have only a cable in hand.
+fn readable_error(error: &io::Error) -> io::Error {
     use rustix::io::Errno;
     let busy = [Errno::BUSY, Errno::AGAIN]
         .iter()
@@ -154,7 +154,7 @@ mod tests {
         );
     }
 
-    /// What the other side said last is lost in the kernel where it closes this kind of pair; the line is gone for good.
+    /// The last bytes of the other side are lost in the kernel if it closes this kind of pair; the line is lost for good.
     #[test]
     fn a_hangup_is_a_broken_pipe_for_ever() {
         let (master, path) = pair();

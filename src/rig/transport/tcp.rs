@@ -1,5 +1,5 @@
 //! A line over the network. In: `host:port`. Out: a [`Port`]. The other side is not authenticated: a rig belongs on
-//! loopback, a tunnel or a wire of its own. Of the programs of this machine one may have it. It knows no dialect.
+//! loopback, a tunnel or its own wire. Only one program of this machine may use it. It knows no protocol.
 
 use std::io::{self, ErrorKind};
 use std::net::{TcpStream, ToSocketAddrs as _};
@@ -7,7 +7,7 @@ use std::os::fd::{AsFd as _, OwnedFd};
 use std::time::Duration;
 
 use super::descriptor::{self, Sender};
-use super::port_lock::{Taken, take};
+use super::port_lock::{PortLock, lock};
 use super::{Emergency, Port};
 
 /// Bytes thrown away by one discard, so that a flood does not keep it busy for ever.
@@ -16,15 +16,15 @@ const MOST_DISCARDED: usize = 1 << 20;
 /// An open connection.
 pub struct TcpPort {
     descriptor: OwnedFd,
-    /// Keeps other programs of this machine out as long as it lives.
-    _taken: Option<Taken>,
+    /// Keeps other programs of this machine out during its lifetime.
+    _lock: Option<PortLock>,
 }
 
 impl TcpPort {
     /// Connects to `address`; each of its addresses is tried for `timeout`, where no other program of this machine has it.
     ///
     /// # Errors
-    /// Nobody answers there, or another program has it.
+    /// There is no answer, or another program has it.
     pub fn connect(address: &str, timeout: Duration) -> io::Result<Self> {
         let told = |error: &io::Error| {
             io::Error::new(
@@ -35,14 +35,14 @@ impl TcpPort {
         let mut last = io::Error::new(ErrorKind::NotFound, format!("`{address}` is no address"));
         for place in address.to_socket_addrs().map_err(|error| told(&error))? {
             // Before the first packet: some controllers end one conversation when another begins.
-            let taken = take(place)?;
+            let taken = lock(place)?;
             match TcpStream::connect_timeout(&place, timeout) {
                 Ok(stream) => {
                     stream.set_nodelay(true)?;
                     stream.set_nonblocking(true)?;
                     return Ok(Self {
                         descriptor: stream.into(),
-                        _taken: taken,
+                        _lock: taken,
                     });
                 }
                 Err(error) => last = told(&error),

@@ -1,5 +1,5 @@
-//! The virtual actuator. In: reference motion, s of rig time. Out: where the piston stands and how fast it moves.
-//! In closed form, so that a settling of minutes costs as much as none. It knows no specimen and no load cell.
+//! The virtual actuator. In: reference motion, rig time \[s\]. Out: position and velocity of the piston. In closed form, so
+//! that a settling of minutes costs no more than none. It knows no specimen and no load cell.
 
 use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::tracking::trajectory::Rate;
@@ -30,7 +30,7 @@ impl Actuator {
         }
     }
 
-    /// Where the piston stands, m.
+    /// Position of the piston \[m\].
     pub(crate) fn position(&self) -> f64 {
         self.reference - self.lagging
     }
@@ -44,8 +44,8 @@ impl Actuator {
         }
     }
 
-    /// Where the reference ends when `target` is asked for: short by the tracking fraction of the increment, which an
-    /// actuator takes from where it stands, so that the error does not add up over steps in one direction.
+    /// End of the reference for a `target`: short by the tracking fraction of the increment. An actuator takes the
+    /// increment from its present position, so the error does not add up over steps in one direction.
     pub(crate) fn aim(&self, target: f64) -> f64 {
         target - self.tracking * (target - self.position())
     }
@@ -64,8 +64,8 @@ impl Actuator {
         self.lag
     }
 
-    /// The reference moves evenly to `to` in `seconds`. With e = reference − x: ė = v − e/lag, so
-    /// e(t) = v·lag + (e₀ − v·lag)·exp(−t/lag). The reference goes on at this velocity until `stop`. How the piston went.
+    /// The reference moves uniformly to `to` in `seconds`. With e = reference − x: ė = v − e/lag, so e(t) = v·lag + (e₀ −
+    /// v·lag)·exp(−t/lag). The reference continues at this velocity until `stop`. Gives the motion of the piston.
     pub(crate) fn advance(&mut self, to: f64, seconds: f64) -> Motion {
         if seconds <= 0.0 {
             return Motion::rest(0.0);
@@ -82,7 +82,7 @@ impl Actuator {
         travel
     }
 
-    /// The reference stands where it is to be, and passes there at `velocity` (m/s): a way that was cut off is gone on with.
+    /// The reference is at its position and passes it at `velocity` \[m/s\]: an interrupted motion is continued.
     pub(crate) const fn pass(&mut self, velocity: f64) -> Motion {
         self.reference_velocity = velocity;
         Motion::rest(0.0)
@@ -121,7 +121,7 @@ impl Actuator {
         travel
     }
 
-    /// The reference stands; the piston goes on towards it.
+    /// The reference stops; the piston continues towards it.
     pub(crate) const fn stop(&mut self) {
         self.reference_velocity = 0.0;
     }

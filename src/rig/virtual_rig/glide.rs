@@ -1,5 +1,5 @@
-//! The virtual rig along smooth paths: all axes together, read on the way, without a stop. In: a path an axis, in the plan's
-//! directions. Out: readings. The pistons follow in closed form, so that the number of readings changes none of them.
+//! The virtual rig along smooth paths: all axes together, read during the motion, without a stop. In: a path per axis, in
+//! the plan's directions. Out: readings. The pistons follow in closed form, so the number of readings does not change them.
 
 use super::{Axis, VirtualRig};
 use crate::physics::relaxation::maxwell::Motion;
@@ -7,8 +7,8 @@ use crate::physics::tracking::trajectory::{Path, Rate};
 use crate::rig::virtual_rig::actuator::Actuator;
 use crate::rig::{EachReading, Rig as _, RigFault};
 
-/// The reference of one actuator along a path. What the actuator misses of its increments goes over evenly from what it missed
-/// before to what it misses of this one, so that its reference has no step.
+/// The reference of one actuator along a path. The undershoot of the actuator changes uniformly from that of the last
+/// increment to that of this one, so its reference has no step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Course {
     path: Path,
@@ -31,8 +31,8 @@ impl Course {
         }
     }
 
-    /// Of the path that the actuator was stopped on before, else of one that it sets off on.
-    pub(crate) fn again(
+    /// For the path on which the actuator was stopped before, otherwise for a new path.
+    pub(crate) fn resumed(
         path: Path,
         sign: f64,
         actuator: &Actuator,
@@ -43,7 +43,7 @@ impl Course {
             .unwrap_or_else(|| Self::of(path, sign, actuator))
     }
 
-    /// The actuator goes on from one time on the path to another, s. How the piston went.
+    /// The actuator moves from one time on the path to another \[s\]. Gives the motion of the piston.
     pub(crate) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Motion {
         let place = self.sign * self.path.place(to) - (self.missed + self.drifts * to);
         actuator.run(place, self.rate(from), self.rate(to), to - from)
@@ -112,7 +112,7 @@ impl VirtualRig {
         let before = |axis: usize| self.under_way.get(axis).copied();
         let axes = paths.iter().zip(&self.axes).enumerate();
         let course = |(number, (path, axis)): (usize, (&Path, &Axis))| {
-            Course::again(*path, self.sign, &axis.actuator, before(number))
+            Course::resumed(*path, self.sign, &axis.actuator, before(number))
         };
         let courses: Vec<Course> = axes.map(course).collect();
         self.under_way.clone_from(&courses);
@@ -159,7 +159,7 @@ mod tests {
         seconds: 0.1,
     };
 
-    /// K X + c v + F_c on the way, at the path's own velocity.
+    /// K X + c v + F_c during the motion, at the velocity of the path.
     #[test]
     fn damping_is_felt_at_the_velocity_of_the_path() {
         for (time, place, force) in readings(VirtualLink::default(), &PATH, 4) {
@@ -197,7 +197,7 @@ mod tests {
         );
     }
 
-    /// A tenth of the increment is missed at the end, and the way there has no step.
+    /// A tenth of the increment is the undershoot at the end, and the path has no step.
     #[test]
     fn what_is_missed_of_an_increment_comes_evenly() {
         let found = readings(

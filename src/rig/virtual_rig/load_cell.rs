@@ -1,5 +1,5 @@
-//! The virtual load cell. In: the force on it and the rig time. Out: what it shows, with drift, noise and quantum.
-//! Its generator is a named one (PCG-64-MCG), so that a seed gives the same readings on every version.
+//! The virtual load cell. In: its force and the rig time. Out: its reading, with zero drift, noise and resolution. Its
+//! generator is a named one (PCG-64-MCG), so a seed gives the same readings on every version.
 
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

@@ -18,7 +18,7 @@ use super::motion::even;
 use super::virtual_rig::actuator::Actuator;
 use super::virtual_rig::load_cell::{LoadCell, to_quantum};
 use super::virtual_rig::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
-use super::{CutOff, DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault};
+use super::{CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault};
 use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Frame, Plan, Settle, Specimen, VirtualLink};
@@ -105,8 +105,8 @@ impl VirtualRig {
         }
     }
 
-    /// The plan's rig with the plan's specimen on it: the one that the first procedure names. In place of a real rig an
-    /// ideal virtual one.
+    /// The plan's rig with the plan's specimen: the one of the first procedure. For a plan with a real rig, an ideal
+    /// virtual rig.
     #[must_use]
     pub fn of_plan(plan: &Plan) -> Self {
         let link = plan.rig.link.as_virtual().copied().unwrap_or_default();
@@ -122,7 +122,7 @@ impl VirtualRig {
         }
     }
 
-    /// The specimen that stands on the plan's rig: the one that the first procedure names, else the first.
+    /// The specimen on the plan's rig: that of the first procedure, otherwise the first.
     #[must_use]
     pub fn specimen_of(plan: &Plan) -> Option<&Specimen> {
         plan.specimen_on_the_rig()
@@ -150,7 +150,7 @@ impl VirtualRig {
         }
     }
 
-    /// The only axis, for a motion at constant velocity, and the target there, m.
+    /// The only axis, for a motion at constant velocity, and its target \[m\].
     fn only(&mut self, targets: &[f64]) -> Result<(&mut Actuator, f64), RigFault> {
         let target = self.at_rig(targets)?;
         match (&mut self.axes[..], &target[..]) {
@@ -161,7 +161,7 @@ impl VirtualRig {
         }
     }
 
-    /// The specimen, what relaxes with it and the friction on it follow the pistons.
+    /// The specimen, its relaxation and its friction follow the pistons.
     fn follow(&mut self, travels: &[Motion]) {
         let mut moved = false;
         for (bent, axis) in self.bent.iter_mut().zip(&self.axes) {
@@ -177,7 +177,7 @@ impl VirtualRig {
             .bend(travels, &self.bent, &mut self.restoring_force);
     }
 
-    /// Of the pistons, m/s.
+    /// Velocities of the pistons \[m/s\].
     fn velocities(&self) -> Vec<f64> {
         self.axes
             .iter()
@@ -252,11 +252,11 @@ impl VirtualRig {
             .map(|bent| sign * to_quantum(*bent, resolution))
             .collect();
         let velocities = self.velocities();
-        let felt = self.springs.felt(&velocities, &self.restoring_force);
+        let feedback = self.springs.feedback(&velocities, &self.restoring_force);
         let force = self
             .axes
             .iter_mut()
-            .zip(felt)
+            .zip(feedback)
             .map(|(axis, force)| sign * axis.cell.read(force, time))
             .collect();
         Reading {
@@ -267,7 +267,7 @@ impl VirtualRig {
         }
     }
 
-    /// What moves at an axis that misses its target by so much, m.
+    /// The remaining motion at an axis that misses its target by `miss` \[m\].
     fn unsettled(&self, axis: usize, miss: f64) -> Unsettled {
         let actuator = &self.axes[axis].actuator;
         let (stiffness, damping) = self.springs.rows(axis);
@@ -288,7 +288,7 @@ impl VirtualRig {
         }
     }
 
-    /// The longest of what each axis waits for, s; none if one does not settle within the timeout.
+    /// The longest settling time of all axes \[s\]. None if one does not settle within the timeout.
     fn longest(
         &self,
         misses: &[f64],
@@ -343,7 +343,7 @@ impl Rig for VirtualRig {
         self.time
     }
 
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         let at_rig = self.at_rig(targets)?;
         let speed = speed.unwrap_or(OWN_SPEED);
         if !(speed > 0.0 && speed.is_finite()) {
@@ -352,7 +352,7 @@ impl Rig for VirtualRig {
             )));
         }
         self.proposed = Some((at_rig, speed));
-        Ok(Offer {
+        Ok(EncodedMove {
             targets: targets.to_vec(),
             speed,
             wire: Vec::new(),
@@ -361,7 +361,7 @@ impl Rig for VirtualRig {
         })
     }
 
-    /// All axes arrive at once; the one with the longest travel goes at the speed that was asked for.
+    /// All axes arrive simultaneously; the one with the longest travel has the requested speed.
     fn execute(&mut self) -> Result<(), RigFault> {
         let (targets, speed) = self
             .proposed

@@ -5,7 +5,7 @@ use crate::physics::relaxation::relaxation_state::RelaxationState;
 use crate::physics::structure::cell_damping::StrengthRate;
 use crate::plan::Settle;
 
-/// What moves after the reference has arrived.
+/// The motion after the reference has arrived.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unsettled {
     /// Size of reference − position, m, dying away with `lag`.
@@ -36,12 +36,12 @@ impl Unsettled {
     }
 }
 
-/// Seconds until displacement and force rate have both stayed inside their bounds for the dwell; None if that does not
-/// come within the timeout. A zero band asks for nothing and waits for nothing; a zero force rate leaves the band alone.
+/// Time \[s\] until displacement and force rate have both been inside their bounds for the dwell. None if that is not
+/// reached within the timeout. A zero band requires nothing; a zero force rate leaves only the band.
 ///
-/// The lag e dies away as e·exp(−t/lag): |target − x| ≤ miss + |e| and |dF/dt| ≤ K·|e|/lag + c·|e|/lag² + |drift|, both
-/// falling, so that the time at which a bound on |e| is met is the whole answer: t = lag·ln(|e|/bound). Noise is not
-/// taken for a force rate: a real rig filters it.
+/// The lag error e decays as e·exp(−t/lag): |target − x| ≤ miss + |e| and |dF/dt| ≤ K·|e|/lag + c·|e|/lag² + |drift|. Both
+/// fall, so the settling time is the time at which a bound on |e| is met: t = lag·ln(|e|/bound). Noise does not count as
+/// force rate: a real rig filters it.
 pub(crate) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f64> {
     if settle.band == 0.0 {
         return Some(0.0);
@@ -75,7 +75,7 @@ pub(crate) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
     (total <= settle.timeout).then_some(total)
 }
 
-/// All that dies away of what some specimens lose.
+/// The branches of several specimens that relax.
 pub(crate) fn dying(relaxing: &[&RelaxationState]) -> Vec<MaxwellBranch> {
     relaxing
         .iter()
@@ -84,7 +84,7 @@ pub(crate) fn dying(relaxing: &[&RelaxationState]) -> Vec<MaxwellBranch> {
         .collect()
 }
 
-/// The criterion with half of its force rate kept for what relaxes with the specimen; all of it is the lag's where nothing does.
+/// The criterion with half of its force rate reserved for relaxation. The lag has all of it if nothing relaxes.
 pub(crate) fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> Settle {
     let left = settle.force_rate - unsettled.drift.abs();
     if !relaxes || settle.force_rate <= 0.0 || left <= 0.0 || unsettled.lag == 0.0 {
@@ -96,9 +96,9 @@ pub(crate) fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> S
     }
 }
 
-/// Seconds more, after the `waited` of the lag, until branches that relax change the force no faster than is left for them, and
-/// that for the dwell; None if that does not come within the timeout. Their rates fall, so that the first such instant is found by
-/// halving.
+/// Further time \[s\], after the `waited` of the lag, until relaxing branches change the force no faster than their part of
+/// the bound, for the whole dwell. None if that is not reached within the timeout. The rates fall, so the first such
+/// instant is found by bisection.
 pub(crate) fn relaxing_time(
     settle: &Settle,
     unsettled: &Unsettled,
@@ -263,7 +263,7 @@ mod tests {
         assert!((wait - by_hand).abs() < 1e-9, "{wait} s is not {by_hand} s");
     }
 
-    /// 200 N that relax with 2 s change by 100 N/s at first: 5 N/s come after 2 ln 20 s.
+    /// 200 N that relax with 2 s change by 100 N/s at first: 5 N/s are reached after 2 ln 20 s.
     #[test]
     fn what_relaxes_keeps_the_rig_unsettled_until_it_is_slow() {
         let mut branch = MaxwellBranch::new(1e5, 2.0);
@@ -297,7 +297,7 @@ mod tests {
             Some(0.0),
             "a band alone does not ask"
         );
-        // Beside a lag either has half of what the drift leaves.
+        // With a lag, each of the two has half of the remaining bound.
         let drifting = Unsettled {
             drift: 1.0,
             ..LAGGING

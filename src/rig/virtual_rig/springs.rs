@@ -1,5 +1,5 @@
-//! What gives the axes of a virtual rig their forces: a specimen, the storeys of a frame, or a matrix. In: where the pistons are,
-//! and how they went there. Out: forces, and what is still settling. It knows no actuator and no load cell.
+//! The source of the axis forces of a virtual rig: a specimen, the storeys of a frame, or a matrix. In: positions of the
+//! pistons and their motion. Out: forces, and the remaining settling. It knows no actuator and no load cell.
 
 use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
@@ -19,10 +19,10 @@ pub(super) enum Springs {
     },
 }
 
-/// One spring, and what is beside it.
+/// One spring, and the elements in parallel with it.
 pub(super) struct Storey {
     model: SpecimenModel,
-    /// What it resists more with the faster it is bent is felt by the cells, and gone at rest; its friction stays.
+    /// The cells measure its rate-dependent force, which is zero at rest; its friction remains.
     damper: CellDamping,
     relaxing: RelaxationState,
     /// N/m, the initial one.
@@ -95,7 +95,7 @@ impl Springs {
         }
     }
 
-    /// The axes go to these displacements (m), each as its travel says.
+    /// The axes move to these displacements \[m\], each by its travel.
     pub(super) fn bend(
         &mut self,
         travels: &[Motion],
@@ -137,9 +137,9 @@ impl Springs {
         }
     }
 
-    /// What the cells feel of these forces at these velocities (m/s), N.
-    pub(super) fn felt(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
-        let mut felt = restoring_force.to_vec();
+    /// The forces that the cells measure at these velocities \[m/s\], \[N\].
+    pub(super) fn feedback(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
+        let mut feedback = restoring_force.to_vec();
         if let Self::Storeys(storeys) = self
             && storeys
                 .iter()
@@ -151,9 +151,9 @@ impl Springs {
                     storey.damper.measured_force(storey.shear, velocity) + storey.relaxing.force()
                 })
                 .collect();
-            floor_forces(&shears, &mut felt);
+            floor_forces(&shears, &mut feedback);
         }
-        felt
+        feedback
     }
 
     /// The storey under an axis and the one above it.
@@ -165,8 +165,9 @@ impl Springs {
         storeys.iter().skip(axis).take(2)
     }
 
-    /// What relaxes in the force of an axis: in its own storey and in the one above. An axis's force is the difference of two shears, and
-    /// steady where both relax alike: they are taken by their sizes, so that no shear is on its way either.
+    /// The relaxing parts of the force of an axis: those of its own storey and of the storey above. The force of an axis is
+    /// the difference of two shears, and would be steady if both relaxed alike. They are added in absolute value, so that
+    /// each shear has settled too.
     pub(super) fn relaxing_at(&self, axis: usize) -> Vec<&RelaxationState> {
         self.beside(axis)
             .map(|storey| &storey.relaxing)
@@ -174,8 +175,8 @@ impl Springs {
             .collect()
     }
 
-    /// How fast the force of an axis can change as the axes move: the sums of the sizes of a row of K (N/m) and of what damps the storeys
-    /// (N·s/m).
+    /// Bound of the rate of an axis force during motion of the axes: the sums of absolute values of a row of K \[N/m\] and
+    /// of the damping of the storeys \[N·s/m\].
     pub(super) fn rows(&self, axis: usize) -> (f64, f64) {
         if let Self::Matrix { rows, .. } = self {
             return (rows[axis], 0.0);
@@ -195,7 +196,8 @@ impl Springs {
         )
     }
 
-    /// Force (N) and law of a specimen that resists more the faster it is bent; none of a frame, whose storeys are not read apart.
+    /// Force \[N\] and law of a specimen with a rate-dependent force. None for a frame, whose storeys are not read
+    /// separately.
     pub(super) fn rate(&self) -> Option<(f64, StrengthRate)> {
         match self {
             Self::Storeys(storeys) if storeys.len() == 1 => {

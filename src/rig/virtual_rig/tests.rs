@@ -1,4 +1,5 @@
-//! The virtual rig of one degree of freedom: moves, settling, strokes and what its load cell reads, against numbers by hand.
+//! The virtual rig of one degree of freedom: moves, settling, strokes and the readings of its load cell, against numbers
+//! calculated by hand.
 
 use super::*;
 use crate::plan::Behaviour;

@@ -1,10 +1,10 @@
-//! What an older version did otherwise. In: a plan, a record of it. Out: the plan as the version that wrote the record ran it. It
-//! judges nothing, and changes nothing of what this version writes.
+//! Differences of older versions. In: a plan, and a run log of it. Out: the plan as the version that wrote the run log ran
+//! it. It assesses nothing, and changes nothing that this version writes.
 
 use std::borrow::Cow;
 
 use super::entry::OperatorBody;
-use super::replayed::{Played, body};
+use super::logged_run::{LoggedRun, body};
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Line};
@@ -12,32 +12,33 @@ use crate::rig::RigFault;
 use crate::run::session::STOPPED_ON_REQUEST;
 use crate::run::zero_drift::READINGS;
 
-/// The rules that this version computes a run by, as its records say in their header. 1: an `unload` may pass the place without load, and a
-/// `cycle` has ten targets a quarter unless it says another number. 2: neither, but the targets of a `cycle` stand evenly. 3: they do not.
+/// The computation rules of this version, as the header of a run log states them. 1: an `unload` may pass the unloaded
+/// position, and a `cycle` has ten targets a quarter unless it states another number. 2: neither applies, but the targets
+/// of a `cycle` are equally spaced. 3: they are not.
 pub const RULES: u32 = 3;
 
 /// Targets between the middle and an amplitude where the plan gave no number, now and by the rules of 1.
 const POINTS: u32 = 25;
 const OLDER_POINTS: u32 = 10;
 
-/// The plan as the version ran it that wrote the record.
-pub(super) fn as_it_was_run<'a>(plan: &'a Plan, played: &Played) -> Cow<'a, Plan> {
-    let without_zeros = plan.rig.drift.is_some() && serves_without_zeros(played);
-    if !without_zeros && played.header.rules >= RULES {
+/// The plan as the version that wrote the run log ran it.
+pub(super) fn as_it_was_run<'a>(plan: &'a Plan, logged: &LoggedRun) -> Cow<'a, Plan> {
+    let without_zeros = plan.rig.drift.is_some() && serves_without_zeros(logged);
+    if !without_zeros && logged.header.rules >= RULES {
         return Cow::Borrowed(plan);
     }
     let mut plan = plan.clone();
-    // The first versions that served a rig which says how far its zeros may drift read none before the first client: their records go from
-    // the gate to the first request, and are played back so, with a drift that nobody looked at.
+    // The first versions that served a rig with a limit of its zero drift read no zeros before the first client: their run
+    // logs go from the pre-test check to the first request, and are replayed so, without a zero drift.
     if without_zeros {
         plan.rig.drift = None;
     }
-    let first = played.header.rules < 2;
+    let first = logged.header.rules < 2;
     plan.unloads_at_once |= first;
-    let said = played.texts.iter().any(|text| text.contains("points"));
+    let said = logged.texts.iter().any(|text| text.contains("points"));
     for procedure in &mut plan.procedures {
         if let ProcedureKind::Cycle(cycle) = &mut procedure.kind {
-            cycle.evenly = played.header.rules < 3;
+            cycle.evenly = logged.header.rules < 3;
             if first && cycle.points == POINTS && !said {
                 cycle.points = OLDER_POINTS;
             }
@@ -46,13 +47,13 @@ pub(super) fn as_it_was_run<'a>(plan: &'a Plan, played: &Played) -> Cow<'a, Plan
     Cow::Owned(plan)
 }
 
-/// Whether a client's first request is on record, and before it nowhere as many readings in a row as make a zero.
-fn serves_without_zeros(played: &Played) -> bool {
-    let Some(first) = played.lines.iter().position(is_request) else {
+/// Whether a client's first request is in the run log, without as many consecutive readings before it as a zero needs.
+fn serves_without_zeros(logged: &LoggedRun) -> bool {
+    let Some(first) = logged.lines.iter().position(is_request) else {
         return false;
     };
     let mut in_a_row = 0;
-    for line in played.lines.iter().take(first) {
+    for line in logged.lines.iter().take(first) {
         in_a_row = if line.kind == EntryKind::Sample {
             in_a_row + 1
         } else {
@@ -69,8 +70,8 @@ fn is_request(line: &Line) -> bool {
     line.kind == EntryKind::Operator && matches!(body(line), Ok(OperatorBody::Asked { .. }))
 }
 
-/// Whether an event is the one on record. An input that cannot be used was said of in SI units, as a number without one; a request to
-/// hold while a person was asked was recorded as a hold on the way.
+/// Whether an event is the logged one. Older versions stated an unusable input in SI units, as a number without a unit, and
+/// logged a request to hold during a question to the operator as a hold during a motion.
 pub(super) fn is_recorded(event: &Event, recorded: &Event) -> bool {
     const CAME_OUT: &str = " came out as ";
     let stopped_while_asked =

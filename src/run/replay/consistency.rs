@@ -1,7 +1,6 @@
-//! What a record says twice, held against itself: each record is one that psd writes and nothing more; its times and the
-//! numbers of its targets run on; the bytes that were sent and heard say the numbers beside them. In: the lines of a
-//! journal, what counts of them, the plan. Out: the first record that contradicts itself. What a replay finds it does not
-//! look for.
+//! The consistency of a run log with itself: each entry is one that psd writes and nothing more, times increase, targets
+//! are numbered without gaps, the datum is that of the plan, and a virtual rig has no raw bytes. In: the lines of a run
+//! log, those that count, the plan. Out: the first entry that contradicts another. Replay finds the other differences.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -10,17 +9,16 @@ use super::entry::{
     AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
     RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
 };
-use super::raw_bytes::Bytes;
-use super::replayed::{Played, body};
-use crate::plan::Plan;
+use super::logged_run::{LoggedRun, body};
+use crate::plan::{Datum, Plan};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Line, Recovered};
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 
-/// Of a run that goes on the time is a sum of two clocks.
+/// In a resumed run the time is a sum of two clocks.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A record that says two things.
+/// An entry that contradicts another.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("record {seq} contradicts itself: {reason}")]
 pub struct Contradiction {
@@ -28,22 +26,75 @@ pub struct Contradiction {
     pub reason: String,
 }
 
-/// Holds a record against itself.
+/// Checks a run log for consistency with itself.
 ///
 /// # Errors
 /// The first of its lines that does not agree with itself or with those before it.
-pub fn agrees(recovered: &Recovered, played: &Played, plan: &Plan) -> Result<(), Contradiction> {
+pub fn check_consistency(
+    recovered: &Recovered,
+    logged: &LoggedRun,
+    plan: &Plan,
+) -> Result<(), Contradiction> {
     recovered.lines.iter().try_for_each(is_ours)?;
     let parts = recovered.lines.split(|line| line.kind == EntryKind::Resume);
     parts
         .into_iter()
         .try_for_each(|part| runs_on(part.iter()))?;
-    counts_on(played)?;
-    let mut bytes = Bytes::of(plan);
-    recovered
-        .lines
-        .iter()
-        .try_for_each(|line| bytes.agree(line).map_err(|reason| at(line, reason)))
+    counts_on(logged)?;
+    let mut datum = None;
+    recovered.lines.iter().try_for_each(|line| {
+        is_of_the_plans_rig(line, plan, &mut datum).map_err(|reason| at(line, reason))
+    })
+}
+
+/// Whether an entry can belong to the plan's rig: one datum throughout, which is zero if the plan says so, and no raw bytes
+/// for a virtual rig. `first_datum`: that of the first RIG entry \[m\], one per axis.
+fn is_of_the_plans_rig(
+    line: &Line,
+    plan: &Plan,
+    first_datum: &mut Option<Vec<f64>>,
+) -> Result<(), String> {
+    let unread = |fault: super::UnreadableLog| fault.to_string();
+    let link = plan.rig.link.as_real();
+    match (line.kind, link) {
+        (EntryKind::Rig, Some(link)) => {
+            let rig: RigBody = body(line).map_err(unread)?;
+            // Run logs of older versions do not have it: their datum is the zero of the rig.
+            let datum = rig.datum.unwrap_or_else(|| vec![0.0; rig.axes]);
+            let at_zero = datum.iter().all(|position| *position == 0.0);
+            if datum.len() != rig.axes || link.datum == Datum::Machine && !at_zero {
+                return Err(format!("a datum at {datum:?} m is not the plan's"));
+            }
+            if first_datum.get_or_insert_with(|| datum.clone()) != &datum {
+                return Err(format!(
+                    "a datum at {datum:?} m is another than the run began with"
+                ));
+            }
+            Ok(())
+        }
+        (EntryKind::Rig, None) => {
+            let rig: RigBody = body(line).map_err(unread)?;
+            without_bytes(rig.said.is_empty(), "a virtual rig says nothing in bytes")
+        }
+        (EntryKind::Intent, None) => {
+            let intent: IntentBody = body(line).map_err(unread)?;
+            without_bytes(intent.wire.is_none(), "nothing is sent to a virtual rig")
+        }
+        (EntryKind::Sample, None) => {
+            let sample: SampleBody = body(line).map_err(unread)?;
+            without_bytes(sample.raw.is_empty(), "a virtual rig answers in no bytes")
+        }
+        (EntryKind::Held, None) => Err("a virtual rig is not held".to_owned()),
+        _ => Ok(()),
+    }
+}
+
+fn without_bytes(silent: bool, reason: &str) -> Result<(), String> {
+    if silent {
+        Ok(())
+    } else {
+        Err(reason.to_owned())
+    }
 }
 
 fn at(line: &Line, reason: impl Into<String>) -> Contradiction {
@@ -67,7 +118,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
         EntryKind::Event => written::<Event>(line, &[]),
         EntryKind::Fault => written::<FaultBody>(line, &[]),
         EntryKind::Held => written::<HeldBody>(line, &[]),
-        EntryKind::Tally => written::<Tally>(line, &[]),
+        EntryKind::Tally => written::<LineStatistics>(line, &[]),
         EntryKind::Recover => written::<RecoverBody>(line, &[]),
         EntryKind::Amend => written::<AmendBody>(line, &[]),
         EntryKind::Resume => written::<ResumeBody>(line, &[]),
@@ -115,11 +166,11 @@ fn runs_on<'a>(lines: impl Iterator<Item = &'a Line>) -> Result<(), Contradictio
     Ok(())
 }
 
-/// Of the records that count: a target has the next number, and the time of the record before it.
-fn counts_on(played: &Played) -> Result<(), Contradiction> {
+/// For the entries that count: a target has the next number, and the time of the entry before it.
+fn counts_on(logged: &LoggedRun) -> Result<(), Contradiction> {
     let mut targets = 0;
-    let mut time = played.rig.as_ref().map_or(0.0, |rig| rig.t);
-    for line in &played.lines {
+    let mut time = logged.rig.as_ref().map_or(0.0, |rig| rig.t);
+    for line in &logged.lines {
         if line.kind == EntryKind::Intent {
             let intent: IntentBody = body(line).map_err(|fault| at(line, fault.to_string()))?;
             targets += 1;
@@ -141,5 +192,5 @@ fn counts_on(played: &Played) -> Result<(), Contradiction> {
         }
         time = line.time().unwrap_or(time);
     }
-    runs_on(played.lines.iter())
+    runs_on(logged.lines.iter())
 }

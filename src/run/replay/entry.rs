@@ -1,5 +1,5 @@
-//! What each record of a journal says, typed. In: what happened. Out: JSON bodies, and back. Numbers are SI; a float is
-//! written as the shortest decimal that reads back to the same bits, so that nothing is lost. It knows no file.
+//! The bodies of the entries of a run log, typed. In: events of the run. Out: JSON bodies, and back. Numbers are SI; a
+//! float is written as the shortest decimal that reads back to the same bits. It knows no file.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use crate::record::equipment::Equipment;
 use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
 use crate::run::{Inspection, Request};
 
-/// What stands in place of a protocol where a person drives.
+/// The entry in place of a protocol if the operator drives by hand.
 pub const BY_HAND: &str = "by hand";
 
 /// HEADER: all a run starts from. Enough to check the plan again, on any machine.
@@ -18,31 +18,32 @@ pub struct Header {
     pub psd: String,
     /// SHA-256 of the program's sources, hex.
     pub build: String,
-    /// Which rules the run is computed by ([`RULES`](super::RULES)); records of before there were others say none.
+    /// The computation rules of the run ([`RULES`](super::RULES)). Run logs from before there were others do not state
+    /// them.
     #[serde(default = "first_rules", skip_serializing_if = "is_first")]
     pub rules: u32,
     /// Target, profile and compiler that it was built for and with; empty where they were not recorded.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub toolchain: String,
-    /// The plan first, then what it used. Their texts follow in PLAN records.
+    /// The plan first, then the files it uses. Their texts follow in PLAN entries.
     pub files: Vec<HeaderFile>,
     /// `--set` values as given.
     pub settings: Vec<(String, String)>,
-    /// Name of the rig, as `--rig` would say it; None: the default of the plan.
+    /// Name of the rig, as for `--rig`. None: the default of the plan.
     pub rig: Option<String>,
-    /// What is measured with, and held to; None in records of version 1, which do not say.
+    /// Measuring equipment and limits. None in run logs of version 1, which do not state them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub equipment: Option<Equipment>,
     /// Whether only the part that a rehearsal measures was to run.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rehearsal: bool,
-    /// Protocol of the clients that drive the rig, or that a person does by hand; None: the plan's procedures do.
+    /// Protocol of the clients that drive the rig, or that it is driven by hand. None: the plan's procedures drive it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub served: Option<String>,
     /// As `--date` gave it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
-    /// Of a real rig: who stands by, on which machine, when it began.
+    /// For a real rig: the operator, the machine, and the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub operator: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -63,14 +64,14 @@ const fn is_first(rules: &u32) -> bool {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HeaderFile {
     pub name: String,
-    /// Of its text, hex.
+    /// Digest of its text, hex.
     pub sha256: String,
 }
 
-/// PLAN: a part of a file's text, for a line of the journal is bounded.
+/// PLAN: a part of a file's text, because a line of the run log has a maximum length.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlanBody {
-    /// Place in the list of files before it.
+    /// Index in the list of files of the header.
     pub file: usize,
     pub text: String,
 }
@@ -95,7 +96,7 @@ impl PlanBody {
     }
 }
 
-/// RIG: who answered, when the run began and at every resumption.
+/// RIG: the identity of the rig, at the start of the run and at every resumption.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RigBody {
     /// Rig time, s.
@@ -108,11 +109,11 @@ pub struct RigBody {
     pub own_speed: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_move: Option<LastMove>,
-    /// Of a real rig where the plan's zero lies in its own coordinate, m, one an axis; None in records of older versions, whose zero is
-    /// the rig's own.
+    /// For a real rig, the position of the plan's zero in its own coordinate \[m\], one per axis. None in run logs of older
+    /// versions, whose zero is the rig's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub datum: Option<Vec<f64>>,
-    /// The replies in which it said who it is, escaped; empty where the dialect has none.
+    /// The replies with its identity, escaped. Empty if the protocol has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub said: Vec<String>,
 }
@@ -122,13 +123,13 @@ pub struct RigBody {
 pub struct IntentBody {
     /// Number of the target in this run, from 1.
     pub n: u64,
-    /// Rig time of the record before, s.
+    /// Rig time of the entry before \[s\].
     pub t: f64,
     /// As computed, m.
     pub to: Vec<f64>,
     /// As asked, m/s; of a stroke signed.
     pub speed: Option<f64>,
-    /// As the bytes say, m and m/s, where they differ.
+    /// As decoded from the bytes \[m\] and \[m/s\], if different.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub said: Option<Vec<f64>>,
     pub rate: f64,
@@ -137,13 +138,14 @@ pub struct IntentBody {
     pub wire: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u64>,
-    /// The targets in the rig's own coordinate, as the bytes say, m, where its zero is another than the plan's.
+    /// The targets in the rig's own coordinate, as decoded from the bytes \[m\], if its zero is not the plan's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub own: Option<Vec<f64>>,
-    /// Of a smooth way without a stop: its ends, their velocities, and the time between them; `samples` stands beside it.
+    /// For a smooth motion without a stop: its ends, their velocities, and the time between them; `samples` is then stated
+    /// too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<Vec<Path>>,
-    /// Of a stroke read on the way: how many readings, at most.
+    /// For a motion with readings on the way: the largest number of readings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -162,23 +164,23 @@ pub struct SampleBody {
     /// The replies it was made of, escaped.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub raw: Vec<String>,
-    /// Where it was asked for and seen: begin and end of the even motion that stands for the last move, s of rig time.
+    /// If it was requested and seen: start and end of the uniform motion equivalent to the last move, rig time \[s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moved: Option<[f64; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
 }
 
-/// STROKE: a stroke came to its end. A record that has readings and not this was cut off on the way.
+/// STROKE: the end of a stroke. A run log with readings and without this entry was interrupted during the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StrokeBody {
     /// Rig time of the last reading, s.
     pub t: f64,
-    /// Readings it gave: a rig that cannot keep up gives fewer than were asked for.
+    /// Its number of readings: a rig that cannot keep up makes fewer than requested.
     pub samples: usize,
 }
 
-/// STEP: the end of a step, as computed; in a replay it must come out the same, bit for bit.
+/// STEP: the end of a step, as computed. A replay must give the same, bit for bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepBody {
     pub step: u64,
@@ -204,7 +206,7 @@ pub struct StepBody {
     pub axes: Vec<AxisBody>,
 }
 
-/// One more axis at the end of a step, as the first stands in [`StepBody`].
+/// A further axis at the end of a step; the first axis is in [`StepBody`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AxisBody {
     pub u: f64,
@@ -214,7 +216,7 @@ pub struct AxisBody {
     pub r: f64,
 }
 
-/// OPERATOR: what a person answered, or asked for.
+/// OPERATOR: an answer or a request of the operator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "what")]
 pub enum OperatorBody {
@@ -226,20 +228,20 @@ pub enum OperatorBody {
         text: String,
     },
     AskedToStop,
-    /// Ctrl-C or its like, instead of an answer at an inspection: the record alone tells the two apart.
+    /// Ctrl-C or similar, instead of an answer at an inspection: only the run log distinguishes the two.
     AskedToStopInspecting,
-    /// Asked whether the rig is to take the load off after a person had stopped the run.
+    /// The answer to the question whether the rig is to be unloaded after an operator stop.
     AnsweredToUnload {
         question: String,
         answer: Inspection,
     },
-    /// Not a person, but the client that drives the rig.
+    /// Not the operator, but the client that drives the rig.
     Asked {
         request: Request,
     },
 }
 
-/// OPERATOR as it stands in the record: what was said, and when.
+/// OPERATOR as it is logged: the statement, and its time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OperatorEntry {
     #[serde(flatten)]
@@ -259,15 +261,15 @@ pub struct FaultBody {
     pub wall: Option<String>,
 }
 
-/// HELD: what became of the rig when it was told to hold for good. Records of older versions have none.
+/// HELD: the result of the final hold. Run logs of older versions have none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeldBody {
     /// Rig time, s.
     pub t: f64,
-    /// Why nobody knows whether it holds.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub doubt: Option<String>,
-    /// Where it stood, m, and what it felt, N; none where it could not be read.
+    /// The reason why the hold is not confirmed.
+    #[serde(default, rename = "doubt", skip_serializing_if = "Option::is_none")]
+    pub unconfirmed: Option<String>,
+    /// Its position \[m\] and force \[N\]. None if they could not be read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<(Vec<f64>, Vec<f64>)>,
     /// The replies it was made of, escaped.
@@ -285,7 +287,7 @@ pub enum Call {
     Pause,
     Read,
     Traverse,
-    /// No call on the rig: the record itself could not be kept, whatever was asked for next.
+    /// Not a call on the rig: the run log itself failed, whatever the next call was.
     Record,
 }
 
@@ -294,20 +296,21 @@ pub enum Call {
 pub struct AmendBody {
     pub by: String,
     pub reason: String,
-    /// What differs, in words.
+    /// The differences, as text.
     pub differences: Vec<String>,
-    /// What holds from here on.
+    /// The header that applies from here on.
     pub header: Header,
 }
 
-/// RESUME: the run goes on. Records from `from` on, up to this one, no longer count; they stay as evidence.
+/// RESUME: the run is continued. The entries from `from` up to this one no longer count; they remain as evidence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResumeBody {
     pub from: u64,
     pub by: String,
     pub reason: String,
-    pub doubt: Doubt,
-    /// What the person who resumes it takes upon themselves.
+    #[serde(rename = "doubt")]
+    pub target_status: TargetStatus,
+    /// The assurances of the operator who resumes it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub assured: Vec<Assurance>,
     /// Found before anything moved: m, N.
@@ -317,33 +320,33 @@ pub struct ResumeBody {
     /// Where it held when the run had stopped, where that was read: m, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held: Option<(Vec<f64>, Vec<f64>)>,
-    /// Who let it move again, and with which words.
+    /// The operator who released the rig, and the typed text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub released: Option<String>,
-    /// Rig time at which the record goes on, s.
+    /// Rig time at which the run log continues \[s\].
     pub t: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
 }
 
-/// What only a person can know of a rig that a run goes on with.
+/// An assurance about a rig that only the operator can give when a run is resumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Assurance {
-    /// It was not switched off since, and cannot say so itself.
+    /// It was not switched off since, and cannot report so itself.
     SamePowerUp,
-    /// It was referenced anew.
+    /// It was referenced again.
     ReReferenced,
     /// The force that changed means no harm to the specimen.
     AcceptedRelaxation,
-    /// It was held, and may be let go of where it stands.
+    /// It was on hold, and may be released at its position.
     LetGo,
 }
 
 impl Assurance {
-    /// As it is told, behind the name of the person.
+    /// As it is reported, after the name of the operator.
     #[must_use]
-    pub const fn told(self) -> &'static str {
+    pub const fn describe(self) -> &'static str {
         match self {
             Self::SamePowerUp => "it was not switched off since",
             Self::ReReferenced => "it was referenced anew",
@@ -356,42 +359,42 @@ impl Assurance {
 /// RECOVER: a torn end of the file was put aside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecoverBody {
-    /// Rig time of the record before, s.
+    /// Rig time of the entry before \[s\].
     pub t: f64,
     /// Name of the file that it was moved to.
     pub put_aside: String,
 }
 
-/// END: what the run says of its own end; count and head are the journal's.
+/// END: the end of the run; count and head are written by the journal.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EndBody {
     pub outcome: EndOutcome,
 }
 
-/// A record has an end only where its run came to its own.
+/// A run log has an END only if its run was completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndOutcome {
     Completed,
 }
 
-/// What became of a target that was recorded and perhaps sent.
+/// The status of a target that was logged and perhaps sent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "target")]
-pub enum Doubt {
-    /// The record ended at rest: nothing was in doubt.
+pub enum TargetStatus {
+    /// The run log ended at rest: no target was uncertain.
     None,
     /// It was carried out; its reading is late.
     Executed,
     /// It never arrived: it is sent now.
     NotExecuted,
-    /// It was held on the way: the same absolute target is sent anew.
+    /// It was held during the motion: the same absolute target is sent again.
     HeldOnTheWay,
-    /// A way that is read as it is gone was cut off, and is gone on with from where the rig stands: no part of it twice. Where
-    /// it began, m.
+    /// A motion with readings on the way was interrupted, and is continued from the present position: no part of it is
+    /// travelled twice. Its start \[m\].
     RestOfTheWay { from: Vec<f64> },
-    /// A stroke was cut off, went on to its end and was mostly not read: the rig goes back to where it began (m; the axes after the first
-    /// in `others`), and the stroke begins anew.
+    /// A stroke was interrupted, went on to its end, and most of its readings are missing: the rig moves back to its start
+    /// (\[m\]; the axes after the first in `others`), and the stroke is repeated.
     Stroke {
         back_to: f64,
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -412,37 +415,13 @@ pub fn escaped(bytes: &[u8]) -> String {
     text
 }
 
-/// The bytes that [`escaped`] makes this text of; None where it makes it of none.
-pub fn unescaped(text: &str) -> Option<Vec<u8>> {
-    let (mut bytes, mut rest) = (Vec::with_capacity(text.len()), text.as_bytes());
-    while let [first, after @ ..] = rest {
-        let (byte, after) = match (first, after) {
-            (b'\\', [b'n', after @ ..]) => (b'\n', after),
-            (b'\\', [b'r', after @ ..]) => (b'\r', after),
-            (b'\\', [b't', after @ ..]) => (b'\t', after),
-            (b'\\', [b'x', high, low, after @ ..]) => (
-                u8::from_str_radix(str::from_utf8(&[*high, *low]).ok()?, 16).ok()?,
-                after,
-            ),
-            (b'\\', [own, after @ ..]) | (own, after) => (*own, after),
-        };
-        bytes.push(byte);
-        rest = after;
-    }
-    (escaped(&bytes) == text).then_some(bytes)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{escaped, unescaped};
+    use super::escaped;
 
     #[test]
-    fn every_byte_comes_back_and_what_nobody_writes_is_none() {
+    fn every_byte_is_escaped_as_rust_does() {
         let all: Vec<u8> = (0..=255).collect();
         assert_eq!(escaped(&all), all.escape_ascii().to_string());
-        assert_eq!(unescaped(&escaped(&all)), Some(all));
-        for none in ["\\", "\\x4", "\\x41", "\\q", "a\nb", "\u{e9}", "\""] {
-            assert_eq!(unescaped(none), None, "{none:?}");
-        }
     }
 }

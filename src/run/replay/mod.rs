@@ -8,39 +8,34 @@
 
 mod compatibility;
 mod consistency;
+mod continuous_motion;
 mod continuous_move;
 mod entry;
-#[cfg(test)]
-mod held_tests;
-mod observer;
-mod path;
-mod raw_bytes;
-mod replayed;
+mod entry_of;
+mod logged_run;
+mod recorded_observer;
+mod recorded_rig;
 mod resume_decision;
-#[cfg(test)]
-mod resume_tests;
-mod rig;
 mod shape;
 mod state;
-#[cfg(test)]
-mod testing;
 #[cfg(test)]
 pub(crate) mod tests;
 
 pub use compatibility::RULES;
-pub use consistency::{Contradiction, agrees};
+pub use consistency::{Contradiction, check_consistency};
 pub use entry::{
-    AmendBody, Assurance, BY_HAND, Call, Doubt, Header, HeaderFile, IntentBody, RecoverBody,
-    ResumeBody, RigBody, SampleBody, StrokeBody,
+    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, IntentBody, RecoverBody, ResumeBody,
+    RigBody, SampleBody, StrokeBody, TargetStatus,
 };
-pub use observer::TapedObserver;
-pub use replayed::{Mismatch, Played, Unplayable};
+pub use logged_run::{LoggedRun, Mismatch, UnreadableLog};
+pub use recorded_observer::RecordedObserver;
+pub use recorded_rig::RecordedRig;
 pub use resume_decision::{
-    Bands, Decision, Refusal, decide, not_restarted, same_measure, same_resolution, same_rig,
+    Bands, ResumeDecision, ResumeRefusal, decide, not_restarted, same_measure, same_resolution,
+    same_rig,
 };
-pub use rig::TapedRig;
 pub use shape::{Malformed, well_formed};
-pub use state::{CUT_OFF, GoesOn};
+pub use state::{CUT_OFF, Continuation};
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -54,16 +49,16 @@ use state::{Begin, State};
 
 use super::{Observer, Unwatched, run};
 use crate::record::remote::DrivenStep;
-use crate::run::remote_control;
-use crate::run::remote_control::{DrivenRecord, Driver, Specimen};
+use crate::run::client_run::{ClientRunRecord, Driver, drive};
+use crate::run::remote_control::Specimen;
 
-/// Gives the wall clock, as text; a virtual run has none.
+/// Gives the wall clock, as text; None for a virtual run.
 pub type Wall = Box<dyn Fn() -> Option<String>>;
 
-/// Runs the plan on a rig and records every answer. The header stands in the journal already.
+/// Runs the plan on a rig and logs every answer. The header is in the run log already.
 ///
 /// # Errors
-/// The journal cannot be ended; the record is complete all the same.
+/// The run log cannot be ended; the record is complete all the same.
 pub fn record(
     plan: &Plan,
     rig: &mut dyn Rig,
@@ -77,7 +72,7 @@ pub fn record(
     })
 }
 
-/// Lets a client drive the plan's rig and records what it asks for and every answer. The header stands in the journal already.
+/// Lets a client drive the plan's rig, and logs its requests and every answer. The header is in the run log already.
 pub fn record_driven(
     plan: &Plan,
     rig: &mut dyn Rig,
@@ -93,8 +88,7 @@ pub fn record_driven(
         observer,
         State::recording(journal, wall),
         |rig, observer, _| {
-            let DrivenRecord { record, steps } =
-                remote_control::drive(plan, rig, observer, driver, client);
+            let ClientRunRecord { record, steps } = drive(plan, rig, observer, driver, client);
             done = steps;
             record
         },
@@ -102,26 +96,26 @@ pub fn record_driven(
     (recorded, done)
 }
 
-/// Plays a record back: no rig, nobody asked. What the journal holds is all that is known.
+/// Replays a run log: without a rig, and without the operator. Only the content of the run log is known.
 #[must_use]
-pub fn replay(plan: &Plan, played: Played) -> Replayed {
-    let driver = played.header.served.as_deref().map(|by| {
+pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
+    let driver = logged.header.served.as_deref().map(|by| {
         if by == BY_HAND {
             Driver::ByHand
         } else {
             Driver::Client
         }
     });
-    let as_run = compatibility::as_it_was_run(plan, &played);
-    let state = State::replaying(played);
+    let as_run = compatibility::as_it_was_run(plan, &logged);
+    let state = State::replaying(logged);
     let mut steps = None;
     let Recorded {
         record, mismatch, ..
     } = if let Some(driver) = driver {
         let plan = as_run.as_ref();
         perform(None, &mut Unwatched, state, |rig, observer, state| {
-            let driven = remote_control::drive(plan, rig, observer, driver, &mut |specimen| {
-                state::ask_again(state, specimen);
+            let driven = drive(plan, rig, observer, driver, &mut |specimen| {
+                state::repeat_requests(state, specimen);
             });
             steps = Some(driven.steps);
             driven.record
@@ -138,30 +132,30 @@ pub fn replay(plan: &Plan, played: Played) -> Replayed {
     }
 }
 
-/// Plays a record back without a rig, and goes on with it on the one that `begin` opens at its end. A rig is not opened for what can be
-/// known without it, and never waits for a record: `begin` is not called where plan and record part ways, or where the run would only end
-/// again, and behind it nothing is played any more but the readings of a stroke.
+/// Replays a run log without a rig, and continues it at its end on the rig that `begin` opens. A rig is not opened for
+/// facts that are known without it, and never waits for a replay: `begin` is not called if plan and run log differ, or if
+/// the run would only end again; after `begin`, only the readings of a stroke are still replayed.
 ///
 /// # Errors
-/// The run cannot be gone on with, or `begin` refuses.
-pub fn resume<'rig, E: From<Refusal> + 'rig>(
+/// The run cannot be continued, or `begin` refuses.
+pub fn resume<'rig, E: From<ResumeRefusal> + 'rig>(
     plan: &Plan,
-    played: &Played,
+    logged: &LoggedRun,
     observer: &mut dyn Observer,
     wall: Wall,
-    begin: impl FnOnce() -> Result<GoesOn<'rig>, E> + 'rig,
+    begin: impl FnOnce() -> Result<Continuation<'rig>, E> + 'rig,
 ) -> Result<Recorded, E> {
-    let lines = resume_decision::without_the_end(played)?;
-    let undecided = resume_decision::undecided(&lines).map_err(Refusal::from)?;
+    let lines = resume_decision::without_stop_entries(logged)?;
+    let undecided = resume_decision::undecided_stroke(&lines).map_err(ResumeRefusal::from)?;
     let refused = Rc::new(RefCell::new(None));
     let refusal = Rc::clone(&refused);
     let begin: Begin<'rig> =
         Box::new(move || begin().map_err(|error| refusal.replace(Some(error))).ok());
-    let as_run = compatibility::as_it_was_run(plan, played);
+    let as_run = compatibility::as_it_was_run(plan, logged);
     let state = State::resuming(
-        Played {
+        LoggedRun {
             lines: lines.into(),
-            ..played.clone()
+            ..logged.clone()
         },
         begin,
         undecided,
@@ -184,16 +178,16 @@ pub fn resume<'rig, E: From<Refusal> + 'rig>(
             | Outcome::NotReleased { reason }
             | Outcome::Blocked { reason }
             | Outcome::Faulted { reason },
-        ) => Refusal::EndsAgain { reason },
-        (None, Outcome::Completed) => Refusal::Ended,
+        ) => ResumeRefusal::EndsAgain { reason },
+        (None, Outcome::Completed) => ResumeRefusal::Ended,
     }
     .into())
 }
 
-/// A run, and what became of its journal.
+/// A run, and the state of its run log.
 pub struct Recorded {
     pub record: Record,
-    /// The record says one thing and the plan another.
+    /// The difference between run log and plan.
     pub mismatch: Option<Mismatch>,
     /// Why the journal could not be kept; the run was held there.
     pub fault: Option<JournalFault>,
@@ -201,11 +195,11 @@ pub struct Recorded {
     pub sealed: Option<(u64, String)>,
 }
 
-/// A run as its record tells it.
+/// A run from its run log.
 pub struct Replayed {
     pub record: Record,
     pub mismatch: Option<Mismatch>,
-    /// What a client that drove the rig asked for and felt; None: the plan's procedures drove it.
+    /// The requests and readings of a client that drove the rig. None: the plan's procedures drove it.
     pub steps: Option<Vec<DrivenStep>>,
 }
 
@@ -216,16 +210,16 @@ fn perform<'rig>(
     runs: impl FnOnce(&mut dyn Rig, &mut dyn Observer, &RefCell<State<'rig>>) -> Record,
 ) -> Recorded {
     let state = Rc::new(RefCell::new(state));
-    let mut rig = TapedRig::new(rig, Rc::clone(&state));
-    let mut observer = TapedObserver::new(observer, Rc::clone(&state));
+    let mut rig = RecordedRig::new(rig, Rc::clone(&state));
+    let mut observer = RecordedObserver::new(observer, Rc::clone(&state));
     let mut record = runs(&mut rig, &mut observer, &state);
     let mut state = state.borrow_mut();
     if record.outcome == Outcome::Completed
         && state.mismatch().is_none()
         && state.next_kind().is_some()
     {
-        // What is on record beyond the plan's end belongs to another plan.
-        let reason = state.disagrees("its end".to_owned()).to_string();
+        // Entries beyond the end of the plan belong to a different plan.
+        let reason = state.report_mismatch("its end".to_owned()).to_string();
         record.outcome = Outcome::Faulted { reason };
     }
     add_interruptions(&mut record, state.take_interruptions());
@@ -242,7 +236,7 @@ fn perform<'rig>(
     }
 }
 
-/// Resumptions and amendments are events of the record, each where it happened.
+/// Resumptions and amendments are events of the record, each at its time.
 fn add_interruptions(record: &mut Record, interruptions: Vec<Event>) {
     for event in interruptions {
         let at = record
@@ -254,14 +248,14 @@ fn add_interruptions(record: &mut Record, interruptions: Vec<Event>) {
     }
 }
 
-/// Writes what a run starts from: the header, and the texts of its files.
+/// Writes the start of a run: the header, and the texts of its files.
 ///
 /// # Errors
 /// It cannot be written.
 pub fn begin(journal: &mut Journal, header: &Header, texts: &[String]) -> Result<(), JournalFault> {
     journal.append(EntryKind::Header, header)?;
     append_texts(journal, texts)?;
-    journal.promise()
+    journal.sync_point()
 }
 
 /// Writes that something else holds from here on, and its texts.
@@ -275,7 +269,7 @@ pub fn amend(
 ) -> Result<(), JournalFault> {
     journal.append(EntryKind::Amend, amendment)?;
     append_texts(journal, texts)?;
-    journal.promise()
+    journal.sync_point()
 }
 
 fn append_texts(journal: &mut Journal, texts: &[String]) -> Result<(), JournalFault> {

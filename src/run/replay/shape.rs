@@ -1,16 +1,16 @@
-//! The shape of a record, checked before anything replays it. In: the lines of a journal, and their plan. Out: the first record
-//! that is not where it may stand, or whose lists have another length than the rig has axes. It knows no number: what those say
-//! a replay compares.
+//! The shape of a run log, checked before it is replayed. In: the lines of a run log, and their plan. Out: the first entry
+//! in a wrong order, or with lists whose length differs from the number of axes. It compares no numbers: that is done by
+//! the replay.
 
 use serde::de::DeserializeOwned;
 
 use super::entry::{
-    Call, Doubt, FaultBody, HeldBody, IntentBody, ResumeBody, RigBody, SampleBody, StepBody,
+    Call, FaultBody, HeldBody, IntentBody, ResumeBody, RigBody, SampleBody, StepBody, TargetStatus,
 };
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, Line, Recovered};
 
-/// A record that no run of its plan can have written.
+/// An entry that no run of its plan can have written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("record {seq} ({}) is malformed: {reason}", .kind.word())]
 pub struct Malformed {
@@ -38,14 +38,14 @@ pub fn well_formed(recovered: &Recovered, plan: &Plan) -> Result<(), Malformed> 
 
 struct Shape<'a> {
     plan: &'a Plan,
-    /// Who answered first.
+    /// The first rig that answered.
     rig: Option<FirstRig>,
 }
 
 #[derive(Clone, Copy)]
 struct FirstRig {
     axes: usize,
-    /// Number of its record.
+    /// Number of its entry.
     seq: u64,
     /// No pause of it fails.
     is_virtual: bool,
@@ -156,7 +156,7 @@ impl Shape<'_> {
         ))
     }
 
-    /// What the journal itself failed at may be said before any rig answered.
+    /// A failure of the run log itself may be reported before any rig answered.
     fn failed(&self, fault: &FaultBody) -> Result<(), String> {
         if fault.call == Call::Record {
             return Ok(());
@@ -184,10 +184,13 @@ impl Shape<'_> {
             let Some((x, r)) = measured else { continue };
             self.moves(&[(name, x), (name, r)])?;
         }
-        match &resume.doubt {
-            Doubt::None | Doubt::Executed | Doubt::NotExecuted | Doubt::HeldOnTheWay => Ok(()),
-            Doubt::RestOfTheWay { from } => self.moves(&[("from", from)]),
-            Doubt::Stroke { back_to, others } => {
+        match &resume.target_status {
+            TargetStatus::None
+            | TargetStatus::Executed
+            | TargetStatus::NotExecuted
+            | TargetStatus::HeldOnTheWay => Ok(()),
+            TargetStatus::RestOfTheWay { from } => self.moves(&[("from", from)]),
+            TargetStatus::Stroke { back_to, others } => {
                 let back: Vec<f64> = std::iter::once(*back_to)
                     .chain(others.iter().copied())
                     .collect();

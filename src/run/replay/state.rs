@@ -1,5 +1,5 @@
-//! What the taped rig and the taped observer share: the records still to be played, the journal that is written, the
-//! time of the last record. In: bodies to append, kinds to expect. Out: bodies played.
+//! The common state of the recorded rig and the recorded observer: the entries still to be replayed, the run log that is
+//! written, the time of the last entry. In: bodies to append, kinds to expect. Out: logged bodies.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -9,51 +9,51 @@ use serde::de::DeserializeOwned;
 
 use super::Wall;
 use super::entry::{
-    Call, Doubt, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, RigBody,
+    Call, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, RigBody, TargetStatus,
 };
-use super::replayed::{Mismatch, Played, body};
+use super::logged_run::{LoggedRun, Mismatch, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
-use crate::rig::{Rig, RigFault, Tally};
+use crate::rig::{LineStatistics, Rig, RigFault};
 use crate::run::Request;
 use crate::run::remote_control::Specimen;
 
-/// What a run goes on with where its record ends.
-pub struct GoesOn<'rig> {
+/// The rig and the run log with which a run is continued after its replay.
+pub struct Continuation<'rig> {
     pub rig: &'rig mut dyn Rig,
-    /// With RESUME as its last record.
+    /// With RESUME as its last entry.
     pub journal: Journal,
-    /// The record with this resumption.
-    pub played: Played,
+    /// The run log with this resumption.
+    pub logged: LoggedRun,
 }
 
-/// Opens it; None: it cannot be gone on with.
-pub(super) type Begin<'rig> = Box<dyn FnOnce() -> Option<GoesOn<'rig>> + 'rig>;
+/// Opens it. None: it cannot be continued.
+pub(super) type Begin<'rig> = Box<dyn FnOnce() -> Option<Continuation<'rig>> + 'rig>;
 
 pub(super) struct State<'rig> {
     lines: VecDeque<Line>,
-    /// What the run goes on with, until that is opened.
+    /// The continuation, until it is opened.
     begin: Option<Begin<'rig>>,
-    /// The record before which it is opened, where the rig decides whether that and what follows it count.
+    /// The entry before which it is opened, if the rig decides whether that and the following entries count.
     undecided: Option<u64>,
-    /// The rig, until somebody takes it.
+    /// The rig, until it is taken.
     opened: Option<&'rig mut dyn Rig>,
-    /// A client drove the rig: between a proposal and its target stand the client's requests.
+    /// A client drove the rig: the client's requests are logged between a proposal and its target.
     pub(super) driven: bool,
     pub(super) rig: Option<RigBody>,
     journal: Option<Journal>,
-    /// What the resumption found of the target at the end of what is played.
-    doubt: Option<Doubt>,
-    /// Rig time of the last record, s.
+    /// The status of the target at the end of the replay, from the resumption.
+    target_status: Option<TargetStatus>,
+    /// Rig time of the last entry \[s\].
     pub(super) time: f64,
     /// Targets recorded so far.
     targets: u64,
-    /// The record says that the run came to its end: what it called for last, and nothing followed, was done.
+    /// The run log has an END: the last call of the run, without an entry after it, was done.
     ended: bool,
     interruptions: Vec<Event>,
-    /// What was mended before the rig that is driven now was opened, and what the record says of it all so far.
-    mended_before: Tally,
-    mended: Tally,
+    /// Communication errors recovered before the present rig was opened, and all of those logged so far.
+    mended_before: LineStatistics,
+    mended: LineStatistics,
     mismatch: Option<Mismatch>,
     fault: Option<JournalFault>,
     wall: Wall,
@@ -68,23 +68,23 @@ impl<'rig> State<'rig> {
         }
     }
 
-    pub(super) fn replaying(played: Played) -> Self {
-        let time = played.rig.as_ref().map_or(0.0, |rig| rig.t);
+    pub(super) fn replaying(logged: LoggedRun) -> Self {
+        let time = logged.rig.as_ref().map_or(0.0, |rig| rig.t);
         Self {
-            driven: played.header.served.is_some(),
-            lines: played.lines,
+            driven: logged.header.served.is_some(),
+            lines: logged.lines,
             time,
-            rig: played.rig,
-            ended: played.ended,
-            interruptions: played.interruptions,
-            mended_before: played.tally,
-            mended: played.tally,
+            rig: logged.rig,
+            ended: logged.ended,
+            interruptions: logged.interruptions,
+            mended_before: logged.line_statistics,
+            mended: logged.line_statistics,
             ..Self::empty()
         }
     }
 
     pub(super) fn resuming(
-        played: Played,
+        logged: LoggedRun,
         begin: Begin<'rig>,
         undecided: Option<u64>,
         wall: Wall,
@@ -93,7 +93,7 @@ impl<'rig> State<'rig> {
             begin: Some(begin),
             undecided,
             wall,
-            ..Self::replaying(played)
+            ..Self::replaying(logged)
         }
     }
 
@@ -106,22 +106,22 @@ impl<'rig> State<'rig> {
             driven: false,
             rig: None,
             journal: None,
-            doubt: None,
+            target_status: None,
             time: 0.0,
             targets: 0,
             ended: false,
             interruptions: Vec::new(),
-            mended_before: Tally::default(),
-            mended: Tally::default(),
+            mended_before: LineStatistics::default(),
+            mended: LineStatistics::default(),
             mismatch: None,
             fault: None,
             wall: Box::new(|| None),
         }
     }
 
-    /// Whether answers still come from the record. Where they do no more, what the run goes on with is opened: not before the last of
-    /// them, for a rig is not kept waiting for a record.
-    pub(super) fn playing(&mut self) -> bool {
+    /// Whether answers still come from the run log. After the last of them the continuation is opened: not earlier, because
+    /// a rig is not kept waiting for a replay.
+    pub(super) fn answers_from_the_log(&mut self) -> bool {
         let decides = self
             .lines
             .front()
@@ -129,44 +129,44 @@ impl<'rig> State<'rig> {
         if decides
             && self.mismatch.is_none()
             && let Some(begin) = self.begin.take()
-            && let Some(GoesOn {
+            && let Some(Continuation {
                 rig,
                 journal,
-                played,
+                logged,
             }) = begin()
         {
-            let last = played.lines.back().map(|line| line.seq);
+            let last = logged.lines.back().map(|line| line.seq);
             self.lines.retain(|line| Some(line.seq) <= last);
-            (self.doubt, self.interruptions) = (played.doubt, played.interruptions);
+            (self.target_status, self.interruptions) = (logged.target_status, logged.interruptions);
             (self.journal, self.opened) = (Some(journal), Some(rig));
         }
         !self.lines.is_empty() || self.mismatch.is_some()
     }
 
-    /// The run holds. Where its record is played and nothing is open to go on with, it ends there by itself, and would again.
-    pub(super) fn holds(&mut self) {
+    /// The run holds. If its run log is replayed and nothing is open to continue with, it ends there, and would end again.
+    pub(super) fn note_hold(&mut self) {
         if self.lines.is_empty() {
             self.begin = None;
         }
     }
 
-    /// The rig that the run goes on with, once.
+    /// The rig of the continuation, once.
     pub(super) const fn take_opened(&mut self) -> Option<&'rig mut dyn Rig> {
         self.opened.take()
     }
 
-    /// Whether the record is played to the end that the run came to.
-    pub(super) fn played_out(&self) -> bool {
+    /// Whether the replay has reached the END of the run.
+    pub(super) fn is_at_the_logged_end(&self) -> bool {
         self.ended && self.lines.is_empty() && self.mismatch.is_none()
     }
 
-    /// Whether there is a journal to write to, so that a rig may move once the record is played.
-    pub(super) const fn goes_on(&self) -> bool {
+    /// Whether there is a run log to write to, so that a rig may move after the replay.
+    pub(super) const fn can_continue(&self) -> bool {
         self.journal.is_some()
     }
 
-    pub(super) fn take_doubt(&mut self) -> Option<Doubt> {
-        self.doubt.take()
+    pub(super) fn take_target_status(&mut self) -> Option<TargetStatus> {
+        self.target_status.take()
     }
 
     pub(super) fn wall(&self) -> Option<String> {
@@ -178,18 +178,18 @@ impl<'rig> State<'rig> {
         self.targets
     }
 
-    /// Kind of the next record to be played.
+    /// Kind of the next entry to be replayed.
     pub(super) fn next_kind(&self) -> Option<EntryKind> {
         self.lines.front().map(|line| line.kind)
     }
 
-    /// The next record, left where it is.
+    /// The next entry, not consumed.
     pub(super) fn peek<T: DeserializeOwned>(
         &mut self,
         kind: EntryKind,
         called: &str,
     ) -> Result<T, RigFault> {
-        if let (None, Some(fault)) = (&self.mismatch, self.last_words()) {
+        if let (None, Some(fault)) = (&self.mismatch, self.final_entry()) {
             return Err(fault);
         }
         let found = match (&self.mismatch, self.lines.front()) {
@@ -217,7 +217,7 @@ impl<'rig> State<'rig> {
         })
     }
 
-    /// The next record has been played.
+    /// The next entry has been replayed.
     pub(super) fn consume(&mut self) {
         if let Some(line) = self.lines.pop_front() {
             if let Some(time) = line.time() {
@@ -229,15 +229,15 @@ impl<'rig> State<'rig> {
         }
     }
 
-    /// Why nothing more of the record is played.
-    pub(super) fn parted(&self) -> Option<RigFault> {
+    /// The reason why the replay has stopped.
+    pub(super) fn mismatch_fault(&self) -> Option<RigFault> {
         self.mismatch
             .as_ref()
             .map(|mismatch| RigFault::Device(mismatch.to_string()))
     }
 
-    /// The next record says that this call failed.
-    pub(super) fn played_fault(&mut self, call: Call) -> Option<RigFault> {
+    /// The fault of this call, if the next entry states it.
+    pub(super) fn logged_fault(&mut self, call: Call) -> Option<RigFault> {
         if self.mismatch.is_some() || self.next_kind() != Some(EntryKind::Fault) {
             return None;
         }
@@ -247,13 +247,13 @@ impl<'rig> State<'rig> {
                 Some(fault.fault)
             }
             Ok(_) => None,
-            // Also the last words of a record that could not be kept.
+            // Also the final entry of a run log that failed.
             Err(fault) => Some(fault),
         }
     }
 
-    /// What became of the rig when it was held for good; None where the record, of an older version, does not say.
-    pub(super) fn played_hold(&mut self) -> Option<HeldBody> {
+    /// The result of the final hold. None if the run log, of an older version, does not state it.
+    pub(super) fn logged_final_hold(&mut self) -> Option<HeldBody> {
         if self.mismatch.is_some() || self.next_kind() != Some(EntryKind::Held) {
             return None;
         }
@@ -262,8 +262,8 @@ impl<'rig> State<'rig> {
         Some(held)
     }
 
-    /// What a record that could not be kept says last. It ends the run whatever is called for, and stays.
-    fn last_words(&self) -> Option<RigFault> {
+    /// The final entry of a run log that failed. It ends the run whatever the next call is, and is not consumed.
+    fn final_entry(&self) -> Option<RigFault> {
         let line = self
             .lines
             .front()
@@ -274,7 +274,7 @@ impl<'rig> State<'rig> {
             .map(|fault| fault.fault)
     }
 
-    /// The target that came of what the client has just proposed: the first before its next proposal. None: nothing did.
+    /// The target of the client's last proposal: the first before its next proposal. None: there was none.
     pub(super) fn intent_ahead(&self) -> Option<IntentBody> {
         let proposes = |line: &&Line| {
             let asked = body::<OperatorBody>(line);
@@ -292,14 +292,14 @@ impl<'rig> State<'rig> {
         match self.peek(EntryKind::Operator, "a request of the client") {
             Ok(OperatorBody::Asked { request }) => Some(request),
             Ok(_) => {
-                self.disagrees("a request of the client".to_owned());
+                self.report_mismatch("a request of the client".to_owned());
                 None
             }
             Err(_) => None,
         }
     }
 
-    /// Whether the next record says that a pause failed.
+    /// Whether the next entry states that a pause failed.
     pub(super) fn front_is_pause_fault(&self) -> bool {
         let front = self
             .lines
@@ -310,7 +310,7 @@ impl<'rig> State<'rig> {
         })
     }
 
-    /// The same, of a pause in this procedure and not at the look that comes after it.
+    /// The same, for a pause in this procedure and not at the look after it.
     pub(super) fn front_is_pause_fault_in(&self, procedure: Option<&str>) -> bool {
         let ended = || {
             self.lines
@@ -322,15 +322,15 @@ impl<'rig> State<'rig> {
             && ended().is_none_or(|event| event.procedure.as_deref() == procedure)
     }
 
-    /// The run and the record part ways here.
+    /// The run and the run log differ from here on.
     pub(super) fn differs(&mut self, mismatch: Mismatch) -> RigFault {
         let fault = RigFault::Device(mismatch.to_string());
         self.mismatch.get_or_insert(mismatch);
         fault
     }
 
-    /// The run calls for something that the next record does not say.
-    pub(super) fn disagrees(&mut self, called: String) -> RigFault {
+    /// The run makes a call that is not the next entry.
+    pub(super) fn report_mismatch(&mut self, called: String) -> RigFault {
         let front = self.lines.front();
         let (seq, found) = front.map_or((0, "its end".to_owned()), |line| {
             (line.seq, format!("{:?} {}", line.kind, line.body()))
@@ -338,14 +338,14 @@ impl<'rig> State<'rig> {
         self.differs(Mismatch { seq, called, found })
     }
 
-    /// What was mended on the lines of the rig so far, in all parts of the run.
-    pub(super) const fn mended(&self) -> Tally {
+    /// Communication errors recovered so far, in all parts of the run.
+    pub(super) const fn mended(&self) -> LineStatistics {
         self.mended
     }
 
-    /// Records what was mended so far, where the rig that is driven now counts more than the record says. It is said as
-    /// it happens: a run that is killed says nothing at its end.
-    pub(super) fn count(&mut self, now: Tally) -> Result<(), RigFault> {
+    /// Logs the communication errors recovered so far, if the present rig counts more than the run log. They are logged as
+    /// they happen: a run that is killed logs nothing at its end.
+    pub(super) fn count(&mut self, now: LineStatistics) -> Result<(), RigFault> {
         let mended = self.mended_before.plus(now);
         if mended == self.mended {
             return Ok(());
@@ -354,7 +354,7 @@ impl<'rig> State<'rig> {
         self.append(EntryKind::Tally, &mended)
     }
 
-    /// Appends a record; a fault is kept, and is final.
+    /// Appends an entry; a fault is kept, and is final.
     pub(super) fn append(
         &mut self,
         kind: EntryKind,
@@ -370,19 +370,19 @@ impl<'rig> State<'rig> {
         }
     }
 
-    /// What was appended survives a loss of power from here on.
-    pub(super) fn promise(&mut self) -> Result<(), RigFault> {
+    /// The entries appended so far survive a loss of power from here on.
+    pub(super) fn sync_point(&mut self) -> Result<(), RigFault> {
         self.healthy()?;
         let Some(journal) = &mut self.journal else {
             return Err(ended());
         };
-        match journal.promise() {
+        match journal.sync_point() {
             Ok(()) => Ok(()),
             Err(fault) => Err(self.broken(fault)),
         }
     }
 
-    /// A record that cannot be kept ends the run: nothing moves that is not recorded.
+    /// A run log that fails ends the run: no motion without an entry.
     pub(super) fn healthy(&self) -> Result<(), RigFault> {
         self.fault
             .as_ref()
@@ -398,8 +398,8 @@ impl<'rig> State<'rig> {
                 fault: told.clone(),
                 wall: (self.wall)(),
             };
-            // The disk is sick already: what can be said is said, and no more is asked of it.
-            let _ = journal.last_words(EntryKind::Fault, &words);
+            // The disk has failed already: the entry is attempted once.
+            let _ = journal.final_entry(EntryKind::Fault, &words);
         }
         self.fault = Some(fault);
         told
@@ -417,7 +417,7 @@ impl<'rig> State<'rig> {
         }
     }
 
-    /// The run ended early; its record can be gone on with.
+    /// The run ended early; its run log can be continued.
     pub(super) fn close(&mut self) {
         if self.fault.is_none()
             && let Some(journal) = &mut self.journal
@@ -449,11 +449,11 @@ impl<'rig> State<'rig> {
     }
 }
 
-/// Said where a record without an end has been played.
+/// Reported at the end of the replay of a run log without an END.
 pub const CUT_OFF: &str = "the record ends here: the run was cut off";
 
-/// Lets the requests of the record drive the specimen once more.
-pub(super) fn ask_again(state: &RefCell<State<'_>>, specimen: &mut Specimen<'_, '_>) {
+/// Repeats the logged requests of a client on the specimen.
+pub(super) fn repeat_requests(state: &RefCell<State<'_>>, specimen: &mut Specimen<'_, '_>) {
     loop {
         let (over, stayed) = {
             let state = state.borrow();
@@ -466,7 +466,7 @@ pub(super) fn ask_again(state: &RefCell<State<'_>>, specimen: &mut Specimen<'_, 
             return;
         }
         if stayed {
-            specimen.stay_again();
+            specimen.repeat_stay();
             continue;
         }
         let Some(request) = state.borrow_mut().next_request() else {
@@ -474,14 +474,14 @@ pub(super) fn ask_again(state: &RefCell<State<'_>>, specimen: &mut Specimen<'_, 
         };
         let last = request == Request::Close;
         specimen.carry_out(request);
-        // What stands behind it the session says by itself: what was mended on the line.
+        // The entries after it come from the session itself: communication errors recovered.
         if last {
             return;
         }
     }
 }
 
-/// Of a record without an end, when it has been played.
+/// The fault at the end of the replay of a run log without an END.
 pub(super) fn ended() -> RigFault {
     RigFault::Device(CUT_OFF.to_owned())
 }

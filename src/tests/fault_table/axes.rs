@@ -10,10 +10,10 @@ use crate::record::journal::recover;
 use crate::record::journal::testing::PowerLoss;
 use crate::record::{EventKind, Outcome};
 use crate::rig::safety::failpoint::Guarding;
-use crate::rig::{Reading, Rig as _, RigFault, Tally};
+use crate::rig::{LineStatistics, Reading, Rig as _, RigFault};
 use crate::run::Unwatched;
 use crate::run::replay;
-use crate::run::replay::{Bands, Played, RigBody};
+use crate::run::replay::{Bands, LoggedRun, RigBody};
 
 const SINE: &str = include_str!("../../../plans/two_storeys_sine.psd");
 const YIELDING: &str = include_str!("../../../plans/two_storeys_yielding.psd");
@@ -25,7 +25,7 @@ type Named = Vec<(&'static str, f64)>;
 fn both(text: &str) -> (Named, Named) {
     let ended = run(&checked(text, "bench"), "");
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
-    assert_eq!(ended.tally, Tally::default());
+    assert_eq!(ended.line_statistics, LineStatistics::default());
     (results(&ended.record), ideal(text))
 }
 
@@ -149,7 +149,7 @@ fn a_fault_of_one_axis_holds_them_all_and_is_said_of_that_axis() {
         "{}",
         ended.reason()
     );
-    assert_eq!(ended.tally.reread, 3);
+    assert_eq!(ended.line_statistics.reread, 3);
 }
 
 #[test]
@@ -158,20 +158,20 @@ fn the_gate_names_the_axis_that_is_wrong_and_moves_no_other() {
     let mut wide = shaken("50 ms");
     upper(&mut wide).gate.as_mut().unwrap().stiffness.low = f64::NEG_INFINITY;
     caught(
-        Guarding::GateSign,
+        Guarding::PretestPolarity,
         &wide,
         mirrored,
         "displacement and force of axis 2 have opposite signs",
     );
     let plan = shaken("50 ms");
     caught(
-        Guarding::GateStiffness,
+        Guarding::PretestStiffness,
         &plan,
         "at 0 s: axis 1 scale force by 0.001",
         "the move of axis 1 of",
     );
     caught(
-        Guarding::GateZero,
+        Guarding::PretestZero,
         &plan,
         "at 0 s: axis 2 drift force 6 N/s",
         "axis 2: −7.160 N at rest, 5 N is allowed",
@@ -278,7 +278,7 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
             );
             let (recovered, whole) = played(&disk);
             assert_eq!(
-                replay::agrees(&recovered, &whole, &plan),
+                replay::check_consistency(&recovered, &whole, &plan),
                 Ok(()),
                 "call {call}"
             );
@@ -288,7 +288,7 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
 }
 
 /// Cut off after so many calls of the disk: its record, and what the rig of the same stand says then.
-fn cut_off(plan: &Plan, call: usize) -> (Played, RigBody, Reading) {
+fn cut_off(plan: &Plan, call: usize) -> (LoggedRun, RigBody, Reading) {
     let (stand, disk) = (stand(plan, "", Log::none(), 1), PowerLoss::new());
     assert!(
         killed(plan, &stand, &disk, (call, true)),
@@ -326,7 +326,7 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
     assert!(
         matches!(
             elsewhere,
-            replay::Refusal::Elsewhere {
+            replay::ResumeRefusal::Elsewhere {
                 axis: Some(2),
                 band: 5e-6,
                 ..
@@ -338,7 +338,7 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
     assert!(
         matches!(
             relaxed,
-            replay::Refusal::Relaxed {
+            replay::ResumeRefusal::Relaxed {
                 axis: Some(2),
                 band: 5.0,
                 ..
@@ -348,8 +348,8 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
     );
 }
 
-pub(super) fn played(disk: &PowerLoss) -> (crate::record::journal::Recovered, Played) {
+pub(super) fn played(disk: &PowerLoss) -> (crate::record::journal::Recovered, LoggedRun) {
     let recovered = recover(&disk.written()).unwrap();
-    let played = Played::of(&recovered).unwrap();
+    let played = LoggedRun::of(&recovered).unwrap();
     (recovered, played)
 }

@@ -154,7 +154,7 @@ impl Case {
         let stand = stand(&plan, "", Log::none(), 1);
         let mut rig =
             open(&plan, &stand).unwrap_or_else(|fault| panic!("{}: {fault}", self.devices));
-        let mut journal = Journal::create(Box::new(PowerLoss::new()), Durability::EveryPromise);
+        let mut journal = Journal::create(Box::new(PowerLoss::new()), Durability::EverySyncPoint);
         replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         let record =
             replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None)).record;

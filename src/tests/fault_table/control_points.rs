@@ -4,7 +4,7 @@
 use super::stage::{Ended, run};
 use super::two_axes::{checked, ideal, results, same};
 use crate::plan::Plan;
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 
 const SINE: &str = include_str!("../../../plans/two_storeys_sine.psd");
 const BENCH: &str = include_str!("../../../plans/lib/two_actuator_frame.psd");
@@ -49,7 +49,7 @@ pub(super) fn plan() -> Plan {
 fn two_storeys_over_two_control_points_are_the_virtual_run() {
     let ended = run(&plan(), "");
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
-    assert_eq!(ended.tally, Tally::default());
+    assert_eq!(ended.line_statistics, LineStatistics::default());
     let (real, ideal) = (results(&ended.record), ideal(&text()));
     same(&real, &ideal, as_near_as_the_wire);
     // One transaction proposes both floors, and every step is one.
@@ -104,7 +104,11 @@ fn a_reply_that_is_late_or_twice_is_not_taken_for_another_floors() {
         "after 40 moves: repeat replies 6\nafter 60 moves: repeat replies 5",
     );
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
-    assert!(ended.tally.ignored >= 10, "{:?}", ended.tally);
+    assert!(
+        ended.line_statistics.ignored >= 10,
+        "{:?}",
+        ended.line_statistics
+    );
     let (real, ideal) = (results(&ended.record), ideal(&text()));
     same(&real, &ideal, as_near_as_the_wire);
 }

@@ -26,7 +26,7 @@ pub(super) fn killed(
         let mut rig = open(plan, stand).unwrap();
         let mut journal = Journal::create(
             Box::new(Killed::at(disk, call, after)),
-            Durability::EveryPromise,
+            Durability::EverySyncPoint,
         );
         replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
@@ -58,11 +58,15 @@ pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: us
     let (found, about) = (rig.read().unwrap(), RigBody::of(&rig));
     let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
     let decision = match replay::decide(&before, &about, &found, &bands, false) {
-        Err(replay::Refusal::NothingRecorded) => return GoneOn::NeverBegun,
+        Err(replay::ResumeRefusal::NothingRecorded) => return GoneOn::NeverBegun,
         decided => decided.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
     };
     let resumption = decision.resumption("A. Witness", "power", &found, before.time);
-    let mut journal = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &recovered);
+    let mut journal = Journal::reopen(
+        Box::new(disk.clone()),
+        Durability::EverySyncPoint,
+        &recovered,
+    );
     journal
         .append(
             EntryKind::Rig,
@@ -74,10 +78,10 @@ pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: us
         .unwrap();
     journal.append(EntryKind::Resume, &resumption).unwrap();
     let goes_on = || {
-        Ok::<_, replay::Refusal>(replay::GoesOn {
+        Ok::<_, replay::ResumeRefusal>(replay::Continuation {
             rig: &mut rig,
             journal,
-            played: played(disk).1,
+            logged: played(disk).1,
         })
     };
     let resumed =

@@ -18,7 +18,7 @@ fn what_is_no_number_is_never_integrated() {
         let kept = (20..26).filter(|reading| {
             let once = run(&plan(), &bad(*reading));
             once.sound();
-            assert_eq!(once.tally.reread, 1, "{word}");
+            assert_eq!(once.line_statistics.reread, 1, "{word}");
             let said = format!(" {} ", word.trim_matches('"'));
             let samples = once
                 .lines
@@ -40,7 +40,7 @@ fn what_is_no_number_is_never_integrated() {
             "{word}: {}",
             always.reason()
         );
-        assert_eq!(always.tally.reread, 3, "{word}");
+        assert_eq!(always.line_statistics.reread, 3, "{word}");
     }
     // Where nothing else bounds it, what is not looked at as a number goes into the record.
     let mut unbounded = plan();

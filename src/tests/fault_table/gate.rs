@@ -67,7 +67,7 @@ fn an_offset_is_refused_and_nothing_moves() {
     // 6 N after the first second, where 5 N are allowed.
     let offset = "at 0 s: drift force 6 N/s";
     refused(offset, "at rest", 0);
-    assert!(past(&run_without(Guarding::GateZero, &plan(), offset)));
+    assert!(past(&run_without(Guarding::PretestZero, &plan(), offset)));
 }
 
 #[test]
@@ -76,10 +76,15 @@ fn without_its_guards_the_gate_lets_them_through() {
     let mut wide = plan();
     super::stage::link(&mut wide).gate.stiffness.low = f64::NEG_INFINITY;
     assert!(
-        !past(&run(&wide, mirrored)) && past(&run_without(Guarding::GateSign, &wide, mirrored))
+        !past(&run(&wide, mirrored))
+            && past(&run_without(Guarding::PretestPolarity, &wide, mirrored))
     );
     let small = "at 0 s: scale force by 0.001";
-    assert!(past(&run_without(Guarding::GateStiffness, &plan(), small)));
+    assert!(past(&run_without(
+        Guarding::PretestStiffness,
+        &plan(),
+        small
+    )));
 }
 
 /// Whether the plan's own procedures began.

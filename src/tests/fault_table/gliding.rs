@@ -8,7 +8,7 @@ use super::two_axes::{checked, gliding_text, ideal, results, same, upper};
 use crate::emulator::InProcess;
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::safety::failpoint::Guarding;
 use crate::rig::transport::Clock as _;
 use crate::run::replay;
@@ -74,7 +74,7 @@ fn axes_that_do_not_stop_give_what_the_virtual_run_gives() {
     let text = gliding_text("0.6 s");
     let ended = run(&checked(&text, "frame_rig"), "");
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
-    assert_eq!(ended.tally, Tally::default());
+    assert_eq!(ended.line_statistics, LineStatistics::default());
     same(&results(&ended.record), &ideal(&text), as_near_as(1e-7));
     let ways: Vec<&str> = ended
         .log

@@ -6,7 +6,7 @@ use crate::emulator::Log;
 use crate::record::EventKind;
 use crate::rig::controllers::LONGEST_LINE;
 use crate::rig::safety::failpoint::{Guarding, without};
-use crate::rig::{Rig as _, Tally};
+use crate::rig::{LineStatistics, Rig as _};
 
 /// Moments at which a frame left, with the frame, from the first that holds `part`.
 fn sent<'a>(ended: &'a Ended, part: &str) -> Vec<(f64, &'a str)> {
@@ -68,10 +68,10 @@ fn a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held
     let once = run(&plan(), "after 3 moves: drop reply");
     once.sound();
     assert_eq!(
-        once.tally,
-        Tally {
+        once.line_statistics,
+        LineStatistics {
             resent: 1,
-            ..Tally::default()
+            ..LineStatistics::default()
         }
     );
     assert_eq!(once.events(EventKind::Mended), ["1 frame sent again"]);
@@ -90,7 +90,11 @@ fn a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply() {
             ),
         );
         ended.sound();
-        assert_eq!(ended.tally, Tally::default(), "nothing was missing");
+        assert_eq!(
+            ended.line_statistics,
+            LineStatistics::default(),
+            "nothing was missing"
+        );
     }
     // At 20 ms a byte a reply takes more than a second.
     let mut patient = short;
@@ -108,7 +112,7 @@ fn a_reply_cut_anywhere_is_never_a_shorter_number() {
         );
         ended.sound();
         // What came of the cut reply spoils the next one, too, where no line's end stands between them.
-        assert!(ended.tally.resent <= 2);
+        assert!(ended.line_statistics.resent <= 2);
     }
 }
 
@@ -127,9 +131,9 @@ fn garbage_of_any_kind_is_counted_and_none_of_it_is_used() {
                 &format!("after 10 replies: {dirt} {place}\nafter 20 replies: {dirt} {place}"),
             );
             ended.sound();
-            let Tally {
+            let LineStatistics {
                 resent, ignored, ..
-            } = ended.tally;
+            } = ended.line_statistics;
             assert!(
                 resent + ignored > 0 || dirt.contains("0a"),
                 "{dirt} {place}"
@@ -171,23 +175,29 @@ fn every_flipped_bit_of_a_reply_is_seen() {
         rig.propose(&[2e-4], None)
             .and_then(|_| rig.execute())
             .and_then(|()| rig.read())
-            .map(|reading| (reading, rig.tally()))
+            .map(|reading| (reading, rig.line_statistics()))
     };
-    let (sound, tally) = reading(None).unwrap();
-    assert_eq!(tally, Tally::default());
+    let (sound, line_statistics) = reading(None).unwrap();
+    assert_eq!(line_statistics, LineStatistics::default());
     let bits = 8 * (sound.raw[0].len() + 1);
     let mut taken = 0;
     for bit in 0..bits {
-        let (flipped, tally) =
+        let (flipped, line_statistics) =
             reading(Some(bit)).unwrap_or_else(|fault| panic!("bit {bit}: {fault}"));
         assert_eq!(
             (&flipped.displacement, &flipped.force),
             (&sound.displacement, &sound.force),
             "bit {bit}"
         );
-        assert!(tally.resent + tally.ignored > 0, "bit {bit} was not seen");
+        assert!(
+            line_statistics.resent + line_statistics.ignored > 0,
+            "bit {bit} was not seen"
+        );
         taken += without(Guarding::Checksum, || {
-            usize::from(reading(Some(bit)).is_ok_and(|(_, tally)| tally == Tally::default()))
+            usize::from(
+                reading(Some(bit))
+                    .is_ok_and(|(_, line_statistics)| line_statistics == LineStatistics::default()),
+            )
         });
     }
     assert!(
@@ -207,9 +217,9 @@ fn a_doubled_a_late_and_an_old_reply_are_ignored() {
         let ended = run(&plan(), &format!("after 5 moves: {fault}"));
         ended.sound();
         assert!(
-            ended.tally.ignored > 0 && ended.tally.resent >= resent,
+            ended.line_statistics.ignored > 0 && ended.line_statistics.resent >= resent,
             "{fault}: {:?}",
-            ended.tally
+            ended.line_statistics
         );
     }
     // A reply of one reading ago, taken for the present one.
@@ -218,9 +228,9 @@ fn a_doubled_a_late_and_an_old_reply_are_ignored() {
     seen.sound();
     let missed = run_without(Guarding::Sequence, &plan(), old);
     assert!(
-        missed.tally.ignored < seen.tally.ignored,
+        missed.line_statistics.ignored < seen.line_statistics.ignored,
         "{:?}, {:?}",
-        missed.tally,
-        seen.tally
+        missed.line_statistics,
+        seen.line_statistics
     );
 }

@@ -11,7 +11,7 @@ use crate::plan::formula::Formula;
 use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
 use crate::record::journal::{Durability, Journal, Line, Storage};
 use crate::record::{EventKind, History, Outcome};
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::run::{Unwatched, replay};
 use crate::tests::testing::ramp;
 
@@ -138,7 +138,7 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
     let stand = stand(&plan, script, Log::none(), seed);
     let mut rig = open(&plan, &stand).unwrap_or_else(|fault| panic!("seed {seed}: {fault}"));
     let counted = Counted::default();
-    let mut journal = Journal::create(Box::new(counted.clone()), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(counted.clone()), Durability::EverySyncPoint);
     replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
     let recorded = replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     let record = recorded.record;
@@ -173,11 +173,11 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
         "seed {seed}: {:?}",
         counts.held
     );
-    let Tally {
+    let LineStatistics {
         resent,
         ignored,
         reread,
-    } = crate::rig::Rig::tally(&rig);
+    } = crate::rig::Rig::line_statistics(&rig);
     assert!(
         resent > 60 && ignored > 60 && reread > 6,
         "seed {seed}: {resent} {ignored} {reread}"
@@ -204,7 +204,7 @@ fn a_wall_clock_that_jumps_changes_no_duration() {
         let stand = stand(&plan, "", Log::none(), 1);
         let mut rig = open(&plan, &stand).unwrap();
         let disk = crate::record::journal::testing::PowerLoss::new();
-        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
         replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         let record = replay::record(&plan, &mut rig, &mut Unwatched, journal, wall).record;
         assert_eq!(record.outcome, Outcome::Completed);

@@ -66,7 +66,8 @@ fn every_rig_of_the_manual_passes_its_gate() {
             let name = &plan.rig.name;
             let stand = stand(&plan, "", Log::none(), seed);
             let mut rig = open(&plan, &stand).unwrap_or_else(|fault| panic!("{name}: {fault}"));
-            let mut journal = Journal::create(Box::new(PowerLoss::new()), Durability::EveryPromise);
+            let mut journal =
+                Journal::create(Box::new(PowerLoss::new()), Durability::EverySyncPoint);
             replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
             let recorded =
                 replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));

@@ -6,7 +6,7 @@
 //! | Row | Fault | Shown by |
 //! |---|---|---|
 //! | 1 | killed at every command to the rig | `words::killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_twice` |
-//! | 6 | a disk too small for the run | `room::no_rig_writes_more_than_was_reckoned` |
+//! | 6 | a disk with too little free space | `src/cli/files/disk_space.rs`, `tests/system/disk.rs` |
 //! | 10 | no reply | `line::a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held` |
 //! | 11 | partial replies, two replies in one read | `line::a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply`, `line::a_reply_cut_anywhere_is_never_a_shorter_number` |
 //! | 12 | garbage, a megabyte without a line end | `line::garbage_of_any_kind_is_counted_and_none_of_it_is_used` |
@@ -29,7 +29,7 @@
 //! | 10, 12, 16, 20–22 | the same with one device per axis, a meter with several channels, several sites | `several::*` |
 //! | 28 | signals, a closed terminal | `tests/system/signals.rs`, in processes of their own |
 //! | 29 | panic, abort | `tests/system/ended.rs`, in processes of their own |
-//! | 30 | a run log that contradicts itself, with every protocol | `forged::*`, `forged_dialects::*` |
+//! | 30 | a run log that contradicts itself | `forged::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
 //! | 32 | very many steps, random faults | `long::very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing` |
 
@@ -40,14 +40,12 @@ mod cut_off;
 mod device;
 mod drift;
 mod forged;
-mod forged_dialects;
 mod gate;
 mod gliding;
 mod line;
 mod long;
 mod manual;
 mod motion;
-mod room;
 mod several;
 pub(crate) mod stage;
 mod start;

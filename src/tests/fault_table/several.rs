@@ -7,7 +7,7 @@ use super::stage::{Ended, run, run_without};
 use super::two_axes::{LINK, checked, ideal, results, same, upper, with_devices};
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::safety::failpoint::Guarding;
 
 const LOWER: &str = "    axis(gate:";
@@ -82,7 +82,7 @@ fn each_layout_gives_what_the_virtual_rig_gives() {
     for (text, near) in layouts {
         let ended = run(&plan(&text), "");
         assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
-        assert_eq!(ended.tally, Tally::default());
+        assert_eq!(ended.line_statistics, LineStatistics::default());
         same(&results(&ended.record), &ideal(&text), as_near_as(near));
     }
 }
@@ -139,10 +139,10 @@ fn what_a_load_cell_does_is_said_of_it_and_holds_every_axis() {
         "after 20 moves: load cell drop reply\nafter 25 moves: load cell repeat reply",
     );
     assert!(
-        ended.completed() && ended.tally.resent == 1,
+        ended.completed() && ended.line_statistics.resent == 1,
         "{} {:?}",
         ended.reason(),
-        ended.tally
+        ended.line_statistics
     );
 }
 

@@ -14,9 +14,9 @@ use crate::record::{EventKind, History, Outcome, Record};
 use crate::rig::real::RealRig;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::transport::Port;
-use crate::rig::{Rig as _, RigFault, Tally, Wish, controllers};
+use crate::rig::{LineStatistics, Rig as _, RigFault, StopRequest, controllers};
 use crate::run::replay;
-use crate::run::replay::Played;
+use crate::run::replay::LoggedRun;
 use crate::run::{Observer, Unwatched};
 pub(super) use crate::tests::testing::header;
 use crate::tests::testing::{elastic_plan, ramp};
@@ -122,7 +122,7 @@ pub(super) struct Ended {
     pub(super) recovered: Recovered,
     /// Of the simulator.
     pub(super) log: String,
-    pub(super) tally: Tally,
+    pub(super) line_statistics: LineStatistics,
     pub(super) trusted: bool,
     pub(super) stand: InProcess,
 }
@@ -141,14 +141,14 @@ pub(super) fn run_watched(
     let stand = stand(plan, script, Log::to(Box::new(text.clone())), 1);
     let mut rig = open(plan, &stand)?;
     let disk = PowerLoss::new();
-    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
     let recorded = replay::record(plan, &mut rig, observer, journal, Box::new(|| None));
     assert!(recorded.mismatch.is_none() && recorded.fault.is_none());
     let recovered = recover(&disk.written()).unwrap();
     // Whatever went wrong: the record alone gives the run again.
-    let played = Played::of(&recovered).unwrap();
-    assert_eq!(replay::agrees(&recovered, &played, plan), Ok(()));
+    let played = LoggedRun::of(&recovered).unwrap();
+    assert_eq!(replay::check_consistency(&recovered, &played, plan), Ok(()));
     let replayed = replay::replay(plan, played);
     assert_eq!(replayed.mismatch, None);
     let same = format!("{:?}", replayed.record) == format!("{:?}", recorded.record);
@@ -157,7 +157,7 @@ pub(super) fn run_watched(
         "{:?} became {:?}",
         recorded.record.outcome, replayed.record.outcome
     );
-    let (tally, trusted) = (rig.tally(), rig.trusted());
+    let (line_statistics, trusted) = (rig.line_statistics(), rig.trusted());
     assert!(
         stand.stand().bench().violations().is_empty()
             || !crate::rig::safety::failpoint::on(Guarding::TargetLimits)
@@ -167,7 +167,7 @@ pub(super) fn run_watched(
         lines: recovered.lines.clone(),
         recovered,
         log: text.text(),
-        tally,
+        line_statistics,
         trusted,
         stand,
     })
@@ -195,7 +195,7 @@ pub(super) fn open_through(
             link,
             through(stand.port(line)),
             Box::new(stand.clock()),
-            Wish::default(),
+            StopRequest::default(),
             plan.rig.settle.timeout,
         )
     };
@@ -219,7 +219,7 @@ pub(super) fn open_through(
         actuator,
         load_cell,
         Box::new(stand.clock()),
-        Wish::default(),
+        StopRequest::default(),
     )
 }
 

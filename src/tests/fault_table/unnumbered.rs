@@ -84,7 +84,11 @@ fn lost_doubled_and_late_answers_leave_the_same_numbers() {
 fn a_late_answer_is_not_taken_for_that_to_the_next_question() {
     let late = "after 100 replies: delay replies 2 0.12 s";
     let ended = run(&modbus(), late);
-    assert!(ended.tally.resent > 0, "{:?}", ended.tally);
+    assert!(
+        ended.line_statistics.resent > 0,
+        "{:?}",
+        ended.line_statistics
+    );
     ended.sound();
     let without = run_without(Guarding::Resend, &modbus(), late);
     assert!(

@@ -60,7 +60,7 @@ fn killed(plan: &Plan, stand: &InProcess, disk: &PowerLoss, word: usize, after: 
     };
     let ended = catch_unwind(AssertUnwindSafe(|| {
         let mut rig = open_through(plan, stand, &through).unwrap();
-        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
         replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
     }));

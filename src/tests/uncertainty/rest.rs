@@ -8,7 +8,7 @@ use crate::procedures::unload::run::{of_frame, to_rest};
 use crate::procedures::unload::uncertainty::RestUncertainty;
 use crate::record::Rest;
 use crate::rig::{
-    DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault, virtual_rig,
+    DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault, virtual_rig,
 };
 use crate::run::Unwatched;
 use crate::run::inputs::Inputs;
@@ -58,14 +58,14 @@ impl Rig for Misread {
     fn time(&self) -> f64 {
         self.rig.time()
     }
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         let true_targets: Vec<f64> = targets
             .iter()
             .zip(&self.axes)
             .map(|(target, axis)| target / axis.displacement)
             .collect();
         let offer = self.rig.propose(&true_targets, speed)?;
-        Ok(Offer {
+        Ok(EncodedMove {
             targets: targets.to_vec(),
             ..offer
         })
@@ -202,7 +202,7 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
         plan.specimens[0].behaviour = Some(behaviour);
         let at = |wrong: Wrong| rests(&plan, &[&[0.06]], vec![wrong], Some(1e-6));
         let told = at(RIGHT);
-        let [place, force] = told.doubts_of(0);
+        let [place, force] = told.contributions_at_floor(0);
         let cases = [
             (Source::ForceScale(0), 0.01, |by| Wrong {
                 force: 1.0 + by,
@@ -243,7 +243,7 @@ fn a_false_zero_of_a_floor_moves_the_storeys_below_it() {
         rests(&plan, &[&places], axes, Some(1e-6))
     };
     let told = at(0, 0.0);
-    let (drifts, shears) = (told.doubts_of_drifts(), told.doubts_of_shears());
+    let (drifts, shears) = (told.drift_contributions(), told.shear_contributions());
     for axis in 0..3 {
         let (up, down) = (at(axis, 0.5), at(axis, -0.5));
         for (storey, stiffness) in [4e6, 2e6, 1e6].into_iter().enumerate() {
@@ -318,7 +318,7 @@ fn unloaded_positions_scatter_as_predicted() {
     let runs: Vec<Rest> = (1..=u64::from(RUNS)).map(&mut at).collect();
     let within = 3.0 / f64::from(2 * (RUNS - 1)).sqrt();
     for floor in 0..3 {
-        let [place, force] = told.doubts_of(floor);
+        let [place, force] = told.contributions_at_floor(floor);
         let u = combined(&place).unwrap();
         let found = scatter(
             &runs
@@ -359,7 +359,7 @@ fn what_was_left_counts_where_anything_is_uncertain() {
     let mut told = 0;
     for floor in 0..3 {
         let (left, off) = (
-            of(&rough.doubts_of(floor)[0], source),
+            of(&rough.contributions_at_floor(floor)[0], source),
             rough.displacement[floor] - fine.displacement[floor],
         );
         // Along hk it is farther than along the stiffness of the whole of the last move.

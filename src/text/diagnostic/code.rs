@@ -33,7 +33,7 @@ macro_rules! codes {
 }
 
 /// Codes that do not depend on the plan alone: they are about the machine that is to run it.
-pub const OF_THE_MACHINE: &[Code] = &[Code::NoRoom];
+pub const OF_THE_MACHINE: &[Code] = &[Code::DiskSpace];
 
 codes! {
     // 1: the text
@@ -109,7 +109,7 @@ codes! {
     E626 FrameOnRealRig Error;
     E627 DampingRatios Error;
     E628 NoOneStiffness Error;
-    E629 NoRoom Error;
+    E629 DiskSpace Error;
     E630 CornersDoNotFit Error;
     E631 BadTableFile Error;
     E632 BehaviourIncomplete Error;
@@ -133,7 +133,7 @@ codes! {
     E650 RelaxationWithoutHold Error;
     E651 NotTogether Error;
     E652 NobodyToFreeIt Error;
-    E653 RecordTooLong Error;
+    E653 TooManyRecordedSteps Error;
     E654 ReadApart Error;
     E655 NeverGiven Error;
     // 7: what runs but is not advisable

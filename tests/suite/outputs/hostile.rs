@@ -521,7 +521,7 @@ fn no_label_is_another_record() {
             .append(EntryKind::Event, &serde_json::json!({ "text": label }))
             .unwrap();
     }
-    journal.promise().unwrap();
+    journal.sync_point().unwrap();
     drop(journal);
     let bytes = std::fs::read(&path).unwrap();
     assert!(

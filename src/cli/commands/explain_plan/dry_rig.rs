@@ -8,7 +8,8 @@ use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Interval, Plan};
 use crate::record::Record;
 use crate::rig::{
-    DeclaredNoise, EachReading, Identity, OWN_SPEED, Offer, Reading, Rig, RigFault, virtual_rig,
+    DeclaredNoise, EachReading, EncodedMove, Identity, OWN_SPEED, Reading, Rig, RigFault,
+    virtual_rig,
 };
 use crate::run::{self, Inspection, Observer, StepReport};
 
@@ -132,7 +133,7 @@ impl Rig for Watched {
         self.inner.time()
     }
 
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         let offer = self.inner.propose(targets, speed)?;
         self.note_target(targets, speed.unwrap_or(OWN_SPEED));
         Ok(offer)

@@ -16,7 +16,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::settings::Settings;
 use crate::plan::{Link, Plan};
-use crate::rig::{Rig, Wish, connect, virtual_rig};
+use crate::rig::{Rig, StopRequest, connect, virtual_rig};
 
 /// Runs one of the commands.
 pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
@@ -38,8 +38,8 @@ pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
                 every: typed::every(every)?,
                 count: *count,
             };
-            with_rig(plan, plan_settings, settings, |rig, plan, wish| {
-                monitor::monitor(rig, plan, &request, wish, settings)
+            with_rig(plan, plan_settings, settings, |rig, plan, stop_request| {
+                monitor::monitor(rig, plan, &request, stop_request, settings)
             })
         }
         RigCommand::Jog(arguments) => jog::jog(arguments, settings),
@@ -53,21 +53,21 @@ fn with_rig(
     path: &Path,
     plan_settings: &PlanSettings,
     settings: Settings,
-    command: impl FnOnce(&mut dyn Rig, &Plan, &Wish) -> Result<Exit, Failure>,
+    command: impl FnOnce(&mut dyn Rig, &Plan, &StopRequest) -> Result<Exit, Failure>,
 ) -> Result<Exit, Failure> {
     let checked = plan_file::open(path, plan_settings)?;
     plan_file::show(&checked, path, settings);
     let Some(plan) = &checked.plan else {
         return Ok(Exit::Wrong);
     };
-    let wish = Wish::default();
+    let stop_request = StopRequest::default();
     match &plan.rig.link {
-        Link::Virtual(_) => command(virtual_rig(plan).as_mut(), plan, &wish),
+        Link::Virtual(_) => command(virtual_rig(plan).as_mut(), plan, &stop_request),
         Link::Real(_) => {
             let place = |fault: &str| plan_file::place_of_link(&checked, path, fault);
-            let connected = connect(&plan.rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let connected = connect(&plan.rig, &plan.limits, &stop_request).map_err(Failure::Rig);
             let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
-            command(&mut connected.rig, plan, &wish)
+            command(&mut connected.rig, plan, &stop_request)
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::cli::operator::watch::Signals;
 use crate::cli::output::print_while_read;
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
-use crate::rig::{Reading, Rig, Wish};
+use crate::rig::{Reading, Rig, StopRequest};
 use crate::run::{AxisReport, Observer as _, StepReport};
 
 /// Interval and number of readings.
@@ -24,23 +24,30 @@ pub fn monitor(
     rig: &mut dyn Rig,
     plan: &Plan,
     request: &MonitorRequest,
-    wish: &Wish,
+    stop_request: &StopRequest,
     settings: Settings,
 ) -> Result<Exit, Failure> {
     let MonitorRequest { every, count } = *request;
-    let _signals = Signals::ending(wish).map_err(Failure::Signals)?;
+    let _signals = Signals::ending(stop_request).map_err(Failure::Signals)?;
     let simulated = rig.identity().simulated;
     let on_screen =
         settings.can_ask && settings.stdout_terminal && settings.unicode && is_large_enough();
-    let mut screen = on_screen
-        .then(|| Screen::monitor(plan, simulated, "MONITOR", wish.clone(), settings.color));
+    let mut screen = on_screen.then(|| {
+        Screen::monitor(
+            plan,
+            simulated,
+            "MONITOR",
+            stop_request.clone(),
+            settings.color,
+        )
+    });
     if let Some(screen) = &mut screen {
         screen.procedure_started("readings", "monitor", None);
     } else {
         print_while_read(&header(rig.degrees_of_freedom()))?;
     }
     let mut number = 0;
-    while !wish.wants_end() && count.is_none_or(|count| number < count) {
+    while !stop_request.end_requested() && count.is_none_or(|count| number < count) {
         if number > 0 {
             rig.pause(every).map_err(Failure::Rig)?;
             // A simulated rig does not wait: slow down for the operator.

@@ -23,8 +23,8 @@ use crate::remote;
 use crate::remote::{Ended, Event, Protocol, Session};
 use crate::report;
 use crate::report::Provenance;
-use crate::rig::{Rig, VirtualRig, Wish, virtual_rig};
-use crate::run::remote_control::Driver;
+use crate::rig::{Rig, StopRequest, VirtualRig, virtual_rig};
+use crate::run::client_run::Driver;
 use crate::run::replay;
 use crate::run::replay::{Recorded, Wall};
 use crate::text::diagnostic::excerpt::escape;
@@ -48,11 +48,11 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     named(arguments, plan)?;
     let attendance = real_rig::named(attendance, plan)?;
     let door = Door::open(arguments)?;
-    let wish = Wish::default();
+    let stop_request = StopRequest::default();
     // The connection to the rig ends with the arm: nobody speaks with it while the results are written.
     let served = match plan.rig.link {
         Link::Virtual(_) => {
-            let signals = Signals::caught(&wish).map_err(Failure::Signals)?;
+            let signals = Signals::caught(&stop_request).map_err(Failure::Signals)?;
             let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, signals);
             let circumstances = Circumstances {
                 served: Some(arguments.protocol.name().to_owned()),
@@ -73,12 +73,12 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
                 &mut watcher,
                 &door,
                 &protocol,
-                &wish,
+                &stop_request,
                 settings,
             )?
         }
         Link::Real(_) => {
-            let mut opened = real_rig::open_for_client(plan, &attendance, settings, &wish)
+            let mut opened = real_rig::open_for_client(plan, &attendance, settings, &stop_request)
                 .map_err(|failure| {
                     failure.in_the_plan(|fault| {
                         plan_file::place_of_link(&checked, &arguments.plan, fault)
@@ -107,7 +107,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
                 &mut opened.watcher,
                 &door,
                 &protocol,
-                &wish,
+                &stop_request,
                 settings,
             )?
         }
@@ -225,7 +225,7 @@ fn on_record(
     watcher: &mut Watcher,
     door: &Door,
     protocol: &Protocol,
-    wish: &Wish,
+    stop_request: &StopRequest,
     settings: Settings,
 ) -> Result<Served, Failure> {
     let Stage {
@@ -276,7 +276,7 @@ fn on_record(
                 protocol,
                 specimen,
                 arguments.once,
-                wish,
+                stop_request,
                 &mut tell_event,
             );
         },

@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::keys::Key;
 use crate::cli::operator::question::{After, Choice, DEAF, Kind, Question};
 use crate::cli::operator::watch::{Stay, interrupt};
-use crate::rig::Wish;
+use crate::rig::StopRequest;
 use crate::run::{Inspection, Next};
 use crate::text::diagnostic::excerpt::escape;
 
@@ -97,21 +97,21 @@ impl Dialogue {
     }
 
     /// A key was pressed, `now`.
-    pub fn press(&mut self, key: Key, now: Duration, wish: &Wish) {
-        self.pressed(key, now, wish);
+    pub fn press(&mut self, key: Key, now: Duration, stop_request: &StopRequest) {
+        self.pressed(key, now, stop_request);
         self.open_question();
     }
 
-    fn pressed(&mut self, key: Key, now: Duration, wish: &Wish) {
+    fn pressed(&mut self, key: Key, now: Duration, stop_request: &StopRequest) {
         if key == Key::Quit && self.after.is_none() {
             self.attended = true;
-            return wish.hold_now();
+            return stop_request.hold_now();
         }
         let interrupts = key == Key::Interrupt;
         if self.is_asking() && !self.hears(now) {
             // What stands there has not been read: only a Ctrl-C that stops a run counts.
             if interrupts && self.after.is_none() {
-                self.interrupt(wish);
+                self.interrupt(stop_request);
             }
             return;
         }
@@ -121,7 +121,7 @@ impl Dialogue {
             }
             // The run has ended: it is the motion that is not wanted.
             Some(_) if interrupts => return self.back_to_the_choice(),
-            None if interrupts => return self.interrupt(wish),
+            None if interrupts => return self.interrupt(stop_request),
             _ => {}
         }
         // The help closes with any key; one that it names as a way to stop also does that.
@@ -131,23 +131,23 @@ impl Dialogue {
         match &self.typing {
             Some(Typing {
                 what: What::Answer, ..
-            }) => self.answer(key, wish),
+            }) => self.answer(key, stop_request),
             Some(_) => self.edit(key),
-            None => self.command(key, wish),
+            None => self.command(key, stop_request),
         }
     }
 
-    fn interrupt(&mut self, wish: &Wish) {
+    fn interrupt(&mut self, stop_request: &StopRequest) {
         self.attended = true;
-        interrupt(wish);
+        interrupt(stop_request);
     }
 
-    fn command(&mut self, key: Key, wish: &Wish) {
+    fn command(&mut self, key: Key, stop_request: &StopRequest) {
         let Key::Character(character) = key else {
             return;
         };
         match character.to_ascii_lowercase() {
-            'q' | 'h' => self.stop(character, wish),
+            'q' | 'h' => self.stop(character, stop_request),
             '?' => self.help = true,
             _ if self.monitor => {}
             'p' => {
@@ -162,17 +162,17 @@ impl Dialogue {
         }
     }
 
-    fn stop(&mut self, key: char, wish: &Wish) {
+    fn stop(&mut self, key: char, stop_request: &StopRequest) {
         self.attended = true;
         if key.eq_ignore_ascii_case(&'h') {
-            wish.hold_now();
+            stop_request.hold_now();
         } else {
-            wish.stop_after_step();
+            stop_request.stop_after_step();
         }
     }
 
     /// At a question. As long as nothing is typed, single keys are what they are elsewhere.
-    fn answer(&mut self, key: Key, wish: &Wish) {
+    fn answer(&mut self, key: Key, stop_request: &StopRequest) {
         let nothing_typed = self
             .typing
             .as_ref()
@@ -183,7 +183,7 @@ impl Dialogue {
             Key::Character('i' | 'I') if nothing_typed => self.line(What::Remark),
             Key::Character('?') if nothing_typed => self.help = true,
             Key::Character(key @ ('q' | 'Q' | 'h' | 'H')) if nothing_typed && !unload => {
-                self.stop(key, wish);
+                self.stop(key, stop_request);
             }
             Key::Escape if unload => self.back_to_the_choice(),
             Key::Escape => self.line(What::Answer),
@@ -452,9 +452,9 @@ impl Dialogue {
     }
 
     /// The terminal is gone: the rig holds, and nothing is answered.
-    pub fn lose(&mut self, wish: &Wish) {
+    pub fn lose(&mut self, stop_request: &StopRequest) {
         self.lost = true;
-        wish.hold_now();
+        stop_request.hold_now();
     }
 }
 

@@ -16,7 +16,7 @@ use super::question::{After, Kind, Question};
 use super::watch::Stay;
 use crate::plan::Plan;
 use crate::record::Event;
-use crate::rig::{Live, Wish};
+use crate::rig::{Live, StopRequest};
 use crate::run::{Inspection, Next, Observer, StepReport};
 use dialogue::Dialogue;
 use draw::View;
@@ -38,7 +38,7 @@ const FAREWELL: Duration = Duration::from_secs(1);
 /// The run's side of the screen.
 pub struct Screen {
     shared: Arc<Shared>,
-    wish: Wish,
+    stop_request: StopRequest,
     finished: bool,
 }
 
@@ -73,14 +73,14 @@ impl Screen {
         plan: &Plan,
         simulated: bool,
         operator: Option<String>,
-        wish: Wish,
+        stop_request: StopRequest,
         color: bool,
     ) -> Self {
         Self::start(
             Model::new(plan, simulated),
             Dialogue::new(operator),
             !simulated,
-            wish,
+            stop_request,
             color,
         )
     }
@@ -90,17 +90,23 @@ impl Screen {
         plan: &Plan,
         simulated: bool,
         word: &'static str,
-        wish: Wish,
+        stop_request: StopRequest,
         color: bool,
     ) -> Self {
         let model = Model {
             by_hand: Some(word),
             ..Model::new(plan, simulated)
         };
-        Self::start(model, Dialogue::of_monitor(), true, wish, color)
+        Self::start(model, Dialogue::of_monitor(), true, stop_request, color)
     }
 
-    fn start(model: Model, dialogue: Dialogue, wanted: bool, wish: Wish, color: bool) -> Self {
+    fn start(
+        model: Model,
+        dialogue: Dialogue,
+        wanted: bool,
+        stop_request: StopRequest,
+        color: bool,
+    ) -> Self {
         let state = State {
             model,
             dialogue,
@@ -113,11 +119,11 @@ impl Screen {
             state: Mutex::new(state),
             changed: Condvar::new(),
         });
-        let (theirs, their_wish) = (Arc::clone(&shared), wish.clone());
+        let (theirs, their_wish) = (Arc::clone(&shared), stop_request.clone());
         std::thread::spawn(move || show(&theirs, &their_wish, color));
         Self {
             shared,
-            wish,
+            stop_request,
             finished: false,
         }
     }
@@ -209,7 +215,7 @@ impl Observer for Screen {
     }
 
     fn stop_requested(&self) -> bool {
-        self.wish.wants_end()
+        self.stop_request.end_requested()
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {
@@ -234,20 +240,20 @@ impl Observer for Screen {
 }
 
 /// The screen's thread.
-fn show(shared: &Shared, wish: &Wish, color: bool) {
+fn show(shared: &Shared, stop_request: &StopRequest, color: bool) {
     let began = Instant::now();
     let mut left = Left {
         shared,
-        wish,
+        stop_request,
         gone: true,
     };
-    left.gone = is_wanted(shared) && page(shared, wish, color, began).is_err();
+    left.gone = is_wanted(shared) && page(shared, stop_request, color, began).is_err();
 }
 
 /// Says that the thread has left the terminal, however it did.
 struct Left<'a> {
     shared: &'a Shared,
-    wish: &'a Wish,
+    stop_request: &'a StopRequest,
     /// The terminal is gone, or the drawing failed: nobody will answer.
     gone: bool,
 }
@@ -256,7 +262,7 @@ impl Drop for Left<'_> {
     fn drop(&mut self) {
         let mut state = self.shared.lock();
         if self.gone {
-            state.dialogue.lose(self.wish);
+            state.dialogue.lose(self.stop_request);
         }
         state.closed = true;
         self.shared.changed.notify_all();
@@ -274,7 +280,12 @@ fn is_wanted(shared: &Shared) -> bool {
 }
 
 /// Draws and listens until the run is over.
-fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(), Gone> {
+fn page(
+    shared: &Shared,
+    stop_request: &StopRequest,
+    color: bool,
+    began: Instant,
+) -> Result<(), Gone> {
     let mut page = Page::open()?;
     let mut alarmed = false;
     loop {
@@ -296,7 +307,7 @@ fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(),
         page.draw(&View {
             model: &model,
             dialogue: &dialogue,
-            wish,
+            stop_request,
             now: began.elapsed(),
             color,
         })?;
@@ -310,7 +321,7 @@ fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(),
                 if pressed.is_empty() {
                     break;
                 }
-                press(shared, pressed, began, wish);
+                press(shared, pressed, began, stop_request);
             }
             shared
                 .lock()
@@ -324,16 +335,16 @@ fn page(shared: &Shared, wish: &Wish, color: bool, began: Instant) -> Result<(),
         {
             let pressed = page.keys(left)?;
             if !pressed.is_empty() {
-                press(shared, pressed, began, wish);
+                press(shared, pressed, began, stop_request);
             }
         }
     }
 }
 
-fn press(shared: &Shared, keys: Vec<Key>, began: Instant, wish: &Wish) {
+fn press(shared: &Shared, keys: Vec<Key>, began: Instant, stop_request: &StopRequest) {
     let mut state = shared.lock();
     for key in keys {
-        state.dialogue.press(key, began.elapsed(), wish);
+        state.dialogue.press(key, began.elapsed(), stop_request);
     }
     shared.changed.notify_all();
 }

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use super::curve::Curve;
 use crate::plan::{Interval, Limits, Plan, SafeState};
 use crate::record::{Event, EventKind};
-use crate::rig::Felt;
+use crate::rig::Feedback;
 use crate::rig::real::commands_only;
 use crate::run::{StepReport, UNLOADING};
 use crate::units::Dimension;
@@ -44,7 +44,7 @@ pub struct Model {
     /// Its safe state is to unload.
     pub unloads: bool,
     /// What was read last, also while nothing moves and on the way: m, N, one entry an axis.
-    pub live: Option<Felt>,
+    pub live: Option<Feedback>,
     /// The run has ended early: what became of the rig.
     pub ended: Option<Ended>,
 }
@@ -161,7 +161,7 @@ impl Model {
 
     /// Axes that the last step moved.
     pub fn axes(&self) -> usize {
-        self.felt().len().max(1)
+        self.feedback().len().max(1)
     }
 
     pub fn event(&mut self, event: &Event) {
@@ -178,7 +178,7 @@ impl Model {
     }
 
     /// Displacement (m) and force (N) of every axis: as read last, else at the end of the last step.
-    pub fn felt(&self) -> Vec<(f64, f64)> {
+    pub fn feedback(&self) -> Vec<(f64, f64)> {
         match &self.live {
             Some(live) => live
                 .displacement
@@ -226,8 +226,8 @@ impl Model {
         } = self.limits;
         // Of several axes the one with the largest size.
         let of = |value: fn((f64, f64)) -> f64| {
-            let felt = self.felt();
-            let values = felt.into_iter().map(value);
+            let feedback = self.feedback();
+            let values = feedback.into_iter().map(value);
             values.reduce(|largest, value| {
                 if value.abs() > largest.abs() {
                     value

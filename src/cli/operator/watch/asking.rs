@@ -5,7 +5,7 @@ use super::Stay;
 use super::typed::{Heard, Typed};
 use crate::cli::operator::question::{After, Choice, Kind, Question, WHY_RESUME};
 use crate::cli::output::print_message;
-use crate::rig::Wish;
+use crate::rig::StopRequest;
 use crate::run::Inspection;
 use crate::text::diagnostic::excerpt::escape;
 
@@ -223,14 +223,14 @@ fn choices(after: After) -> String {
 /// As `meanwhile`.
 pub fn next_line<E>(
     typed: &mut Typed,
-    wish: &Wish,
+    stop_request: &StopRequest,
     mut meanwhile: impl FnMut() -> Result<(), E>,
 ) -> Result<Option<String>, E> {
     loop {
         match typed.hear() {
             Heard::Line(line) => return Ok(Some(line)),
             Heard::End => return Ok(None),
-            Heard::Nothing | Heard::Ready if wish.wants_end() => return Ok(None),
+            Heard::Nothing | Heard::Ready if stop_request.end_requested() => return Ok(None),
             Heard::Nothing | Heard::Ready => meanwhile()?,
         }
     }
@@ -243,7 +243,7 @@ pub fn next_line<E>(
 pub fn agrees<E>(
     typed: &mut Typed,
     question: &Question,
-    wish: &Wish,
+    stop_request: &StopRequest,
     mut meanwhile: impl FnMut() -> Result<(), E>,
 ) -> Result<bool, E> {
     print_message(&shown(question));
@@ -256,7 +256,7 @@ pub fn agrees<E>(
                 None => print_message(&prompt(question.kind)),
             },
             Heard::End => return Ok(false),
-            Heard::Nothing if wish.wants_end() => return Ok(false),
+            Heard::Nothing if stop_request.end_requested() => return Ok(false),
             Heard::Nothing => {}
         }
         meanwhile()?;

@@ -15,7 +15,7 @@ use super::screen::{self, Screen};
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
 use crate::record::{Event, EventKind};
-use crate::rig::{Live, Wish};
+use crate::rig::{Live, StopRequest};
 use crate::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
 use crate::text::diagnostic::excerpt::escape;
 use asking::Person;
@@ -29,7 +29,7 @@ pub struct Watcher {
     face: Face,
     asking: Asking,
     operator: Option<String>,
-    wish: Wish,
+    stop_request: StopRequest,
     /// What the run is expected to do.
     expected: Extent,
     /// What the rig was asked to be released for.
@@ -117,7 +117,7 @@ impl Watcher {
         signals: Signals,
         drawn: bool,
     ) -> Self {
-        let wish = signals.wish().clone();
+        let stop_request = signals.stop_request().clone();
         let named = plan
             .particulars
             .iter()
@@ -133,7 +133,7 @@ impl Watcher {
                 plan,
                 simulated,
                 operator.clone(),
-                wish.clone(),
+                stop_request.clone(),
                 settings.color,
             ))
         } else if drawn && settings.stderr_terminal {
@@ -155,7 +155,7 @@ impl Watcher {
             face,
             asking,
             operator,
-            wish,
+            stop_request,
             expected: Extent::default(),
             released: None,
             ended: None,
@@ -181,7 +181,7 @@ impl Watcher {
 
     /// What a person wants of a run that has ended early, as long as somebody looks at the rig. `resume`: whether the run could go on.
     pub fn stay(&mut self, resume: bool) -> Stay {
-        if !self.wish.may_ask() {
+        if !self.stop_request.prompts_allowed() {
             return Stay::Leave;
         }
         let alarmed = self.alarm.is_some();
@@ -210,7 +210,7 @@ impl Watcher {
 
     /// Whether Ctrl-C came since a person was first asked what to do with a rig that holds.
     fn is_interrupted(&mut self) -> bool {
-        let now = self.wish.requests();
+        let now = self.stop_request.requests();
         now != *self.stops_before.get_or_insert(now)
     }
 
@@ -274,7 +274,7 @@ impl Observer for Watcher {
     }
 
     fn stop_requested(&self) -> bool {
-        self.wish.wants_end()
+        self.stop_request.end_requested()
     }
 
     fn inspect(&mut self, note: &str) -> Inspection {
@@ -290,7 +290,7 @@ impl Observer for Watcher {
 
     fn may_unload(&mut self, _: &str, motion: &Motion) -> Option<Inspection> {
         let interrupted = self.is_interrupted();
-        if !self.wish.may_ask() {
+        if !self.stop_request.prompts_allowed() {
             return None;
         }
         let question = Question::of(Kind::Unload, motion);
@@ -421,7 +421,7 @@ mod tests {
                 yes,
                 operator: None,
             };
-            let signals = Signals::caught(&Wish::default()).unwrap();
+            let signals = Signals::caught(&StopRequest::default()).unwrap();
             Watcher::new(settings, &attendance, &plan, simulated, signals).inspect("look")
         };
         assert!(matches!(ask(false, false), Inspection::Stop { .. }));

@@ -10,43 +10,46 @@ use signal_hook::consts::{SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SI
 use signal_hook::iterator;
 
 use crate::cli::output::print_message;
-use crate::rig::Wish;
+use crate::rig::StopRequest;
 
 /// Signals are caught as long as this lives. Afterwards they do nothing: what a run leaves is still being written. One for all
 /// of a run: what came while one was given up for another would be lost.
 pub struct Signals {
     handle: iterator::Handle,
-    wish: Wish,
+    stop_request: StopRequest,
     told: Arc<AtomicU8>,
 }
 
 impl Signals {
     /// Ctrl-C is a person's who waits for the end of the step; whoever sends another signal waits for nothing.
-    pub fn caught(wish: &Wish) -> std::io::Result<Self> {
-        Self::become_wishes(wish, |wish, signal| {
+    pub fn caught(stop_request: &StopRequest) -> std::io::Result<Self> {
+        Self::become_wishes(stop_request, |stop_request, signal| {
             if signal == SIGINT {
-                interrupt(wish);
+                interrupt(stop_request);
             } else {
-                wish.hold_now();
+                stop_request.hold_now();
             }
         })
     }
 
     /// The first signal holds the rig already.
-    pub fn holding(wish: &Wish) -> std::io::Result<Self> {
-        Self::become_wishes(wish, |wish, _| wish.hold_now())
+    pub fn holding(stop_request: &StopRequest) -> std::io::Result<Self> {
+        Self::become_wishes(stop_request, |stop_request, _| stop_request.hold_now())
     }
 
     /// Nothing moves, and a rig that is only looked at is told nothing: the first signal ends the looking.
-    pub fn ending(wish: &Wish) -> std::io::Result<Self> {
-        Self::become_wishes(wish, |wish, _| interrupt(wish))
+    pub fn ending(stop_request: &StopRequest) -> std::io::Result<Self> {
+        Self::become_wishes(stop_request, |stop_request, _| interrupt(stop_request))
     }
 
-    fn become_wishes(wish: &Wish, become_wish: fn(&Wish, i32)) -> std::io::Result<Self> {
+    fn become_wishes(
+        stop_request: &StopRequest,
+        become_wish: fn(&StopRequest, i32),
+    ) -> std::io::Result<Self> {
         let mut signals =
             iterator::Signals::new([SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM])?;
         let handle = signals.handle();
-        let (wish, theirs) = (wish.clone(), wish.clone());
+        let (stop_request, theirs) = (stop_request.clone(), stop_request.clone());
         let told = Arc::new(AtomicU8::new(SILENT));
         let tells = Arc::clone(&told);
         std::thread::spawn(move || {
@@ -55,7 +58,7 @@ impl Signals {
                     SIGUSR1 | SIGUSR2 | SIGALRM => continue,
                     // These two come from the keys.
                     SIGINT | SIGQUIT => {}
-                    _ => theirs.ask_nobody(),
+                    _ => theirs.suppress_prompts(),
                 }
                 become_wish(&theirs, signal);
                 match tells.load(Ordering::SeqCst) {
@@ -65,7 +68,11 @@ impl Signals {
                 }
             }
         });
-        Ok(Self { handle, wish, told })
+        Ok(Self {
+            handle,
+            stop_request,
+            told,
+        })
     }
 
     /// From here on each is answered by a line: there is no screen that would show it.
@@ -77,8 +84,8 @@ impl Signals {
     }
 
     /// What they become.
-    pub const fn wish(&self) -> &Wish {
-        &self.wish
+    pub const fn stop_request(&self) -> &StopRequest {
+        &self.stop_request
     }
 }
 
@@ -91,8 +98,8 @@ const ON_A_TERMINAL: u8 = 2;
 const CLEARED: &str = "\r\u{1b}[K";
 
 /// What a signal comes to, for who sent it.
-fn said(wish: &Wish) -> &'static str {
-    if wish.wants_hold() {
+fn said(stop_request: &StopRequest) -> &'static str {
+    if stop_request.hold_requested() {
         "holding now"
     } else {
         "stopping at the end of this step; Ctrl-C once more: hold now"
@@ -105,11 +112,11 @@ pub fn catch_full_files() -> std::io::Result<()> {
 }
 
 /// One Ctrl-C: the first stops the run at the end of its step, the second holds the rig now.
-pub fn interrupt(wish: &Wish) {
-    if wish.wants_end() {
-        wish.hold_now();
+pub fn interrupt(stop_request: &StopRequest) {
+    if stop_request.end_requested() {
+        stop_request.hold_now();
     } else {
-        wish.stop_after_step();
+        stop_request.stop_after_step();
     }
 }
 
@@ -125,15 +132,15 @@ mod tests {
 
     #[test]
     fn the_first_interrupt_stops_and_the_second_holds() {
-        let wish = Wish::default();
-        interrupt(&wish);
-        assert!(wish.wants_end() && !wish.wants_hold());
+        let stop_request = StopRequest::default();
+        interrupt(&stop_request);
+        assert!(stop_request.end_requested() && !stop_request.hold_requested());
         assert_eq!(
-            said(&wish),
+            said(&stop_request),
             "stopping at the end of this step; Ctrl-C once more: hold now"
         );
-        interrupt(&wish);
-        assert_eq!(said(&wish), "holding now");
-        assert!(wish.wants_hold());
+        interrupt(&stop_request);
+        assert_eq!(said(&stop_request), "holding now");
+        assert!(stop_request.hold_requested());
     }
 }

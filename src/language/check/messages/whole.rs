@@ -1,7 +1,7 @@
 //! Errors and warnings of the test as a whole: E6xx and W7xx.
 
 use super::{one_of, shown, suggestion};
-use crate::plan::Interval;
+use crate::plan::{Interval, MOST_RECORDED_STEPS};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 use crate::units::Dimension;
@@ -141,16 +141,14 @@ fn time(value: f64) -> String {
     shown(value, Dimension::TIME)
 }
 
-/// Bytes of the log by the end of a procedure, and the most; steps of the procedure, and the number that would fit.
-pub fn record_too_long(span: Span, bytes: f64, most: f64, steps: u64, fit: f64) -> Diagnostic {
-    let (bytes, most) = (bytes / 1e9, most / 1e9);
-    let message = format!(
-        "the record of this run may take {bytes:.1} GB, and none of more than {most:.1} GB is read back"
-    );
-    Diagnostic::new(Code::RecordTooLong, message)
+/// `all` steps up to the end of this procedure, which has `steps` of them; the procedures before it leave `remaining`.
+pub fn too_many_recorded_steps(span: Span, all: u64, steps: u64, remaining: u64) -> Diagnostic {
+    let message =
+        format!("this run has {all} steps, and one run has at most {MOST_RECORDED_STEPS} steps");
+    Diagnostic::new(Code::TooManyRecordedSteps, message)
         .at(span, format!("{steps} steps"))
         .help(format!(
-            "shorten `duration` or take a longer `time_step`: {fit} steps fit here"
+            "shorten `duration` or take a longer `time_step`: {remaining} steps fit here"
         ))
 }
 

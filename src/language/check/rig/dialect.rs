@@ -12,9 +12,6 @@ pub fn dialect<'a>(
     context: Context,
 ) -> Option<Dialect> {
     Some(match chosen.variant.name {
-        "grbl" => Dialect::Grbl,
-        "hx711" => Dialect::Hx711,
-        "indicator" => Dialect::Indicator,
         "scpi" => {
             let newtons_per_unit = checker.list_argument(chosen, "newtons_per_unit", context)?;
             for newtons in &newtons_per_unit {
@@ -22,14 +19,11 @@ pub fn dialect<'a>(
             }
             Dialect::Scpi { newtons_per_unit }
         }
-        "instron" => Dialect::Instron,
-        "mark10" => Dialect::Mark10,
-        "mark10_gauge" => Dialect::Mark10Gauge,
         "modbus" => Dialect::Modbus(modbus(checker, chosen, context)?),
         "nees" => Dialect::Nees {
             control_points: control_points(checker, chosen)?,
         },
-        _ => Dialect::Native,
+        name => Dialect::without_arguments(name)?,
     })
 }
 

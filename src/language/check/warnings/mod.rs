@@ -3,7 +3,7 @@
 
 pub(crate) mod guarded;
 pub(crate) mod left;
-pub(crate) mod record_size;
+pub(crate) mod recorded_steps;
 pub mod tracking;
 
 use super::checker::Checker;

@@ -1,15 +1,15 @@
-//! The reserve of a journal: a file beside it that only takes room, removed when the last words need it. In: the
-//! journal's path. Out: whether the room is held. It knows no record.
+//! The reserve of a run log: a file beside it that only occupies disk space, and is removed when the final entries need it.
+//! In: the path of the run log. Out: whether the space is reserved. It knows no entry.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{beside, new_file, write_whole};
 
-/// What the last words may take, bytes: some hundreds of records.
+/// Space for the final entries, bytes: some hundreds of entries.
 pub const RESERVE_BYTES: usize = 1 << 20;
 
-/// Where the reserve of a journal lies.
+/// Path of the reserve of a run log.
 pub fn path(journal: &Path) -> PathBuf {
     beside(journal, ".reserve")
 }
@@ -21,7 +21,7 @@ pub fn lay(journal: &Path) -> io::Result<()> {
         if there.is_file() && there.len() == RESERVE_BYTES as u64 {
             return Ok(());
         }
-        // Of a run that was killed while laying it.
+        // Left by a run that was killed while creating it.
         std::fs::remove_file(&path)?;
     }
     let laid = new_file(&path).and_then(|mut file| {
@@ -31,12 +31,12 @@ pub fn lay(journal: &Path) -> io::Result<()> {
     laid.inspect_err(|_| release(journal))
 }
 
-/// Gives the room back; there is no other chance if it cannot be.
+/// Frees the space. There is no second chance if this fails.
 pub fn release(journal: &Path) {
     let _ = std::fs::remove_file(path(journal));
 }
 
-/// Whether these bytes are a reserve, or what is laid of one that was being laid.
+/// Whether these bytes are a reserve, or a part of one that was being created.
 pub fn is_part_of_one(bytes: &[u8]) -> bool {
     incompressible().starts_with(bytes)
 }

@@ -1,4 +1,5 @@
-//! Why the file of a journal cannot be used. In: a path and what the system says. Out: a sentence for people.
+//! The reason why the file of a run log cannot be used. In: a path and the error of the system. Out: a sentence for the
+//! reader.
 
 use std::io;
 use std::path::{Path, PathBuf};

@@ -17,10 +17,10 @@ use crate::record::failpoint::{Guarding, on};
 pub use ballast::is_part_of_one as is_part_of_a_reserve;
 pub use fault::FileFault;
 
-/// The largest journal that is read back, bytes: of some five million steps. What proves it holds all of it in memory.
-pub const MOST_BYTES: u64 = crate::plan::MOST_RECORD_BYTES;
+/// Largest run log that is read back, bytes. The commands that verify it keep all of it in memory.
+pub const MOST_BYTES: u64 = 4 << 30;
 
-/// Who may read and write what lies here: the operator.
+/// Only the operator may read and write the file.
 const MODE: u32 = 0o600;
 
 /// The file of a journal. No other psd writes it while this lives.
@@ -30,7 +30,7 @@ pub struct FileStorage {
     path: PathBuf,
 }
 
-/// A journal that nobody writes while this lives.
+/// A run log that is not written during its lifetime.
 #[derive(Debug)]
 pub struct Still {
     _file: File,
@@ -51,10 +51,10 @@ impl FileStorage {
         Ok(storage)
     }
 
-    /// The journal of an earlier run, to be read and gone on with. It is locked before anything is read.
+    /// The run log of an earlier run, to be read and continued. It is locked before anything is read.
     ///
     /// # Errors
-    /// There is none, another psd has it, or the disk has no room for the reserve.
+    /// There is none, another psd has it, or the disk has no space for the reserve.
     pub fn open_existing(path: &Path) -> Result<Self, FileFault> {
         // Neither through a link nor waiting for the other end of a pipe.
         let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
@@ -78,8 +78,7 @@ impl FileStorage {
         Ok(storage)
     }
 
-    /// Holds the lock of a journal that is only read, so that nobody writes it meanwhile; a file that cannot be written needs no
-    /// more than to be read for it.
+    /// Holds the lock of a run log that is only read, so that it is not written meanwhile. Read permission is sufficient.
     ///
     /// # Errors
     /// There is none, or another psd writes it.
@@ -126,11 +125,11 @@ impl FileStorage {
         Ok(bytes)
     }
 
-    /// Moves what lies after the first `whole` bytes, if anything, into a new file `….torn-1`, `….torn-2`, … beside the
-    /// journal, and gives its path; both are durable. The caller records it.
+    /// Moves the bytes after the first `whole` bytes, if there are any, into a new file `….torn-1`, `….torn-2`, … beside
+    /// the run log, and gives its path; both are durable. The caller logs it.
     ///
     /// # Errors
-    /// The journal is as it was, or already cut; then the file beside it is complete.
+    /// The run log is unchanged, or already cut; then the file beside it is complete.
     pub fn truncate_to(&mut self, whole: u64) -> Result<Option<PathBuf>, FileFault> {
         torn::put_aside(&self.file, &self.path, whole)
             .and_then(|aside| {
@@ -143,17 +142,20 @@ impl FileStorage {
             .map_err(FileFault::of("cut back", &self.path))
     }
 
-    /// Bytes the disk still takes, for who asks whether the whole run will fit.
+    /// Free space of the disk, bytes.
     ///
     /// # Errors
-    /// The file system does not say.
-    pub fn room(&self) -> Result<u64, FileFault> {
-        let told = rustix::fs::fstatvfs(&self.file).map_err(io::Error::from);
-        let told = told.map_err(FileFault::of("asked for its disk's room", &self.path))?;
-        Ok(told.f_bavail.saturating_mul(told.f_frsize))
+    /// The file system does not report it.
+    pub fn free_space(&self) -> Result<u64, FileFault> {
+        let statistics = rustix::fs::fstatvfs(&self.file).map_err(io::Error::from);
+        let statistics = statistics.map_err(FileFault::of(
+            "asked for the free space of its disk",
+            &self.path,
+        ))?;
+        Ok(statistics.f_bavail.saturating_mul(statistics.f_frsize))
     }
 
-    /// There is none without the lock: what it removes when it goes is its own.
+    /// It exists only with the lock, so the reserve that it removes at its end is its own.
     fn locked(file: File, path: &Path) -> Result<Self, FileFault> {
         if on(Guarding::Lock) {
             file.try_lock().map_err(|refused| match refused {
@@ -217,7 +219,7 @@ impl Drop for FileStorage {
     }
 }
 
-/// A file that did not exist before; what is written to it goes to its end.
+/// A file that did not exist before; all writes append.
 fn new_file(path: &Path) -> io::Result<File> {
     OpenOptions::new()
         .read(true)
@@ -236,14 +238,14 @@ fn sync_folder(path: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
-/// The path with more behind its name: `journal` and `.reserve` give `journal.reserve`.
+/// The path with a suffix: `journal` and `.reserve` give `journal.reserve`.
 fn beside(path: &Path, more: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(more);
     PathBuf::from(name)
 }
 
-/// Writes all the bytes, each once: a write that takes fewer is gone on with, one that was interrupted is made again.
+/// Writes all the bytes, each once: a partial write is continued, an interrupted one is repeated.
 fn write_whole(out: &mut impl Write, mut bytes: &[u8]) -> io::Result<()> {
     while !bytes.is_empty() {
         match out.write(bytes) {

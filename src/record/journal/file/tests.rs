@@ -1,4 +1,4 @@
-//! The file of a journal: locks, reserve, modes, torn ends, writes that come short.
+//! The file of a run log: locks, reserve, modes, torn ends, partial writes.
 
 use std::fs;
 use std::io::{self, ErrorKind, Write};
@@ -20,7 +20,7 @@ fn place() -> (TempDir, PathBuf) {
 
 fn begun(path: &Path) -> Journal {
     let storage = FileStorage::create(path).unwrap();
-    let mut journal = Journal::create(Box::new(storage), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(storage), Durability::EverySyncPoint);
     journal.append(EntryKind::Header, &json!({})).unwrap();
     journal
 }
@@ -38,7 +38,7 @@ fn names(folder: &TempDir) -> Vec<String> {
 fn a_run_leaves_one_private_file() {
     let (folder, path) = place();
     let mut journal = begun(&path);
-    journal.promise().unwrap();
+    journal.sync_point().unwrap();
     assert_eq!(names(&folder), ["journal", "journal.reserve"]);
     assert_eq!(fs::metadata(ballast::path(&path)).unwrap().len(), 1 << 20);
     for name in names(&folder) {
@@ -133,7 +133,7 @@ fn a_torn_end_is_put_aside_and_the_journal_goes_on() {
             None,
             "nothing more to cut"
         );
-        let mut journal = Journal::go_on(Box::new(storage), Durability::EveryPromise, &found);
+        let mut journal = Journal::reopen(Box::new(storage), Durability::EverySyncPoint, &found);
         journal
             .append(EntryKind::Recover, &json!({"aside": "journal.torn"}))
             .unwrap();
@@ -193,7 +193,7 @@ fn reading_back_is_bounded() {
         b"0123456789!",
         "reading does not move where it writes"
     );
-    assert!(storage.room().unwrap() > 0);
+    assert!(storage.free_space().unwrap() > 0);
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! The torn end of a journal, put aside before it is cut off: no byte is thrown away. In: the journal and how much
-//! of it is whole. Out: the path of the copy. It knows no record.
+//! The torn end of a run log, put aside before it is cut off: no byte is discarded. In: the run log and its number of whole
+//! bytes. Out: the path of the copy. It knows no entry.
 
 use std::fs::File;
 use std::io::{self, Seek as _, SeekFrom};
@@ -10,7 +10,7 @@ use super::{beside, new_file, sync_folder};
 /// More torn ends than any run leaves.
 const MOST: u32 = 1000;
 
-/// Copies what lies after the first `whole` bytes into a new file beside the journal; None if nothing does.
+/// Copies the bytes after the first `whole` bytes into a new file beside the run log. None if there are none.
 pub fn put_aside(mut from: &File, journal: &Path, whole: u64) -> io::Result<Option<PathBuf>> {
     if from.metadata()?.len() <= whole {
         return Ok(None);

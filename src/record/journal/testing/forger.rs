@@ -1,5 +1,5 @@
-//! A forger who has the program: records altered, and every check word after them made anew. In: a whole journal. Out: one
-//! whose lines are all sound.
+//! A forger who has the program: entries altered, and every check word after them made again. In: a whole run log. Out: one
+//! whose lines are all valid.
 
 use serde_json::{Value, json};
 

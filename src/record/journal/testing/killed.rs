@@ -1,5 +1,5 @@
-//! A disk whose program is killed. In: the bytes of a journal. Out: those that were written before, and a panic that is no
-//! fault: whoever catches it is the next program.
+//! A disk whose program is killed. In: the bytes of a run log. Out: those that were written before, and a panic that is not
+//! a fault: the code that catches it is the next program.
 
 use std::panic::resume_unwind;
 

@@ -1,5 +1,5 @@
-//! A disk with a shadow of what is safe. In: the bytes of a journal, with its syncs. Out: what a loss of power leaves:
-//! all that was synced, and of the rest whatever the test likes. It knows no record.
+//! A disk that knows its durable bytes. In: the bytes of a run log, with its syncs. Out: the bytes after a loss of power:
+//! all that were synced, and any part of the rest. It knows no entry.
 
 use std::io;
 use std::sync::{Arc, Mutex, MutexGuard};

@@ -1,5 +1,5 @@
-//! A disk that fails as it is told: full after some bytes, with a reserve; or at the n-th sync. In: the bytes of a
-//! journal. Out: what it took of them, and how often it was asked. It knows no record.
+//! A disk that fails on demand: full after some bytes, with a reserve; or at the n-th sync. In: the bytes of a run log.
+//! Out: the bytes that it accepted, and the number of calls. It knows no entry.
 
 use std::io;
 use std::sync::{Arc, Mutex, MutexGuard};

@@ -1,5 +1,5 @@
-//! A vandal who has the program: records taken out, doubled, swapped and changed at random, and every check word made anew. In: a
-//! whole journal and a seed. Out: one whose lines are all sound and whose run may be none.
+//! A vandal who has the program: entries removed, duplicated, swapped and changed at random, and every check word made
+//! again. In: a whole run log and a seed. Out: one whose lines are all valid and whose run may be impossible.
 
 use rand::RngExt as _;
 use rand_pcg::Pcg64;

@@ -1,4 +1,4 @@
-//! Journals altered: nothing passes for clean, and all but the last record is refused with its place.
+//! Altered run logs: none passes as valid, and each is refused with its position, except for a change of the last entry.
 
 use super::super::chain::Chain;
 use super::super::{Damage, EntryKind, Wrong, line, recover};

@@ -23,7 +23,7 @@ fn begun(durability: Durability) -> (PowerLoss, Journal) {
 
 /// Two steps from HEADER to END, as a run writes them.
 fn small() -> Vec<u8> {
-    let (disk, mut journal) = begun(Durability::EveryPromise);
+    let (disk, mut journal) = begun(Durability::EverySyncPoint);
     for step in 1..3 {
         journal
             .append(EntryKind::Intent, &json!({"step": step, "target": 1e-3}))

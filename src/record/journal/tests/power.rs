@@ -1,4 +1,4 @@
-//! A loss of power at any moment: what was promised is there, or the damage is behind it.
+//! A loss of power at any moment: synced entries are there, or the damage is after them.
 
 use proptest::prelude::*;
 use serde_json::json;
@@ -13,12 +13,12 @@ proptest! {
         length in 0..10_000_usize,
         kept in prop::collection::vec(any::<bool>(), 32),
     ) {
-        let (disk, mut journal) = begun(Durability::EveryPromise);
-        journal.promise().unwrap();
+        let (disk, mut journal) = begun(Durability::EverySyncPoint);
+        journal.sync_point().unwrap();
         for (promised, bytes) in steps {
             journal.append(EntryKind::Sample, &json!({"raw": "x".repeat(bytes)})).unwrap();
             if promised {
-                journal.promise().unwrap();
+                journal.sync_point().unwrap();
             }
         }
         let safe = disk.synced();
@@ -36,7 +36,7 @@ proptest! {
 
     #[test]
     fn a_prefix_of_what_was_written_is_never_damage(bytes in prop::collection::vec(0..300_usize, 0..20), length in 0..5_000_usize) {
-        let (disk, mut journal) = begun(Durability::EveryPromise);
+        let (disk, mut journal) = begun(Durability::EverySyncPoint);
         for bytes in bytes {
             journal.append(EntryKind::Sample, &json!({"raw": "x".repeat(bytes)})).unwrap();
         }

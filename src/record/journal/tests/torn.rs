@@ -1,4 +1,4 @@
-//! Journals cut short: every whole record is kept, and the rest is called torn, but only if it can be.
+//! Run logs cut short: every whole entry is kept, and the rest is called torn only if it can be.
 
 use serde_json::json;
 
@@ -40,7 +40,8 @@ fn a_cut_journal_goes_on_where_it_was_cut() {
         let found = recover(&journal[..length]).unwrap();
         let whole = usize::try_from(found.whole).unwrap();
         let disk = PowerLoss::holding(&journal[..whole]);
-        let mut resumed = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &found);
+        let mut resumed =
+            Journal::reopen(Box::new(disk.clone()), Durability::EverySyncPoint, &found);
         if found.lines.is_empty() {
             resumed.append(EntryKind::Header, &json!({})).unwrap();
         }

@@ -1,4 +1,4 @@
-//! Writing: places, refusals, faults that are final, last words.
+//! Writing: order of entries, refusals, final faults, final entries.
 
 use serde_json::json;
 
@@ -10,7 +10,7 @@ use super::{begun, records};
 use crate::record::failpoint::{Guarding, without};
 
 fn on(disk: &(impl Storage + Clone + 'static)) -> Journal {
-    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     journal.append(EntryKind::Header, &json!({})).unwrap();
     journal
 }
@@ -18,7 +18,7 @@ fn on(disk: &(impl Storage + Clone + 'static)) -> Journal {
 #[test]
 fn header_is_first_and_only_and_nothing_follows_end() {
     let disk = PowerLoss::new();
-    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     let misplaced = |kind| Err(JournalFault::Refused(Refusal::OutOfPlace(kind)));
     assert_eq!(
         journal.append(EntryKind::Event, &json!({})),
@@ -40,7 +40,7 @@ fn header_is_first_and_only_and_nothing_follows_end() {
         misplaced(EntryKind::End)
     );
     assert_eq!(
-        journal.last_words(EntryKind::End, &json!({})),
+        journal.final_entry(EntryKind::End, &json!({})),
         misplaced(EntryKind::End)
     );
     let head = journal.head().to_owned();
@@ -51,7 +51,7 @@ fn header_is_first_and_only_and_nothing_follows_end() {
     );
     assert_eq!(journal.end(&json!({})), misplaced(EntryKind::End));
     assert_eq!(
-        journal.last_words(EntryKind::Fault, &json!({})),
+        journal.final_entry(EntryKind::Fault, &json!({})),
         misplaced(EntryKind::Fault)
     );
 
@@ -65,7 +65,7 @@ fn header_is_first_and_only_and_nothing_follows_end() {
     ];
     assert_eq!(records(&found), expected);
     assert!(found.ended && found.torn.is_none());
-    let mut ended = Journal::go_on(Box::new(disk), Durability::EveryPromise, &found);
+    let mut ended = Journal::reopen(Box::new(disk), Durability::EverySyncPoint, &found);
     assert_eq!(
         ended.append(EntryKind::Resume, &json!({})),
         misplaced(EntryKind::Resume)
@@ -74,7 +74,7 @@ fn header_is_first_and_only_and_nothing_follows_end() {
 
 #[test]
 fn a_refused_record_leaves_no_trace_and_the_journal_goes_on() {
-    let (disk, mut journal) = begun(Durability::EveryPromise);
+    let (disk, mut journal) = begun(Durability::EverySyncPoint);
     let before = (disk.written(), journal.len(), journal.head().to_owned());
     let refused = |refusal| Err(JournalFault::Refused(refusal));
     assert_eq!(
@@ -87,7 +87,7 @@ fn a_refused_record_leaves_no_trace_and_the_journal_goes_on() {
         refused(Refusal::NotFinite)
     );
     assert_eq!(
-        journal.last_words(EntryKind::Fault, &nan),
+        journal.final_entry(EntryKind::Fault, &nan),
         refused(Refusal::NotFinite)
     );
     assert_eq!(
@@ -107,7 +107,7 @@ fn a_refused_record_leaves_no_trace_and_the_journal_goes_on() {
 
 #[test]
 fn a_line_of_the_limit_is_written_and_one_byte_more_is_not() {
-    let (disk, mut journal) = begun(Durability::EveryPromise);
+    let (disk, mut journal) = begun(Durability::EverySyncPoint);
     let begins = disk.written().len();
     let frame = r#"2 EVENT {"text":""}"#.len() + 1 + 64 + 1 + 8 + 1;
     let text = |bytes: usize| json!({"text": "x".repeat(bytes - frame)});
@@ -126,13 +126,13 @@ fn a_line_of_the_limit_is_written_and_one_byte_more_is_not() {
 
 #[test]
 fn a_promise_is_a_sync_on_a_real_rig_only() {
-    let (disk, mut journal) = begun(Durability::EveryPromise);
+    let (disk, mut journal) = begun(Durability::EverySyncPoint);
     assert!(disk.synced().is_empty());
-    journal.promise().unwrap();
+    journal.sync_point().unwrap();
     assert_eq!((disk.synced(), disk.syncs()), (disk.written(), 1));
 
     let (disk, mut journal) = begun(Durability::Buffered);
-    journal.promise().unwrap();
+    journal.sync_point().unwrap();
     assert_eq!((disk.written().len(), disk.syncs()), (0, 0));
     journal.sync().unwrap();
     assert_eq!((disk.synced(), disk.syncs()), (disk.written(), 1));
@@ -156,7 +156,7 @@ fn a_promise_is_a_sync_on_a_real_rig_only() {
 
 #[test]
 fn the_bytes_are_the_same_buffered_or_not() {
-    let written = [Durability::Buffered, Durability::EveryPromise].map(|durability| {
+    let written = [Durability::Buffered, Durability::EverySyncPoint].map(|durability| {
         let (disk, mut journal) = begun(durability);
         journal
             .append(EntryKind::Event, &json!({"text": "\u{2028}"}))
@@ -174,9 +174,9 @@ fn a_failed_sync_is_final() {
         ..Sickness::default()
     });
     let mut journal = on(&disk);
-    journal.promise().unwrap();
+    journal.sync_point().unwrap();
     journal.append(EntryKind::Intent, &json!({})).unwrap();
-    let fault = journal.promise().unwrap_err();
+    let fault = journal.sync_point().unwrap_err();
     assert!(
         matches!(
             fault,
@@ -188,7 +188,7 @@ fn a_failed_sync_is_final() {
         "{fault}"
     );
     let asked = (disk.appends(), disk.syncs());
-    assert_eq!(journal.promise(), Err(fault.clone()));
+    assert_eq!(journal.sync_point(), Err(fault.clone()));
     assert_eq!(journal.sync(), Err(fault.clone()));
     assert_eq!(
         journal.append(EntryKind::Sample, &json!({})),
@@ -201,21 +201,21 @@ fn a_failed_sync_is_final() {
         "the disk is not asked again"
     );
     assert_eq!(
-        without(Guarding::FailedSync, || journal.promise()),
+        without(Guarding::FailedSync, || journal.sync_point()),
         Ok(()),
         "without the guard the disk lies: all is well"
     );
 
     let syncs = disk.syncs();
     journal
-        .last_words(EntryKind::Fault, &json!({"text": "sync"}))
+        .final_entry(EntryKind::Fault, &json!({"text": "sync"}))
         .unwrap();
     assert_eq!(disk.syncs(), syncs, "no sync is tried again");
     assert_eq!(
         recover(&disk.written()).unwrap().lines.last().unwrap().kind,
         EntryKind::Fault
     );
-    assert_eq!(journal.promise(), Err(fault), "last words heal nothing");
+    assert_eq!(journal.sync_point(), Err(fault), "last words heal nothing");
 }
 
 #[test]
@@ -251,7 +251,7 @@ fn last_words_fit_on_a_full_disk_thanks_to_the_reserve() {
         assert_eq!(disk.appends(), asked, "a full disk is not asked again");
 
         journal
-            .last_words(EntryKind::Fault, &json!({"text": "disk full"}))
+            .final_entry(EntryKind::Fault, &json!({"text": "disk full"}))
             .unwrap();
         let found = recover(&disk.written()).unwrap();
         assert_eq!(found.torn, None);
@@ -278,12 +278,12 @@ fn a_disk_that_fills_in_a_resumed_run_loses_nothing_of_the_first() {
     });
     drop(on(&disk));
     let found = recover(&disk.written()).unwrap();
-    let mut resumed = Journal::go_on(Box::new(disk.clone()), Durability::EveryPromise, &found);
+    let mut resumed = Journal::reopen(Box::new(disk.clone()), Durability::EverySyncPoint, &found);
     while resumed
         .append(EntryKind::Resume, &json!({"who": "J. Doe"}))
         .is_ok()
     {}
-    resumed.last_words(EntryKind::Fault, &json!({})).unwrap();
+    resumed.final_entry(EntryKind::Fault, &json!({})).unwrap();
     let found = recover(&disk.written()).unwrap();
     assert_eq!(found.lines.len() as u64, resumed.len());
     assert_eq!((found.lines[0].kind, found.torn), (EntryKind::Header, None));
@@ -300,7 +300,7 @@ fn without_a_reserve_last_words_fail_and_harm_nothing() {
         let mut journal = on(&disk);
         while journal.append(EntryKind::Event, &json!({})).is_ok() {}
         for _ in 0..3 {
-            assert!(journal.last_words(EntryKind::Fault, &json!({})).is_err());
+            assert!(journal.final_entry(EntryKind::Fault, &json!({})).is_err());
         }
         let left = disk.written();
         let found = recover(&left).expect("what is left is at worst torn");
@@ -322,7 +322,7 @@ fn an_end_that_found_no_room_leaves_room_for_last_words() {
     let mut journal = on(&disk);
     assert!(journal.end(&json!({})).is_err());
     assert_eq!(journal.len(), 1);
-    journal.last_words(EntryKind::Fault, &json!({})).unwrap();
+    journal.final_entry(EntryKind::Fault, &json!({})).unwrap();
     let found = recover(&disk.written()).unwrap();
     let kinds: Vec<EntryKind> = found.lines.iter().map(|line| line.kind).collect();
     assert_eq!(kinds, [EntryKind::Header, EntryKind::Fault]);

@@ -33,7 +33,9 @@ fn sentence(run: &Run<'_>) -> String {
     };
     let blocked = matches!(run.record.outcome, Outcome::Blocked { .. });
     match run.assessment.verdict {
-        Verdict::Completed if rehearsal::told(run.plan).is_some() => wording::REHEARSAL.to_owned(),
+        Verdict::Completed if rehearsal::rehearsed_plan(run.plan).is_some() => {
+            wording::REHEARSAL.to_owned()
+        }
         Verdict::Completed => wording::NO_REQUIREMENT.to_owned(),
         Verdict::Pass if total == 1 => wording::THE_REQUIREMENT_IS_MET.to_owned(),
         Verdict::Pass => wording::all_met(total),

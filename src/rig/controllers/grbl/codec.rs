@@ -1,24 +1,24 @@
-//! Grbl 1.1, axis X in machine coordinates. In: a target and a speed; a line that came, with what may be glued to it.
-//! Out: the bytes of a jog; what the line says. It keeps no conversation. `ok` says that a line was understood, never
-//! that the axis has arrived; the position is counted steps, not a measurement.
+//! Grbl 1.1, axis X in machine coordinates. In: a target and a speed; a received line, with anything glued to it. Out: the
+//! bytes of a jog; the meaning of the line. It keeps no conversation. `ok` means that a line was parsed, never that the
+//! axis has arrived; the position is counted steps, not a measurement.
 
 use crate::rig::controllers::number;
 
 pub const ASK: &[u8] = b"?";
 pub const HOLD: &[u8] = b"!";
 pub const RESUME: &[u8] = b"~";
-/// Forgets what it was told. At rest it keeps its position; in motion it loses it.
+/// Discards all pending commands. At rest it keeps its position; in motion it loses it.
 pub const RESET: &[u8] = b"\x18";
 pub const BUILD: &[u8] = b"$I\n";
 pub const SETTINGS: &[u8] = b"$$\n";
 
-/// Grbl goes no slower, whatever it is told, mm/min.
+/// Lowest speed of Grbl, whatever is commanded \[mm/min\].
 pub const SLOWEST: f64 = 1.0;
 
-/// More digits of a number than these are not heard.
+/// Grbl reads no more digits of a number than these.
 const DIGITS: usize = 8;
 
-/// What a line says, or a part of it.
+/// The meaning of a line, or of a part of it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Word {
     Ok,
@@ -29,7 +29,7 @@ pub enum Word {
     Setting(u64, String),
     /// `[VER:…]`: version and the owner's own text.
     Version(String, String),
-    /// It has started anew.
+    /// It has restarted.
     Banner(String),
     /// `[…]` and echoes: nothing that answers.
     Message,
@@ -37,7 +37,7 @@ pub enum Word {
 }
 
 impl Word {
-    /// Whether it can stand before the `ok` of a question, as a part of what is answered.
+    /// Whether it can come before the `ok` of a question, as a part of the answer.
     #[must_use]
     pub const fn is_part(&self) -> bool {
         matches!(self, Self::Setting(..) | Self::Version(..) | Self::Message)
@@ -52,7 +52,7 @@ pub struct Status {
     pub position: f64,
 }
 
-/// What a status report says that it does.
+/// The state in a status report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     Idle,
@@ -76,7 +76,7 @@ impl State {
     }
 }
 
-/// A jog as it is sent, and what its bytes say.
+/// A jog as it is sent, and its decoded values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jog {
     pub line: Vec<u8>,
@@ -89,7 +89,7 @@ pub struct Jog {
 /// The jog to `target` (m) at `speed` (m/s).
 ///
 /// # Errors
-/// Grbl cannot hear it, or would do something else.
+/// Grbl cannot parse it, or would do something else.
 pub fn jog(target: f64, speed: f64) -> Result<Jog, String> {
     // Numbers have no exponent; 0.1 µm is far finer than a step.
     let place = written(target * 1e3, 4)
@@ -117,7 +117,8 @@ fn written(value: f64, decimals: usize) -> Option<String> {
         .filter(|text| text.bytes().filter(u8::is_ascii_digit).count() <= DIGITS)
 }
 
-/// What a line says, part by part: on some clones a status is glued to an `ok`, and a start comes in the middle of one.
+/// The meaning of a line, part by part: on some clones a status is glued to an `ok`, and a start banner comes in the middle
+/// of a line.
 #[must_use]
 pub fn words(line: &[u8]) -> Vec<Word> {
     if let Some(at) = line.windows(5).position(|window| window == b"Grbl ") {
@@ -133,7 +134,7 @@ pub fn words(line: &[u8]) -> Vec<Word> {
     words
 }
 
-/// The first word and its length.
+/// The first part and its length.
 fn first(rest: &[u8]) -> (Word, usize) {
     let all = rest.len();
     match rest {
@@ -214,7 +215,7 @@ fn printable(bytes: &[u8]) -> String {
     bytes.escape_ascii().to_string()
 }
 
-/// What the code of an `error:` means, where a jog or a question can meet it.
+/// The meaning of an `error:` code that a jog or a question can cause.
 #[must_use]
 pub const fn error(code: u64) -> &'static str {
     match code {
@@ -229,7 +230,7 @@ pub const fn error(code: u64) -> &'static str {
     }
 }
 
-/// What the code of an `ALARM:` means.
+/// The meaning of an `ALARM:` code.
 #[must_use]
 pub const fn alarm(code: u64) -> &'static str {
     match code {

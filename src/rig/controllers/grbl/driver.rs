@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 
 use crate::rig::controllers::grbl;
 use crate::rig::controllers::grbl::codec::{State, Status, Word};
-use crate::rig::controllers::request_reply::Asking;
+use crate::rig::controllers::request_reply::RequestReply;
 use crate::rig::controllers::{
-    Answer, Device, DeviceFault, DeviceIdentity, Move, Sample, Talk, one_axis,
+    Answer, Device, DeviceFault, DeviceIdentity, DeviceMove, LineClient, Sample, one_axis,
 };
-use crate::rig::{JUST_STARTED, Tally};
+use crate::rig::{JUST_STARTED, LineStatistics};
 
 /// Settings without which a specimen is not safe: number, value, why.
 const REQUIRED: [(u64, &str, &str); 6] = [
@@ -28,10 +28,10 @@ const STEPS: u64 = 100;
 
 /// The frame at the other end of a line.
 pub struct GrblDevice {
-    talk: Talk,
-    asking: Asking,
+    client: LineClient,
+    request_reply: RequestReply,
     settings: BTreeMap<u64, f64>,
-    /// Has said who it is: a start from now on loses the position.
+    /// Has reported its identity: a restart from now on loses the position.
     known: bool,
     /// A jog was sent and not answered: it may wait in the controller.
     unanswered: bool,
@@ -41,11 +41,11 @@ pub struct GrblDevice {
 
 impl GrblDevice {
     #[must_use]
-    pub fn new(talk: Talk) -> Self {
-        let asking = Asking::default();
+    pub fn new(client: LineClient) -> Self {
+        let request_reply = RequestReply::default();
         Self {
-            talk,
-            asking,
+            client,
+            request_reply,
             settings: BTreeMap::new(),
             known: false,
             unanswered: false,
@@ -53,8 +53,8 @@ impl GrblDevice {
         }
     }
 
-    /// Where it is, with the bytes that say so. A status asked for earlier agrees with one asked for now where both say
-    /// the same, or that it moves.
+    /// Its position, with the bytes of the report. An earlier status agrees with a fresh one if both are equal, or if it
+    /// reports motion.
     fn status(&mut self) -> Result<(Status, Vec<u8>), DeviceFault> {
         let known = self.known;
         let accept = |line: &[u8]| {
@@ -69,8 +69,8 @@ impl GrblDevice {
         let same = |a: &(Status, Vec<u8>), b: &(Status, Vec<u8>)| {
             a.0 == b.0 || a.0.state.is_moving() && b.0.state.is_moving()
         };
-        self.asking
-            .ask(&mut self.talk, grbl::codec::ASK, accept, same)
+        self.request_reply
+            .ask(&mut self.client, grbl::codec::ASK, accept, same)
     }
 
     /// Its status, where it can move or is moving.
@@ -88,8 +88,8 @@ impl GrblDevice {
         })
     }
 
-    /// Sends a line that acts once however often it is heard, and collects what comes before its `ok`: settings, versions and
-    /// messages are parts of the answer, all else is none of it.
+    /// Sends a line that acts once however often it is received, and collects the lines before its `ok`: settings, versions
+    /// and messages are parts of the answer, all other lines are not.
     fn command(
         &mut self,
         line: &[u8],
@@ -98,7 +98,7 @@ impl GrblDevice {
     ) -> Result<(), DeviceFault> {
         let known = self.known;
         let (mut seen, mut lines) = (Vec::new(), Vec::new());
-        self.talk.exchange(line, b"\n", |line| {
+        self.client.exchange(line, b"\n", |line| {
             let words = grbl::codec::words(line);
             let is_part = !words.is_empty() && words.iter().all(Word::is_part);
             for word in words {
@@ -124,23 +124,24 @@ impl GrblDevice {
 
     /// Waits until it is in this state, a few time-outs long.
     fn until(&mut self, wanted: impl Fn(State) -> bool) -> Result<Status, DeviceFault> {
-        let give_up = self.talk.now() + 8.0 * self.talk.reply_timeout();
+        let give_up = self.client.now() + 8.0 * self.client.reply_timeout();
         loop {
             let (status, _) = self.status()?;
             if wanted(status.state) {
                 return Ok(status);
             }
-            if self.talk.now() >= give_up {
+            if self.client.now() >= give_up {
                 return Err(DeviceFault::Unfit(format!(
                     "it stays in the state {:?}",
                     status.state
                 )));
             }
-            self.talk.sleep(self.talk.reply_timeout() / 4.0)?;
+            self.client.sleep(self.client.reply_timeout() / 4.0)?;
         }
     }
 
-    /// Makes sure that a jog begins at once: a line sent to a held axis waits, and moves it when somebody lets go of it.
+    /// Makes sure that a jog begins immediately: a line sent to an axis on hold waits, and would move it when the hold is
+    /// cleared.
     fn make_ready(&mut self) -> Result<(), DeviceFault> {
         let refused = |reason: &str| {
             Err(DeviceFault::Refused {
@@ -158,35 +159,36 @@ impl GrblDevice {
         }
     }
 
-    /// Nothing waits in it, so that nothing moves when it is let go of.
+    /// Nothing is pending, so nothing moves when the hold is cleared.
     fn resume_at_rest(&mut self) -> Result<(), DeviceFault> {
-        self.talk.send(grbl::codec::RESUME)?;
+        self.client.send(grbl::codec::RESUME)?;
         self.until(|state| state == State::Idle)?;
         self.held = false;
         Ok(())
     }
 
-    /// Lets go of an axis that stands held at this place, as a person wants: it forgets what was interrupted, and moves nothing.
-    /// To resume (`~`) would finish the move that was held.
+    /// Clears the hold of an axis at this position, as the operator allows: pending commands are discarded and nothing
+    /// moves. To resume (`~`) would finish the interrupted move.
     fn let_go(&mut self, held: Status) -> Result<(), DeviceFault> {
         let unfit = |reason: &str| Err(DeviceFault::Unfit(reason.to_owned()));
         // Asked once more: a reset in motion would lose the position.
         if self.status()?.0 != held {
             return unfit("it is held and does not rest: it is not let go of");
         }
-        self.talk.drain()?;
-        self.talk.exchange_once(grbl::codec::RESET, b"\n", |line| {
-            let words = grbl::codec::words(line);
-            let alarm = words.iter().find(|word| matches!(word, Word::Alarm(_)));
-            match alarm.and_then(|word| fault(word, false)) {
-                Some(fault) => Answer::Fault(fault),
-                None if words.iter().any(|word| matches!(word, Word::Banner(_))) => {
-                    Answer::Take(())
+        self.client.drain()?;
+        self.client
+            .exchange_once(grbl::codec::RESET, b"\n", |line| {
+                let words = grbl::codec::words(line);
+                let alarm = words.iter().find(|word| matches!(word, Word::Alarm(_)));
+                match alarm.and_then(|word| fault(word, false)) {
+                    Some(fault) => Answer::Fault(fault),
+                    None if words.iter().any(|word| matches!(word, Word::Banner(_))) => {
+                        Answer::Take(())
+                    }
+                    None => Answer::Part,
                 }
-                None => Answer::Part,
-            }
-        })?;
-        self.asking.doubt();
+            })?;
+        self.request_reply.expect_late_answer();
         let (now, _) = self.fit_status()?;
         if now
             == (Status {
@@ -211,7 +213,7 @@ impl GrblDevice {
     }
 }
 
-/// Who a controller is that says its version in this line; the line before it, if there is one, is what it said of its start.
+/// The identity of a controller from the line with its version; the line before it, if there is one, is its start banner.
 pub(crate) fn introduced(said: &[u8]) -> Option<DeviceIdentity> {
     let words: Vec<Word> = said
         .split(|byte| *byte == b'\n')
@@ -236,17 +238,6 @@ pub(crate) fn introduced(said: &[u8]) -> Option<DeviceIdentity> {
     })
 }
 
-/// Where the axis is by the first status of a line.
-pub(crate) fn decoded(line: Vec<u8>) -> Option<Sample> {
-    let status = grbl::codec::words(&line)
-        .into_iter()
-        .find_map(|word| match word {
-            Word::Status(status) => Some(status),
-            _ => None,
-        })?;
-    Some(sample_of(status, line))
-}
-
 fn sample_of(status: Status, raw: Vec<u8>) -> Sample {
     let moving = Some(status.state.is_moving());
     Sample {
@@ -257,10 +248,10 @@ fn sample_of(status: Status, raw: Vec<u8>) -> Sample {
     }
 }
 
-/// The first word of a line that `pick` takes, with the line.
+/// The first part of a line that `pick` accepts, with the line.
 fn find<T>(line: &[u8], known: bool, pick: impl Fn(&Word) -> Option<T>) -> Answer<(T, Vec<u8>)> {
     let words = grbl::codec::words(line);
-    // An `ok`, `error:` or `ALARM:` that comes here answers something older; only a start concerns every question.
+    // An `ok`, `error:` or `ALARM:` here answers something older; only a restart concerns every question.
     let begun = words.iter().find(|word| matches!(word, Word::Banner(_)));
     if let Some(fault) = begun.and_then(|word| fault(word, known)) {
         return Answer::Fault(fault);
@@ -271,7 +262,7 @@ fn find<T>(line: &[u8], known: bool, pick: impl Fn(&Word) -> Option<T>) -> Answe
         .map_or(Answer::Ignore, |found| Answer::Take((found, line.to_vec())))
 }
 
-/// What a word that is bad news means.
+/// The fault that a part of a line reports.
 fn fault(word: &Word, known: bool) -> Option<DeviceFault> {
     let refused = |reason: String| Some(DeviceFault::Refused { reason });
     match word {
@@ -285,13 +276,13 @@ fn fault(word: &Word, known: bool) -> Option<DeviceFault> {
     }
 }
 
-/// It is told no limits of a run: its travel is a setting of the machine, written to memory that wears.
+/// It receives no limits of a run: its travel is a setting of the machine, in memory that wears.
 impl Device for GrblDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.known = false;
-        // It may start anew when its port is opened, and then hears nothing for a while: the question is sent again.
-        self.talk.drain()?;
-        // What it says of its start is not asked for, and is no fault of the line.
+        // It may restart when its port is opened, and then receives nothing for a while: the question is sent again.
+        self.client.drain()?;
+        // Its start banner is unsolicited, and is no fault of the line.
         let of_the_start = |line: &[u8]| {
             grbl::codec::words(line)
                 .iter()
@@ -312,20 +303,20 @@ impl Device for GrblDevice {
                 answer => answer,
             }
         };
-        self.talk.exchange(grbl::codec::ASK, b"\n", accept)?;
-        self.asking.doubt();
+        self.client.exchange(grbl::codec::ASK, b"\n", accept)?;
+        self.request_reply.expect_late_answer();
         let status = self.fit_status()?.0;
         match status.state {
             State::Idle => {}
-            State::Held if self.talk.lets_go() => self.let_go(status)?,
+            State::Held if self.client.release_allowed() => self.let_go(status)?,
             State::Held => {
                 let help = "it is held: look at it, then let go of it with `--let-go` (of `psd resume`, or of `psd rig jog` before a \
                             new run); it stays where it is, and forgets what was interrupted";
                 return Err(DeviceFault::Unfit(help.to_owned()));
             }
             state if state.is_moving() => {
-                // Nobody watches it: whoever sent it off is gone, or another program has the line.
-                self.talk.send(grbl::codec::HOLD)?;
+                // No program supervises it: the one that moved it has ended, or another program has the line.
+                self.client.send(grbl::codec::HOLD)?;
                 self.until(|state| !state.is_moving())?;
                 return Err(DeviceFault::Unfit(
                     "it was moving before it was told to: held".to_owned(),
@@ -361,7 +352,7 @@ impl Device for GrblDevice {
         who.ok_or_else(|| DeviceFault::Unfit("it does not say what version it is".to_owned()))
     }
 
-    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         let target = one_axis(targets)?;
         let jog = grbl::codec::jog(target, speed).map_err(DeviceFault::Unfit)?;
         let top = self
@@ -369,9 +360,9 @@ impl Device for GrblDevice {
             .get(&TOP_SPEED)
             .copied()
             .unwrap_or(f64::INFINITY);
-        // Grbl would go slower and say nothing.
+        // Grbl would go slower without a report.
         if jog.speed * 6e4 <= top * (1.0 + 1e-12) {
-            return Ok(Move {
+            return Ok(DeviceMove {
                 frames: vec![jog.line],
                 targets: vec![jog.target],
                 speed: jog.speed,
@@ -386,11 +377,11 @@ impl Device for GrblDevice {
         })
     }
 
-    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         self.make_ready()?;
         for frame in &going.frames {
             self.unanswered = true;
-            self.talk.drain()?;
+            self.client.drain()?;
             let answered = self.command(frame, |_, _| (), |_| true);
             self.unanswered = !matches!(
                 answered,
@@ -398,7 +389,7 @@ impl Device for GrblDevice {
             );
             answered?;
         }
-        // An `ok` may answer something older: only the axis itself shows that the move was taken.
+        // An `ok` may answer something older: only the axis itself shows that the move was accepted.
         let (status, _) = self.fit_status()?;
         let arrived = (status.position - going.targets[0]).abs() <= self.quantum();
         if status.state == State::Jog || status.state == State::Idle && arrived {
@@ -420,10 +411,10 @@ impl Device for GrblDevice {
 
     fn hold(&mut self) -> Result<(), DeviceFault> {
         // While it jogs this ends the jog and leaves it idle; at rest it leaves it held. A reset would lose the position.
-        self.talk.send(grbl::codec::HOLD)?;
+        self.client.send(grbl::codec::HOLD)?;
         self.held = true;
         let rest = self.until(|state| !state.is_moving())?;
-        // It was at rest, and nothing waits in it: it keeps its load without being held, and whoever comes next finds it idle.
+        // It was at rest and nothing is pending: it keeps its load without a hold, and the next program finds it idle.
         if rest.state == State::Held && !self.unanswered {
             self.resume_at_rest()
         } else {
@@ -435,17 +426,17 @@ impl Device for GrblDevice {
         grbl::codec::HOLD.to_vec()
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
-/// Every setting that is not as it must be, with the line that mends it.
+/// Every setting that is not as required, with the line that corrects it.
 fn check(settings: &BTreeMap<u64, f64>) -> Result<(), DeviceFault> {
     let mut wrong = Vec::new();
     for (number, required, why) in REQUIRED {
         let value = settings.get(&number);
-        // Of the report mask only the bit of machine positions matters.
+        // In the report mask only the bit of machine positions matters.
         let right = value.is_some_and(|value| {
             if number == 10 {
                 value % 2.0 == 1.0

@@ -1,12 +1,12 @@
-//! A load cell on an HX711: a sketch that sends one raw count a line, by itself. In: a line without its ending. Out: the
-//! count. It knows neither the cell nor what a count weighs.
+//! A load cell on an HX711: a sketch that sends one raw count a line, unsolicited. In: a line without its ending. Out: the
+//! count. It knows neither the cell nor its calibration.
 
 use crate::rig::controllers::number;
 
 /// Lowest and highest count of the converter's 24 bits: at either it is saturated.
 pub const RAILS: (i64, i64) = (-8_388_608, 8_388_607);
 
-/// The count of a line; nothing where it is none, or none of 24 bits.
+/// The count of a line. None for a line that is not a count of 24 bits.
 #[must_use]
 pub fn count(line: &[u8]) -> Option<i64> {
     // A sketch sends no `+`, and no more digits than 24 bits have.

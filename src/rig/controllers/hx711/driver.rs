@@ -1,26 +1,26 @@
-//! A load cell that sends raw counts by itself, one a line. In: nothing. Out: a count that was begun after it was wanted.
-//! It moves nothing and does not know what a count weighs.
+//! A load cell that sends raw counts unsolicited, one a line. In: nothing. Out: a count whose conversion began after the
+//! request. It moves nothing and does not know its calibration.
 
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::controllers::hx711;
 use crate::rig::controllers::hx711::codec::RAILS;
 use crate::rig::controllers::{
-    DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk, stream,
+    DeviceFault, DeviceIdentity, Flags, Force, LineClient, LoadCell, Sample, stream,
 };
 
 /// The converter at the other end of a line.
 pub struct Hx711Device {
-    talk: Talk,
+    client: LineClient,
 }
 
 impl Hx711Device {
     #[must_use]
-    pub const fn new(talk: Talk) -> Self {
-        Self { talk }
+    pub const fn new(client: LineClient) -> Self {
+        Self { client }
     }
 }
 
-/// Who answers where counts come.
+/// The identity of a device that sends counts.
 pub(crate) fn introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "HX711".to_owned(),
@@ -49,18 +49,18 @@ pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     })
 }
 
-impl Gauge for Hx711Device {
+impl LoadCell for Hx711Device {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.sample()?;
         Ok(introduced())
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        decoded(stream::fresh_line(&mut self.talk)?)
+        decoded(stream::fresh_line(&mut self.client)?)
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
@@ -73,7 +73,7 @@ mod tests {
         let clock = VirtualClock::default();
         let port = ScriptedPort::new(&clock);
         (
-            Hx711Device::new(Talk::new(
+            Hx711Device::new(LineClient::new(
                 Box::new(port.clone()),
                 Box::new(clock.clone()),
                 0.5,

@@ -1,12 +1,12 @@
-//! Weighing indicators: `ST,GS,+0001234,kg`. In: a line without its ending. Out: a force with what the indicator says of
-//! it. The unit stands in the line, so a wrong setting of the indicator cannot pass for a force.
+//! Weighing indicators: `ST,GS,+0001234,kg`. In: a line without its ending. Out: a force with the status of the indicator.
+//! The unit is in the line, so a wrong setting of the indicator cannot give a wrong force.
 
 use crate::rig::controllers::number;
 
 /// Asks for one line, where the indicator does not send by itself.
 pub const READ: &[u8] = b"READ\r\n";
 
-/// Of every value, its sign and blanks before it included.
+/// Characters of every value, including its sign and leading spaces.
 const PLACES: usize = 8;
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
@@ -19,7 +19,7 @@ pub struct Weight {
     pub force: Option<f64>,
 }
 
-/// What the indicator says of its weight.
+/// The status of the weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     Stable,
@@ -35,10 +35,10 @@ impl Status {
     }
 }
 
-/// The weight of a line: status, gross or net, 8 places with blanks before, unit.
+/// The weight of a line: status, gross or net, 8 characters with leading spaces, unit.
 ///
 /// # Errors
-/// Why it is none.
+/// The reason why the line is invalid.
 pub fn weight(line: &[u8]) -> Result<Weight, &'static str> {
     let fields: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
     let &[status, what, value, unit] = fields.as_slice() else {

@@ -1,27 +1,27 @@
-//! A load cell on a weighing indicator, which sends by itself or when it is asked. In: nothing. Out: a force that was
-//! begun after it was wanted, with what the indicator says of it. It moves nothing.
+//! A load cell on a weighing indicator, which sends unsolicited or on request. In: nothing. Out: a force whose line began
+//! after the request, with the status of the indicator. It moves nothing.
 
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::controllers::indicator;
 use crate::rig::controllers::indicator::codec::Status;
-use crate::rig::controllers::request_reply::Asking;
+use crate::rig::controllers::request_reply::RequestReply;
 use crate::rig::controllers::{
-    Answer, DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk, stream,
+    Answer, DeviceFault, DeviceIdentity, Flags, Force, LineClient, LoadCell, Sample, stream,
 };
 
 /// The indicator at the other end of a line.
 pub struct IndicatorDevice {
-    talk: Talk,
-    asking: Asking,
+    client: LineClient,
+    request_reply: RequestReply,
     sends_by_itself: bool,
 }
 
 impl IndicatorDevice {
     #[must_use]
-    pub fn new(talk: Talk) -> Self {
+    pub fn new(client: LineClient) -> Self {
         Self {
-            talk,
-            asking: Asking::default(),
+            client,
+            request_reply: RequestReply::default(),
             sends_by_itself: false,
         }
     }
@@ -29,15 +29,15 @@ impl IndicatorDevice {
     /// A line that is newer than this call.
     fn line(&mut self) -> Result<Vec<u8>, DeviceFault> {
         if self.sends_by_itself {
-            return stream::fresh_line(&mut self.talk);
+            return stream::fresh_line(&mut self.client);
         }
         let any = |line: &[u8]| Answer::Take(line.strip_suffix(b"\r").unwrap_or(line).to_vec());
-        self.asking
-            .ask(&mut self.talk, indicator::codec::READ, any, Vec::eq)
+        self.request_reply
+            .ask(&mut self.client, indicator::codec::READ, any, Vec::eq)
     }
 }
 
-/// Who answers where weights come.
+/// The identity of a device that sends weights.
 pub(crate) fn introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "weighing indicator".to_owned(),
@@ -76,9 +76,9 @@ pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     })
 }
 
-impl Gauge for IndicatorDevice {
+impl LoadCell for IndicatorDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
-        self.sends_by_itself = match stream::fresh_line(&mut self.talk) {
+        self.sends_by_itself = match stream::fresh_line(&mut self.client) {
             Ok(_) => true,
             Err(DeviceFault::Silent { .. }) => false,
             Err(fault) => return Err(fault),
@@ -91,8 +91,8 @@ impl Gauge for IndicatorDevice {
         decoded(self.line()?)
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
@@ -105,7 +105,11 @@ mod tests {
         let clock = VirtualClock::default();
         let port = ScriptedPort::new(&clock);
         (
-            IndicatorDevice::new(Talk::new(Box::new(port.clone()), Box::new(clock), 0.5)),
+            IndicatorDevice::new(LineClient::new(
+                Box::new(port.clone()),
+                Box::new(clock),
+                0.5,
+            )),
             port,
         )
     }
@@ -190,7 +194,7 @@ mod tests {
         reply(&port, 0.1, "ST,GS,   512.5,N");
         reply(&port, 0.1, "ST,GS,   512.5,N");
         assert_eq!(newtons(&device.sample().unwrap()), 512.5);
-        assert_eq!(device.tally().resent, 1);
+        assert_eq!(device.line_statistics().resent, 1);
     }
 
     #[test]

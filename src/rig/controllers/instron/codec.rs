@@ -1,10 +1,10 @@
 //! The console of an Instron 8800-style controller: ASCII lines ended by CR LF. In: channels, fractions of full scale,
-//! seconds. Out: the bytes of questions and orders, and what answers and status words say. Only questions (`Q`) are
-//! answered; every order stands between taking control and giving it back, or the hydraulics trip. It knows no device.
+//! seconds. Out: the bytes of questions and commands, and the meaning of answers and status words. Only questions (`Q`) are
+//! answered; every command is sent between taking and releasing control, otherwise the hydraulics trip. It knows no device.
 
 use crate::rig::controllers::number;
 
-/// Ends every line, both ways.
+/// Ends every line, in both directions.
 pub const ENDING: &[u8] = b"\r\n";
 
 /// Takes control from the front panel and switches off the watchdog of the link.
@@ -16,7 +16,7 @@ const TARGET_DECIMALS: usize = 8;
 /// Shortest ramp, ms: a move of nothing still takes it.
 const SHORTEST_RAMP: u64 = 100;
 
-/// What can be asked.
+/// The questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
     /// Full scale of a channel, m or N.
@@ -37,7 +37,7 @@ pub enum Channel {
     Load,
 }
 
-/// What the actuator is doing.
+/// The motion of the actuator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Movement {
     Stopped,
@@ -45,7 +45,7 @@ pub enum Movement {
     Holding,
 }
 
-/// What the status word says.
+/// The meaning of the status word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
     pub actuator_off: bool,
@@ -53,12 +53,12 @@ pub struct Status {
     pub trouble: Option<Trouble>,
 }
 
-/// Why the rig has tripped: bits 9 to 12 of the status word, read as one number.
+/// The reason of a trip: bits 9 to 12 of the status word, read as one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trouble {
     TravelLimit,
     EmergencyStop,
-    /// In words.
+    /// Described in text.
     Hydraulics(&'static str),
 }
 
@@ -86,9 +86,9 @@ impl Question {
     }
 }
 
-/// The lines that make a ramp ready and do not start it: stop, position mode, absolute ramp, its time (s), its target
-/// (fraction of full scale). The time is rounded up to the next millisecond, so that nothing goes faster than asked.
-/// None where a number cannot be said.
+/// The lines that prepare a ramp and do not start it: stop, position mode, absolute ramp, its time \[s\], its target
+/// (fraction of full scale). The time is rounded up to the next millisecond, so nothing moves faster than requested. None
+/// for a number that cannot be written.
 #[must_use]
 pub fn ramp(target: f64, seconds: f64) -> Option<Vec<Vec<u8>>> {
     let milliseconds = (seconds * 1000.0 * (1.0 - 1e-12)).ceil();
@@ -125,7 +125,7 @@ pub fn hold() -> Vec<Vec<u8>> {
 
 /// Target (fraction of full scale) and time (s) of a ramp, read back from the lines that make it ready.
 #[must_use]
-pub fn said(frames: &[Vec<u8>]) -> Option<(f64, f64)> {
+pub fn decoded_ramp(frames: &[Vec<u8>]) -> Option<(f64, f64)> {
     let number = |start: &[u8]| {
         frames
             .iter()
@@ -230,14 +230,17 @@ mod tests {
 
     #[test]
     fn what_a_ramp_says_is_read_back_from_its_bytes() {
-        assert_eq!(said(&ramp(0.5, 0.250_1).unwrap()), Some((0.5, 0.251)));
         assert_eq!(
-            said(&ramp(1e-9, 0.0).unwrap()),
+            decoded_ramp(&ramp(0.5, 0.250_1).unwrap()),
+            Some((0.5, 0.251))
+        );
+        assert_eq!(
+            decoded_ramp(&ramp(1e-9, 0.0).unwrap()),
             Some((0.0, 0.1)),
             "a move of nothing takes the shortest ramp"
         );
         assert_eq!(
-            said(&ramp(0.1, 0.3).unwrap()),
+            decoded_ramp(&ramp(0.1, 0.3).unwrap()),
             Some((0.1, 0.3)),
             "no millisecond for the last bit of a float"
         );
@@ -250,7 +253,7 @@ mod tests {
         ] {
             assert_eq!(ramp(target, seconds), None, "{target} {seconds}");
         }
-        assert_eq!(said(&start()), None);
+        assert_eq!(decoded_ramp(&start()), None);
     }
 
     #[test]
@@ -270,25 +273,25 @@ mod tests {
 
     #[test]
     fn status_words_say_what_tripped() {
-        let said = |word: u32| status(word.to_string().as_bytes()).unwrap();
+        let status_of = |word: u32| status(word.to_string().as_bytes()).unwrap();
         for fine in [0, 0x1E00] {
             assert_eq!(
-                said(fine),
+                status_of(fine),
                 Status {
                     actuator_off: false,
                     trouble: None
                 }
             );
         }
-        assert!(said(0x8).actuator_off);
-        assert_eq!(said(1 << 9).trouble, Some(Trouble::TravelLimit));
-        assert_eq!(said(6 << 9).trouble, Some(Trouble::EmergencyStop));
+        assert!(status_of(0x8).actuator_off);
+        assert_eq!(status_of(1 << 9).trouble, Some(Trouble::TravelLimit));
+        assert_eq!(status_of(6 << 9).trouble, Some(Trouble::EmergencyStop));
         assert_eq!(
-            said(11 << 9).trouble.unwrap().to_string(),
+            status_of(11 << 9).trouble.unwrap().to_string(),
             "oil pressure too low"
         );
         for code in 1..15 {
-            assert!(said(code << 9).trouble.is_some(), "{code}");
+            assert!(status_of(code << 9).trouble.is_some(), "{code}");
         }
         for none in [&b""[..], b"-1", b"1.0", b"OVL", b"1234567890"] {
             assert_eq!(status(none), None);

@@ -1,18 +1,18 @@
-//! An Instron 8800-style console: absolute ramps in position mode, position and load as fractions of full scale. In:
-//! metres and metres a second. Out: ramps that are read back before they start, and readings in which an exact zero is
-//! asked again. Orders are not answered, so that what they did is asked for.
+//! An Instron 8800-style console: absolute ramps in position mode, position and load as fractions of full scale. In: \[m\]
+//! and \[m/s\]. Out: ramps that are read back before they start, and readings in which an exact zero is requested again.
+//! Commands are not answered, so their effect is queried.
 
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::controllers::instron;
 use crate::rig::controllers::instron::codec::{Channel, Movement, Question, Trouble};
 use crate::rig::controllers::unsequenced::ask_line;
 use crate::rig::controllers::{
-    Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis,
+    Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
 };
 
 /// Shortest time between polls, s: the console does not bear more.
 const BETWEEN_POLLS: f64 = 0.1;
-/// How often an order is given before it counts as not heard.
+/// How often a command is sent before it counts as not received.
 const TRIES: u32 = 3;
 /// A target (fraction of full scale) and a time (s) that differ by less are the same.
 const SAME_TARGET: f64 = 1e-7;
@@ -20,7 +20,7 @@ const SAME_TIME: f64 = 1e-3;
 
 /// The console at the other end of a line.
 pub struct Instron {
-    talk: Talk,
+    client: LineClient,
     position: Reader,
     load: Reader,
     /// Where it was last, m.
@@ -30,7 +30,7 @@ pub struct Instron {
     polled: Option<f64>,
 }
 
-/// What is known of a channel.
+/// The known properties of a channel.
 #[derive(Default)]
 struct Reader {
     /// m or N
@@ -41,10 +41,10 @@ struct Reader {
 
 impl Instron {
     #[must_use]
-    pub fn new(talk: Talk) -> Self {
+    pub fn new(client: LineClient) -> Self {
         let (position, load) = (Reader::default(), Reader::default());
         Self {
-            talk,
+            client,
             position,
             load,
             last: None,
@@ -53,9 +53,9 @@ impl Instron {
         }
     }
 
-    /// Asks, and keeps what came.
+    /// Sends a question and keeps the reply.
     fn ask(&mut self, question: Question, raw: &mut Vec<Vec<u8>>) -> Result<Vec<u8>, DeviceFault> {
-        let answer = ask_line(&mut self.talk, &question.line(), instron::codec::ENDING)?;
+        let answer = ask_line(&mut self.client, &question.line(), instron::codec::ENDING)?;
         raw.push(answer.clone());
         Ok(answer)
     }
@@ -81,9 +81,9 @@ impl Instron {
         Ok(second)
     }
 
-    /// To look twice is routine; it mended a reading only where the second look saw something else.
+    /// A second look is routine; it corrected a reading only if it gave a different value.
     const fn count_glitch(&mut self, glitch: bool) {
-        self.talk.tally_mut().reread += glitch as u64;
+        self.client.line_statistics_mut().reread += glitch as u64;
     }
 
     fn feedback(&mut self, channel: Channel, raw: &mut Vec<Vec<u8>>) -> Result<f64, DeviceFault> {
@@ -135,7 +135,7 @@ impl Instron {
                     ..Flags::default()
                 });
             }
-            // Which of the two it is, it does not say.
+            // The device does not report which of the two it is.
             Some(Trouble::TravelLimit) => {
                 return Ok(Flags {
                     limit_high: true,
@@ -155,22 +155,22 @@ impl Instron {
 
     fn wait_for_poll(&mut self) -> Result<(), DeviceFault> {
         if let Some(polled) = self.polled {
-            let wait = polled + BETWEEN_POLLS - self.talk.now();
+            let wait = polled + BETWEEN_POLLS - self.client.now();
             if wait > 0.0 {
-                self.talk.sleep(wait)?;
+                self.client.sleep(wait)?;
             }
         }
-        self.polled = Some(self.talk.now());
+        self.polled = Some(self.client.now());
         Ok(())
     }
 
-    /// Makes the ramp ready until it is read back as it was sent. Nothing moves yet.
+    /// Prepares the ramp until it is read back as it was sent. Nothing moves yet.
     fn make_ready(&mut self, frames: &[Vec<u8>]) -> Result<(), DeviceFault> {
-        let (target, seconds) = instron::codec::said(frames)
+        let (target, seconds) = instron::codec::decoded_ramp(frames)
             .ok_or_else(|| DeviceFault::Unfit("this is no ramp".to_owned()))?;
         let mut raw = Vec::new();
         for _ in 0..TRIES {
-            self.talk.send(&frames.concat())?;
+            self.client.send(&frames.concat())?;
             let heard = [
                 self.number(Question::Target, &mut raw),
                 self.number(Question::RampTime, &mut raw),
@@ -190,7 +190,7 @@ impl Instron {
                     _,
                     Err(fault @ (DeviceFault::Lost { .. } | DeviceFault::Interrupted)),
                 ] => return Err(fault),
-                _ => self.talk.tally_mut().resent += 1,
+                _ => self.client.line_statistics_mut().resent += 1,
             }
         }
         Err(DeviceFault::Refused {
@@ -199,7 +199,7 @@ impl Instron {
     }
 
     /// Whether it runs, or has already arrived.
-    fn is_under_way(&mut self, target: f64) -> Result<bool, DeviceFault> {
+    fn is_moving_to(&mut self, target: f64) -> Result<bool, DeviceFault> {
         let mut raw = Vec::new();
         if self.ask_movement(&mut raw)? == Movement::Running {
             return Ok(true);
@@ -216,7 +216,7 @@ impl Device for Instron {
         for (place, channel) in [Channel::Position, Channel::Load].into_iter().enumerate() {
             self.wait_for_poll()?;
             let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
-            // Of a glitch and the number the number.
+            // Of a glitch and a number, the number is kept.
             raw.drain(place..raw.len() - 1);
             if !(0.0 < full_scale && full_scale.is_finite()) {
                 return Err(DeviceFault::Unfit(format!(
@@ -237,7 +237,7 @@ impl Device for Instron {
         Ok(introduced(raw))
     }
 
-    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         let target = one_axis(targets)?;
         let from = self.last.ok_or_else(|| {
             DeviceFault::Unfit("where it stands is not known: read first".to_owned())
@@ -246,10 +246,10 @@ impl Device for Instron {
             || DeviceFault::Unfit(format!("the console cannot say {target} m at {speed} m/s"));
         let full_scale = self.position.full_scale;
         let rounded = instron::codec::ramp(target / full_scale, 0.0).ok_or_else(unsayable)?;
-        let (fraction, _) = instron::codec::said(&rounded).ok_or_else(unsayable)?;
+        let (fraction, _) = instron::codec::decoded_ramp(&rounded).ok_or_else(unsayable)?;
         let way = (fraction * full_scale - from).abs();
         let mut frames = instron::codec::ramp(fraction, way / speed).ok_or_else(unsayable)?;
-        let (fraction, seconds) = instron::codec::said(&frames).ok_or_else(unsayable)?;
+        let (fraction, seconds) = instron::codec::decoded_ramp(&frames).ok_or_else(unsayable)?;
         frames.extend(instron::codec::start());
         // The time was rounded up.
         let speed = if way > 0.0 {
@@ -257,7 +257,7 @@ impl Device for Instron {
         } else {
             speed
         };
-        Ok(Move {
+        Ok(DeviceMove {
             frames,
             targets: vec![meant_by(fraction * full_scale, target)],
             speed,
@@ -265,16 +265,16 @@ impl Device for Instron {
         })
     }
 
-    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let start = instron::codec::start();
         let ready = going.frames.len().saturating_sub(start.len());
         self.make_ready(&going.frames[..ready])?;
         for _ in 0..TRIES {
-            self.talk.send(&start.concat())?;
-            if self.is_under_way(going.targets[0])? {
+            self.client.send(&start.concat())?;
+            if self.is_moving_to(going.targets[0])? {
                 return Ok(());
             }
-            self.talk.tally_mut().resent += 1;
+            self.client.line_statistics_mut().resent += 1;
         }
         Err(DeviceFault::Refused {
             reason: "it does not set off".to_owned(),
@@ -303,11 +303,11 @@ impl Device for Instron {
 
     fn hold(&mut self) -> Result<(), DeviceFault> {
         for _ in 0..TRIES {
-            self.talk.send(&instron::codec::hold().concat())?;
+            self.client.send(&instron::codec::hold().concat())?;
             if self.ask_movement(&mut Vec::new())? != Movement::Running {
                 return Ok(());
             }
-            self.talk.tally_mut().resent += 1;
+            self.client.line_statistics_mut().resent += 1;
         }
         Err(DeviceFault::Refused {
             reason: "it does not hold".to_owned(),
@@ -318,12 +318,12 @@ impl Device for Instron {
         instron::codec::hold().concat()
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
-/// Who answers as a console, in these replies: the full scales of position and load.
+/// The identity of a console, from these replies: the full scales of position and load.
 pub(crate) fn introduced(raw: Vec<Vec<u8>>) -> DeviceIdentity {
     DeviceIdentity {
         model: "Instron 8800-style console".to_owned(),
@@ -332,29 +332,13 @@ pub(crate) fn introduced(raw: Vec<Vec<u8>>) -> DeviceIdentity {
     }
 }
 
-/// A target (m) that the bytes of a ramp say: the last bit of a float is no part of that.
+/// The target \[m\] of a ramp from its bytes: a difference in the last bit of the float is ignored.
 fn meant_by(said: f64, target: f64) -> f64 {
     if (said - target).abs() <= 4.0 * f64::EPSILON * target.abs() {
         target
     } else {
         said
     }
-}
-
-/// Whether these are the bytes of a ramp to this place (m), the position's full scale being `full_scale`, and of its start. What
-/// speed it is depends on where it begins, which stands in no byte.
-pub(crate) fn sends(wire: &[u8], target: f64, full_scale: f64) -> bool {
-    let lines: Vec<Vec<u8>> = wire
-        .split_inclusive(|byte| *byte == b'\n')
-        .map(<[u8]>::to_vec)
-        .collect();
-    let Some((fraction, seconds)) = instron::codec::said(&lines) else {
-        return false;
-    };
-    let again = instron::codec::ramp(fraction, seconds)
-        .map(|ramp| [ramp, instron::codec::start()].concat().concat());
-    again.is_some_and(|again| again == wire)
-        && meant_by(fraction * full_scale, target).to_bits() == target.to_bits()
 }
 
 fn no_reading(raw: Vec<u8>, reason: &str) -> DeviceFault {

@@ -1,6 +1,6 @@
-//! A Mark-10 ESM301/303 stand and its gauge: single letters, some with digits after them, none with an end. In: metres
-//! and metres a second. Out: the bytes of settings and questions, and what status, travel and force say. The stand has
-//! no "go to": a target is the travel limit on its way. Minus is what the gauge calls minus. It knows no device.
+//! A Mark-10 ESM301/303 stand and its gauge: single letters, some followed by digits, without line endings. In: \[m\] and
+//! \[m/s\]. Out: the bytes of settings and questions, and the meaning of status, travel and force. The stand has no "go
+//! to": a target is a travel limit. Negative is the direction that the gauge calls negative. It knows no device.
 
 use crate::rig::controllers::number;
 
@@ -16,13 +16,13 @@ pub const ASK_STATUS: &[u8] = b"p";
 pub const ASK_TRAVEL: &[u8] = b"x";
 pub const ASK_UPPER_LIMIT: &[u8] = b"v";
 pub const ASK_LOWER_LIMIT: &[u8] = b"w";
-/// What the gauge shows, asked of the gauge itself and through the stand.
+/// The reading of the gauge, requested from the gauge itself and through the stand.
 pub const ASK_FORCE: &[u8] = b"?\r";
 pub const ASK_FORCE_THROUGH_STAND: &[u8] = b"/?\r\\";
 
 const MILLIMETRES: f64 = 1e3;
 const MILLIMETRES_A_MINUTE: f64 = 6e4;
-/// Furthest and fastest that the digits can say, mm and mm/min.
+/// Largest travel and speed that the digits can express, mm and mm/min.
 const FURTHEST: f64 = 999.99;
 const FASTEST: f64 = 9999.9;
 
@@ -41,11 +41,11 @@ pub enum Side {
 pub struct Status {
     pub moving: bool,
     pub limit_mode: bool,
-    /// The limit it stands at.
+    /// The travel limit that it has reached.
     pub at: Option<Side>,
 }
 
-/// What the gauge said.
+/// The reading of the gauge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Force {
     Newtons(f64),
@@ -53,7 +53,7 @@ pub enum Force {
     Unknown,
 }
 
-/// The setting of a travel limit, and what it says, m. None where its digits cannot.
+/// The setting of a travel limit, and its decoded value \[m\]. None if it does not fit its digits.
 #[must_use]
 pub fn limit(side: Side, target: f64) -> Option<(Vec<u8>, f64)> {
     let millimetres = target * MILLIMETRES;
@@ -72,7 +72,8 @@ pub fn limit(side: Side, target: f64) -> Option<(Vec<u8>, f64)> {
     Some((format!("{letter}{sign}{digits:0>6}").into_bytes(), said))
 }
 
-/// The setting of the speed (m/s), never above what is asked, and what it says. None where its digits cannot.
+/// The setting of the speed \[m/s\], never above the requested one, and its decoded value. None if it does not fit its
+/// digits.
 #[must_use]
 pub fn speed(speed: f64) -> Option<(Vec<u8>, f64)> {
     // Down to a tenth of a millimetre a minute; not for the last bit of a float.
@@ -118,7 +119,7 @@ pub fn travel(answer: &[u8]) -> Option<f64> {
     number::fixed(answer).map(|millimetres| millimetres / MILLIMETRES)
 }
 
-/// What the gauge said: a number, a blank, a unit; None: nothing usable.
+/// The reading of the gauge: a number, a space, a unit. None: no usable reading.
 #[must_use]
 pub fn force(answer: &[u8]) -> Option<Force> {
     if answer == b"*10" {

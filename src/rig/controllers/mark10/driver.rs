@@ -1,45 +1,45 @@
-//! A Mark-10 stand with its gauge. In: metres and metres a second. Out: travel limits that are
-//! targets, read back before the stand sets off; readings in newtons. The travel is in hundredths of a millimetre, and
-//! so are the targets. Lines have no check: what came unasked is thrown away, and after a silence all is asked twice.
+//! A Mark-10 stand with its gauge. In: \[m\] and \[m/s\]. Out: travel limits as targets, read back before the stand moves;
+//! readings in newtons. The resolution of travel and targets is 0.01 mm. Lines have no checksum: unsolicited bytes are
+//! discarded, and after a silence every question is asked twice.
 
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::controllers::mark10;
 use crate::rig::controllers::mark10::codec::{Side, Status};
 use crate::rig::controllers::unsequenced::ask_line;
 use crate::rig::controllers::{
-    Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis,
+    Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
 };
 
-/// How often a setting or an order is given before it counts as not heard.
+/// How often a setting or a command is sent before it counts as not received.
 const TRIES: u32 = 3;
-/// Half a quantum of the travel, m: what is nearer is there.
+/// Half the resolution of the travel \[m\]: a nearer position is at the target.
 const THERE: f64 = 0.5e-5 * 1.01;
-/// How far past its limit the travel may be before the stand is stopped, m.
+/// Largest travel beyond its limit before the stand is stopped \[m\].
 const OVERRUN: f64 = 5e-5;
-/// Twice, since one may be taken for a digit of a setting that was cut short.
+/// Sent twice, because one may be taken for a digit of an incomplete setting.
 const EMERGENCY: &[u8] = b"ss";
 
-/// The stand at the other end of a line.
+/// The stand on a line.
 pub struct Mark10 {
-    talk: Talk,
+    client: LineClient,
     /// Travel as last read, m.
     last: Option<f64>,
-    /// Where it is going, m.
+    /// The target of the present move \[m\].
     going: Option<(Side, f64)>,
 }
 
 impl Mark10 {
     #[must_use]
-    pub const fn new(talk: Talk) -> Self {
+    pub const fn new(client: LineClient) -> Self {
         Self {
-            talk,
+            client,
             last: None,
             going: None,
         }
     }
 
     fn ask(&mut self, question: &[u8]) -> Result<Vec<u8>, DeviceFault> {
-        ask_line(&mut self.talk, question, mark10::codec::ENDING)
+        ask_line(&mut self.client, question, mark10::codec::ENDING)
     }
 
     fn ask_travel(&mut self, question: &[u8]) -> Result<(f64, Vec<u8>), DeviceFault> {
@@ -58,14 +58,14 @@ impl Mark10 {
         }
     }
 
-    /// Asks anew where the answer was garbled: outside of a reading nobody else does.
+    /// Asks again if the answer was garbled: outside of a reading no caller repeats the question.
     fn patiently<T>(
         &mut self,
         mut ask: impl FnMut(&mut Self) -> Result<T, DeviceFault>,
     ) -> Result<T, DeviceFault> {
         for _ in 1..TRIES {
             match ask(self) {
-                Err(DeviceFault::NoReading { .. }) => self.talk.tally_mut().reread += 1,
+                Err(DeviceFault::NoReading { .. }) => self.client.line_statistics_mut().reread += 1,
                 said => return said,
             }
         }
@@ -76,7 +76,8 @@ impl Mark10 {
         self.patiently(Self::ask_status).map(|(status, _)| status)
     }
 
-    /// Outside of limit mode nothing stops the stand at its target. It leaves that mode where it is switched on anew or by hand.
+    /// Outside of limit mode nothing stops the stand at its target. It leaves that mode when it is switched on again or
+    /// operated by hand.
     fn in_limit_mode(&mut self, status: Status) -> Result<(), DeviceFault> {
         if status.limit_mode {
             return Ok(());
@@ -96,10 +97,12 @@ impl Mark10 {
         limit: f64,
     ) -> Result<(), DeviceFault> {
         for _ in 0..TRIES {
-            self.talk.send(&settings.concat())?;
+            self.client.send(&settings.concat())?;
             match self.ask_travel(ask_limit(side)) {
                 Ok((heard, _)) if (heard - limit).abs() <= THERE => return Ok(()),
-                Ok(_) | Err(DeviceFault::NoReading { .. }) => self.talk.tally_mut().resent += 1,
+                Ok(_) | Err(DeviceFault::NoReading { .. }) => {
+                    self.client.line_statistics_mut().resent += 1;
+                }
                 Err(fault) => return Err(fault),
             }
         }
@@ -110,12 +113,12 @@ impl Mark10 {
 
     fn stop(&mut self) -> Result<(), DeviceFault> {
         for _ in 0..TRIES {
-            self.talk.send(mark10::codec::STOP)?;
+            self.client.send(mark10::codec::STOP)?;
             if !self.status()?.moving {
                 self.going = None;
                 return Ok(());
             }
-            self.talk.tally_mut().resent += 1;
+            self.client.line_statistics_mut().resent += 1;
         }
         Err(DeviceFault::Refused {
             reason: "it does not stop".to_owned(),
@@ -125,7 +128,7 @@ impl Mark10 {
 
 impl Device for Mark10 {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
-        self.talk.send(mark10::codec::READY)?;
+        self.client.send(mark10::codec::READY)?;
         if !self.status()?.limit_mode {
             return Err(DeviceFault::Unfit(
                 "the stand does not go into limit mode: does it have PC control?".to_owned(),
@@ -135,7 +138,7 @@ impl Device for Mark10 {
         Ok(stand_introduced())
     }
 
-    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         let target = one_axis(targets)?;
         let from = self.last.ok_or_else(|| {
             DeviceFault::Unfit("where it stands is not known: read first".to_owned())
@@ -148,14 +151,14 @@ impl Device for Mark10 {
             Side::Upper
         };
         let mut going = settings(target, speed, side).ok_or_else(unsayable)?;
-        // Rounded to where it stands already, it is not sent off.
+        // A target that rounds to the present position is not commanded.
         if (going.targets[0] - from).abs() > THERE {
             going.frames.push(direction(side).to_vec());
         }
         Ok(going)
     }
 
-    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let [speed, limit, direction @ ..] = going.frames.as_slice() else {
             return Err(DeviceFault::Unfit(
                 "this is no move of the stand".to_owned(),
@@ -175,7 +178,7 @@ impl Device for Mark10 {
         let there = |travel: f64| (travel - going.targets[0]).abs() <= THERE;
         self.going = Some((side, going.targets[0]));
         for _ in 0..TRIES {
-            self.talk.send(direction)?;
+            self.client.send(direction)?;
             let status = self.status()?;
             self.in_limit_mode(status)?;
             if status.moving
@@ -186,14 +189,14 @@ impl Device for Mark10 {
             {
                 return Ok(());
             }
-            // Not sent off again before its limit is known to stand.
+            // It is not started again before its limit is confirmed.
             if !there(self.patiently(|stand| stand.ask_travel(ask_limit(side)))?.0) {
                 self.stop()?;
                 return Err(DeviceFault::Refused {
                     reason: "its travel limit is not the one that was read back".to_owned(),
                 });
             }
-            self.talk.tally_mut().resent += 1;
+            self.client.line_statistics_mut().resent += 1;
         }
         Err(DeviceFault::Refused {
             reason: "it does not set off".to_owned(),
@@ -237,12 +240,12 @@ impl Device for Mark10 {
         EMERGENCY.to_vec()
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
-/// Who answers as a stand.
+/// The identity of a stand.
 pub(crate) fn stand_introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "Mark-10 stand".to_owned(),
@@ -251,10 +254,10 @@ pub(crate) fn stand_introduced() -> DeviceIdentity {
 }
 
 /// Speed and travel limit of a move to `target` (m) at no more than `speed` (m/s), which goes to this side.
-fn settings(target: f64, speed: f64, side: Side) -> Option<Move> {
+fn settings(target: f64, speed: f64, side: Side) -> Option<DeviceMove> {
     let (speed_setting, speed) = mark10::codec::speed(speed)?;
     let (limit_setting, target) = mark10::codec::limit(side, target)?;
-    Some(Move {
+    Some(DeviceMove {
         frames: vec![speed_setting, limit_setting],
         targets: vec![target],
         speed,
@@ -274,18 +277,6 @@ const fn direction(side: Side) -> &'static [u8] {
         Side::Lower => mark10::codec::DOWN,
         Side::Upper => mark10::codec::UP,
     }
-}
-
-/// Whether these are the bytes of a move to this place (m) at this speed (m/s), by either side, set off or left where it is.
-pub(crate) fn sends(wire: &[u8], target: f64, speed: f64) -> bool {
-    [Side::Lower, Side::Upper].into_iter().any(|side| {
-        settings(target, speed, side).is_some_and(|going| {
-            let said = going.targets[0].to_bits() == target.to_bits()
-                && going.speed.to_bits() == speed.to_bits();
-            let rest = wire.strip_prefix(going.frames.concat().as_slice());
-            said && rest.is_some_and(|rest| rest.is_empty() || rest == direction(side))
-        })
-    })
 }
 
 pub(crate) fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {

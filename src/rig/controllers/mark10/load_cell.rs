@@ -1,44 +1,44 @@
-//! A Mark-10 gauge alone on its port. In: nothing. Out: a force, as often as it is asked. It moves nothing: what moves it is
-//! `mark10`'s, or another device's.
+//! A Mark-10 gauge alone on its port. In: nothing. Out: a force, on request. It moves nothing: the actuator is `mark10` or
+//! another device.
 
 use super::driver::newtons;
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::controllers::mark10;
 use crate::rig::controllers::unsequenced::ask_line;
-use crate::rig::controllers::{DeviceFault, DeviceIdentity, Gauge, Sample, Talk};
+use crate::rig::controllers::{DeviceFault, DeviceIdentity, LineClient, LoadCell, Sample};
 
 /// The gauge at the other end of a line.
 pub struct Mark10Gauge {
-    talk: Talk,
+    client: LineClient,
 }
 
 impl Mark10Gauge {
     #[must_use]
-    pub const fn new(talk: Talk) -> Self {
-        Self { talk }
+    pub const fn new(client: LineClient) -> Self {
+        Self { client }
     }
 }
 
-impl Gauge for Mark10Gauge {
+impl LoadCell for Mark10Gauge {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.sample()?;
         Ok(introduced())
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        weighed(ask_line(
-            &mut self.talk,
+        decoded(ask_line(
+            &mut self.client,
             mark10::codec::ASK_FORCE,
             mark10::codec::ENDING,
         )?)
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
-/// Who answers as a gauge.
+/// The identity of a gauge.
 pub(crate) fn introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "Mark-10 gauge".to_owned(),
@@ -47,7 +47,7 @@ pub(crate) fn introduced() -> DeviceIdentity {
 }
 
 /// The force of its answer.
-pub(crate) fn weighed(said: Vec<u8>) -> Result<Sample, DeviceFault> {
+pub(crate) fn decoded(said: Vec<u8>) -> Result<Sample, DeviceFault> {
     let force = newtons(&said)?;
     Ok(Sample {
         force: Some(force),

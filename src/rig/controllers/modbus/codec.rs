@@ -1,12 +1,13 @@
-//! Modbus RTU frames (Modbus Serial Line guide V1.02). In: registers and words. Out: bytes with their CRC, and back.
-//! The length of an answer follows from its question, so that none is cut or glued. It knows no units and no device.
+//! Modbus RTU frames (Modbus Serial Line guide V1.02). In: registers and words. Out: bytes with their CRC, and back. The
+//! length of an answer follows from its question, so no answer is cut or merged with another. It knows no units and no
+//! device.
 
 use crate::plan::ModbusNumber;
 
 /// Most registers one question may ask for.
 pub const MOST_REGISTERS: u16 = 125;
 
-/// Length of an answer that says no: unit, function, code, CRC.
+/// Length of an exception answer: unit, function, code, CRC.
 const EXCEPTION_LENGTH: usize = 5;
 /// Length of an answer to a write.
 const ECHO_LENGTH: usize = 8;
@@ -28,7 +29,7 @@ pub enum Table {
 pub enum Fault {
     /// It is not a whole and sound answer to the question.
     Broken(&'static str),
-    /// The unit said no.
+    /// The unit refused.
     Exception(u8),
 }
 
@@ -59,7 +60,7 @@ pub fn read(unit: u8, table: Table, start: u16, count: u16) -> Vec<u8> {
     sealed(frame)
 }
 
-/// The order to write `words` from register `start` on: function 06 for one, 10h for more.
+/// The command to write `words` from register `start` on: function 06 for one, 10h for more.
 #[must_use]
 pub fn write(unit: u8, start: u16, words: &[u16]) -> Vec<u8> {
     let mut frame = vec![
@@ -80,7 +81,7 @@ pub fn write(unit: u8, start: u16, words: &[u16]) -> Vec<u8> {
     sealed(frame)
 }
 
-/// The words that an order of ours writes, read back from its bytes.
+/// The words that a write command contains, decoded from its bytes.
 #[must_use]
 pub fn written(frame: &[u8]) -> Vec<u16> {
     match frame {
@@ -90,10 +91,10 @@ pub fn written(frame: &[u8]) -> Vec<u16> {
     }
 }
 
-/// How long the answer to `question` is, once enough of it has come to know; None: not yet.
+/// The length of the answer to `question`, when enough of it has been received. None: not yet.
 ///
 /// # Errors
-/// What came is no answer to it.
+/// The received bytes do not answer it.
 pub fn answer_length(question: &[u8], received: &[u8]) -> Result<Option<usize>, Fault> {
     let (unit, function) = (question[0], question[1]);
     match received {
@@ -110,10 +111,10 @@ pub fn answer_length(question: &[u8], received: &[u8]) -> Result<Option<usize>, 
     }
 }
 
-/// The words of an answer; none of an answer to a write.
+/// The words of an answer; none for the answer to a write.
 ///
 /// # Errors
-/// It is broken, is no answer to the question, or says no.
+/// It is broken, does not answer the question, or is an exception.
 pub fn answer(question: &[u8], received: &[u8]) -> Result<Vec<u16>, Fault> {
     if answer_length(question, received)? != Some(received.len()) {
         return Err(Fault::Broken("wrong length"));
@@ -126,7 +127,7 @@ pub fn answer(question: &[u8], received: &[u8]) -> Result<Vec<u16>, Fault> {
         return Err(Fault::Exception(body[2]));
     }
     if writes(question) {
-        // Register and value, or register and count, come back as they went.
+        // Register and value, or register and count, are echoed.
         return if body[..6] == question[..6] {
             Ok(Vec::new())
         } else {
@@ -136,7 +137,7 @@ pub fn answer(question: &[u8], received: &[u8]) -> Result<Vec<u16>, Fault> {
     Ok(words(&body[3..]))
 }
 
-/// What an exception code says.
+/// The meaning of an exception code.
 #[must_use]
 pub const fn exception(code: u8) -> &'static str {
     match code {
@@ -189,7 +190,7 @@ pub fn to_words(number: ModbusNumber, value: f64) -> Option<Vec<u16>> {
     }
 }
 
-/// The number in registers; None where there are not as many as it takes, or where they hold no finite number.
+/// The number in registers. None for a wrong number of registers, or if the number is not finite.
 #[must_use]
 pub fn from_words(number: ModbusNumber, words: &[u16]) -> Option<f64> {
     match (number, words) {
@@ -205,7 +206,7 @@ pub fn from_words(number: ModbusNumber, words: &[u16]) -> Option<f64> {
     }
 }
 
-/// The largest short float up to a value above 0 whose low word is 0; its 8 binary digits are within 1 % of it.
+/// The largest short float up to a value above 0 whose low word is 0; its 8 binary digits are within 1 % of the value.
 #[must_use]
 pub fn without_low_word(value: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, reason = "what it becomes is judged")]

@@ -1,15 +1,15 @@
-//! A Modbus RTU drive, transmitter or both, as its register map says. In: metres and metres a second. Out: register
-//! writes, and readings of the registers there are. It keeps the silences of the line, and never takes a late answer.
-//! Over a TCP port the same RTU bytes go. A stop can also be a frame that nobody waits for; sent into the middle of
-//! another frame it may not be heard, so that it replaces no wired emergency stop.
+//! A Modbus RTU drive, transmitter or both, by its register map. In: \[m\] and \[m/s\]. Out: register writes, and readings
+//! of the mapped registers. It keeps the silences of the line, and never accepts a late answer. Over a TCP port the same
+//! RTU bytes are sent. A stop can also be a frame without an awaited answer; sent into the middle of another frame it may
+//! not be received, so it does not replace a wired emergency stop.
 
 use crate::plan::{ModbusMap, ModbusNumber};
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::controllers::modbus;
 use crate::rig::controllers::modbus::codec::{Fault, Table};
 use crate::rig::controllers::unsequenced::{clear, fault, fresh, order};
 use crate::rig::controllers::{
-    Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk, one_axis,
+    Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
 };
 
 /// Silence before a question: 3.5 characters of 11 bits, and never less than this, s.
@@ -19,12 +19,12 @@ const GAP_BITS: f64 = 3.5 * 11.0;
 const IMPLAUSIBLE_POSITION: f64 = 1e3;
 /// More than any cell carries, N.
 const IMPLAUSIBLE_FORCE: f64 = 1e12;
-/// Smaller than any reading but zero: what a float becomes when its words are swapped.
+/// Smaller than any non-zero reading: the value of a float whose words are swapped.
 const IMPLAUSIBLY_SMALL: f64 = 1e-30;
 
 /// The drive, or the transmitter, at the other end of a line.
 pub struct Modbus {
-    talk: Talk,
+    client: LineClient,
     map: ModbusMap,
     /// s
     gap: f64,
@@ -40,7 +40,7 @@ struct Register {
     table: Table,
 }
 
-/// A number, as it was read.
+/// A number as it was read.
 struct Value {
     /// m or N
     value: f64,
@@ -48,9 +48,9 @@ struct Value {
 }
 
 impl Modbus {
-    /// `baud` of a serial line gives the silence between frames; None: over TCP.
+    /// `baud` of a serial line gives the silence between frames. None: over TCP.
     #[must_use]
-    pub fn new(talk: Talk, map: ModbusMap, baud: Option<u32>) -> Self {
+    pub fn new(client: LineClient, map: ModbusMap, baud: Option<u32>) -> Self {
         let gap = baud.map_or(SHORTEST_GAP, |baud| {
             (GAP_BITS / f64::from(baud)).max(SHORTEST_GAP)
         });
@@ -66,7 +66,7 @@ impl Modbus {
             register(map.status),
         );
         Self {
-            talk,
+            client,
             map,
             gap,
             position,
@@ -110,15 +110,15 @@ impl Modbus {
         }
     }
 
-    /// The words that answer a question, and the bytes they came in.
+    /// The words of the answer to a question, and its bytes.
     fn words(&mut self, question: &[u8]) -> Result<(Vec<u16>, Vec<u8>), DeviceFault> {
         let gap = self.gap;
-        fresh(&mut self.talk, |talk| exchange(talk, question, gap))
+        fresh(&mut self.client, |client| exchange(client, question, gap))
     }
 
     fn write(&mut self, frame: &[u8]) -> Result<(), DeviceFault> {
         let gap = self.gap;
-        order(&mut self.talk, |talk| exchange(talk, frame, gap)).map(|_| ())
+        order(&mut self.client, |client| exchange(client, frame, gap)).map(|_| ())
     }
 
     fn stop_frame(&self) -> Option<Vec<u8>> {
@@ -144,11 +144,11 @@ impl Device for Modbus {
         Ok(introduced(&self.map))
     }
 
-    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         frames(&self.map, one_axis(targets)?, speed)
     }
 
-    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         going.frames.iter().try_for_each(|frame| self.write(frame))
     }
 
@@ -182,7 +182,7 @@ impl Device for Modbus {
         Ok(sample)
     }
 
-    /// By its stop word; a drive without a command register is sent to where it is.
+    /// By its stop word; a drive without a command register receives its present position as target.
     fn hold(&mut self) -> Result<(), DeviceFault> {
         let frame = if let Some(frame) = self.stop_frame() {
             frame
@@ -202,12 +202,12 @@ impl Device for Modbus {
         self.stop_frame().unwrap_or_default()
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
-/// What is said of registers that hold no number that can be.
+/// The message for registers whose number is implausible.
 const fn no_number(number: ModbusNumber) -> &'static str {
     match number {
         ModbusNumber::Int16 => {
@@ -217,7 +217,7 @@ const fn no_number(number: ModbusNumber) -> &'static str {
     }
 }
 
-/// Who answers as this unit.
+/// The identity of this unit.
 pub(crate) fn introduced(map: &ModbusMap) -> DeviceIdentity {
     DeviceIdentity {
         model: format!("Modbus unit {}", map.unit),
@@ -225,27 +225,27 @@ pub(crate) fn introduced(map: &ModbusMap) -> DeviceIdentity {
     }
 }
 
-/// What is sent to go to `target` (m) at a speed that is not above `speed` (m/s), and what it says. A drive that has its words the
-/// other way round is told a speed of next to nothing, so that it does not move: the second word of the speed is 0.
-fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+/// The frames of a move to `target` \[m\] at a speed not above `speed` \[m/s\], and their decoded values. A drive with
+/// swapped words reads a speed of almost zero, so that it does not move: the second word of the speed is 0.
+fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMove, DeviceFault> {
     let slower = if is_float(map.number) {
         modbus::codec::without_low_word(speed / map.speed_unit) * map.speed_unit
     } else {
         speed
     };
-    frames_saying(map, target, slower)
+    frames_at_speed(map, target, slower)
 }
 
-/// The same at this speed itself, as near as the registers can say it.
-fn frames_saying(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, DeviceFault> {
+/// The same at this speed itself, as closely as the registers can express it.
+fn frames_at_speed(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMove, DeviceFault> {
     let (target_frame, target) = target_frame(map, target)?;
-    let mut going = Move {
+    let mut going = DeviceMove {
         frames: Vec::new(),
         targets: vec![target],
         speed,
         id: None,
     };
-    // Before the target, since some drives set off as soon as they have one.
+    // Before the target, because some drives start as soon as they have one.
     if let Some(register) = map.speed {
         let (words, said) = say_speed(map, speed)?;
         going
@@ -262,25 +262,16 @@ fn frames_saying(map: &ModbusMap, target: f64, speed: f64) -> Result<Move, Devic
     Ok(going)
 }
 
-/// Whether these are the bytes of a move to this place (m) at this speed (m/s).
-pub(crate) fn sends(wire: &[u8], map: &ModbusMap, target: f64, speed: f64) -> bool {
-    frames_saying(map, target, speed).is_ok_and(|going| {
-        let said = going.targets[0].to_bits() == target.to_bits()
-            && going.speed.to_bits() == speed.to_bits();
-        said && going.frames.concat() == wire
-    })
-}
-
 fn target_frame(map: &ModbusMap, target: f64) -> Result<(Vec<u8>, f64), DeviceFault> {
     let register = map
         .target
         .ok_or_else(|| unfit("it has no target register: it cannot move"))?;
-    let (words, said) = say(map.number, target, map.length_unit, f64::round)?;
+    let (words, said) = encode_quantity(map.number, target, map.length_unit, f64::round)?;
     Ok((modbus::codec::write(map.unit, register, &words), said))
 }
 
-/// The registers of a quantity, and what they say; `whole` rounds where they hold whole numbers.
-fn say(
+/// The registers of a quantity, and their decoded value; `whole` rounds for integer registers.
+fn encode_quantity(
     number: ModbusNumber,
     quantity: f64,
     unit: f64,
@@ -297,13 +288,13 @@ fn say(
     let said = modbus::codec::from_words(number, &words)
         .ok_or_else(|| unfit("its registers cannot hold the number"))?
         * unit;
-    // The last bit of turning units is no part of what the registers say.
+    // A difference in the last bit by the unit conversion is ignored.
     Ok((words, if same(said, quantity) { quantity } else { said }))
 }
 
 /// Registers of a speed that is not above the one asked for.
 fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault> {
-    let (words, said) = say(map.number, speed, map.speed_unit, f64::floor)?;
+    let (words, said) = encode_quantity(map.number, speed, map.speed_unit, f64::floor)?;
     if said <= speed {
         return if said > 0.0 {
             Ok((words, said))
@@ -312,7 +303,7 @@ fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault
         };
     }
     // A short float may be above by half its last bit.
-    say(
+    encode_quantity(
         map.number,
         speed * (1.0 - f64::from(f32::EPSILON)),
         map.speed_unit,
@@ -327,58 +318,15 @@ fn value_of(number: ModbusNumber, words: &[u16], unit: f64, bound: f64) -> Optio
         .filter(|value| plausible(*value, bound))
 }
 
-/// What an answer of this unit says as a position (m); None: it is no answer that holds a number. The second None: no number
-/// that can be.
-#[expect(
-    clippy::option_option,
-    reason = "no answer and no number are different things here"
-)]
-pub(crate) fn position_in(map: &ModbusMap, answer: &[u8]) -> Option<Option<f64>> {
-    let words = words_in(map, answer, modbus::codec::width(map.number))?;
-    Some(value_of(
-        map.number,
-        &words,
-        map.length_unit,
-        IMPLAUSIBLE_POSITION,
-    ))
-}
-
-/// The same as a force, N.
-#[expect(
-    clippy::option_option,
-    reason = "no answer and no number are different things here"
-)]
-pub(crate) fn force_in(map: &ModbusMap, answer: &[u8]) -> Option<Option<f64>> {
-    let words = words_in(map, answer, modbus::codec::width(map.number))?;
-    Some(value_of(
-        map.number,
-        &words,
-        map.force_unit,
-        IMPLAUSIBLE_FORCE,
-    ))
-}
-
-/// Whether it is an answer of this unit that holds a status.
-pub(crate) fn is_status(map: &ModbusMap, answer: &[u8]) -> bool {
-    words_in(map, answer, 1).is_some()
-}
-
-/// So many registers of an answer, whichever of the two tables they are from. Which they are it does not say itself.
-fn words_in(map: &ModbusMap, answer: &[u8], count: u16) -> Option<Vec<u16>> {
-    let asked =
-        |table| modbus::codec::answer(&modbus::codec::read(map.unit, table, 0, count), answer).ok();
-    asked(Table::Holding).or_else(|| asked(Table::Input))
-}
-
 /// One question or order and its answer, after the silence that ends whatever came before.
 fn exchange(
-    talk: &mut Talk,
+    client: &mut LineClient,
     question: &[u8],
     gap: f64,
 ) -> Result<(Vec<u16>, Vec<u8>), DeviceFault> {
-    clear(talk, gap)?;
-    talk.send(question)?;
-    let deadline = talk.now() + talk.reply_timeout();
+    clear(client, gap)?;
+    client.send(question)?;
+    let deadline = client.now() + client.reply_timeout();
     let mut received = Vec::new();
     let answer = loop {
         let missing = match modbus::codec::answer_length(question, &received) {
@@ -389,11 +337,11 @@ fn exchange(
             Ok(None) => 1,
             Err(fault) => break Err(fault),
         };
-        match talk.exactly(missing, deadline) {
+        match client.exactly(missing, deadline) {
             Ok(bytes) => received.extend(bytes),
             Err(missed) => {
-                talk.tally_mut().ignored += u64::from(!received.is_empty());
-                return Err(fault(missed, talk));
+                client.line_statistics_mut().ignored += u64::from(!received.is_empty());
+                return Err(fault(missed, client));
             }
         }
     };
@@ -403,9 +351,9 @@ fn exchange(
             reason: format!("{} (exception {code})", modbus::codec::exception(code)),
         }),
         Err(Fault::Broken(_)) => {
-            talk.tally_mut().ignored += 1;
+            client.line_statistics_mut().ignored += 1;
             Err(DeviceFault::Silent {
-                seconds: talk.reply_timeout(),
+                seconds: client.reply_timeout(),
             })
         }
     }

@@ -1,5 +1,5 @@
-//! psd's own line protocol. In: a request and its sequence number; a line that came. Out: the frame; the reply the line
-//! is. It keeps no conversation: which reply answers which request is the driver's business.
+//! psd's own line protocol. In: a request and its sequence number; a line that came. Out: the frame; the reply the line is.
+//! It keeps no conversation: which reply answers which request is the driver's business.
 //!
 //! # The protocol
 //! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request is at most 96 bytes with its ending, of a rig of several
@@ -9,16 +9,16 @@
 //! request = ">" VERB  SP SEQ          *(SP word) "*" CRC LF
 //! reply   = "<" KIND  SP SEQ SP BOOT  *(SP word) "*" CRC LF
 //! ```
-//! CRC is CRC-16/CCITT-FALSE (polynomial 1021, start FFFF; `123456789` gives 29B1) of what stands between the lead
-//! character and `*`, as 4 upper-case hexadecimal digits. SEQ is a decimal of 32 bits, one more with every new request.
-//! BOOT is 4 random upper-case hexadecimal digits of this power-up. Words are printable ASCII without blanks. Units are
-//! fixed: mm, N, mm/s, ms. Lengths and speeds have 6 decimals, forces 3.
+//! CRC is CRC-16/CCITT-FALSE (polynomial 1021, start FFFF; `123456789` gives 29B1) of the bytes between the lead character
+//! and `*`, as 4 upper-case hexadecimal digits. SEQ is a decimal of 32 bits, one more with every new request. BOOT is 4
+//! random upper-case hexadecimal digits of this power-up. Words are printable ASCII without spaces. Units are fixed: mm, N,
+//! mm/s, ms. Lengths and speeds have 6 decimals, forces 3.
 //!
-//! A frame that is broken is not answered. The rig keeps its last reply: the same SEQ again is answered by it and does
-//! nothing; any other than the next is `ERR SEQ`. HELLO is taken with every SEQ, is carried out each time, and sets SEQ.
+//! A broken frame is not answered. The rig keeps its last reply: the same SEQ again receives that reply and does nothing;
+//! any other than the next is `ERR SEQ`. HELLO is accepted with every SEQ, is executed each time, and sets SEQ.
 //!
-//! A rig has 1 to 6 axes. What stands in braces is said for each axis in turn, the first one first, so that a rig of one
-//! axis says each once; how many axes it has is told by the number of words of its reply to HELLO.
+//! A rig has 1 to 6 axes. Words in braces are repeated for each axis in turn, so a rig of one axis has each once. The
+//! number of axes follows from the number of words of its reply to HELLO.
 //!
 //! | Request | Reply |
 //! |---|---|
@@ -32,15 +32,17 @@
 //! | `CLR` | `ACK state`: lets go of a latched hold. Nothing moves. |
 //! | `REF token` | `ACK state`: its position is to be trusted from now on, of all axes; the token is whose word that is. |
 //!
-//! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3
-//! lower limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` carries
-//! one word: `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `LATE`, `HELD`, `STOP`, `REF`, `FAULT`.
+//! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3 lower
+//! limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` has one word:
+//! `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `LATE`, `HELD`, `STOP`, `REF`, `FAULT`.
 //!
-//! The byte `!` anywhere holds at once, as `STOP` does, and is no part of a frame. No valid frame for W ms (3000 as
-//! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: what it does not do exactly, it refuses. Holding
-//! keeps the load; taking it away is an operator's act. None of this is in place of a wired emergency stop and end switches.
+//! The byte `!` anywhere holds immediately, as `STOP` does, and is not part of a frame. No valid frame for W ms (3000 as
+//! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: it refuses a command that it cannot execute
+//! exactly. Holding keeps the load; unloading is an operator's act. This does not replace a wired emergency stop and limit
+//! switches.
 
-use std::fmt::Write as _;
+mod checksum;
+mod request;
 
 use crate::plan::Interval;
 use crate::rig::LastMove;
@@ -48,49 +50,16 @@ use crate::rig::controllers::Flags;
 use crate::rig::controllers::number;
 use crate::rig::safety::failpoint::{Guarding, on};
 
-/// Longest request with its ending, bytes: of one axis, of several.
-pub const LONGEST_FRAME: usize = 96;
-pub const LONGEST_FRAME_OF_SEVERAL: usize = 512;
+pub use checksum::checksum;
+pub use request::{
+    End, LONGEST_FRAME, LONGEST_FRAME_OF_SEVERAL, Request, frame, length, lengths, sequence,
+};
+pub(crate) use request::{in_turn, time};
 
 /// Axes of a rig, at most: the reply to HELLO is no longer than a reply may be.
 pub const MOST_AXES: usize = 6;
 
-/// What is asked. Lengths m, speeds m/s, forces N.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Request<'a> {
-    Hello,
-    Limits(&'a Bounds),
-    /// Targets of every axis and the speed as [`lengths`] and [`length`] write them: what is said is written once.
-    Move {
-        id: u64,
-        targets: &'a str,
-        speed: &'a str,
-    },
-    /// Where each axis passes and as fast as what, so long after the way before.
-    Glide {
-        id: u64,
-        ends: &'a [End],
-        seconds: f64,
-    },
-    Measure {
-        readings: u32,
-    },
-    Status,
-    Stop,
-    Clear,
-    Reference {
-        token: &'a str,
-    },
-}
-
-/// The end of a smooth way: m, m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
-    pub place: f64,
-    pub velocity: f64,
-}
-
-/// What a rig keeps to.
+/// The limits that a rig enforces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
     /// One entry an axis.
@@ -99,7 +68,7 @@ pub struct Bounds {
     pub top_speed: f64,
 }
 
-/// What one axis keeps to: m, N.
+/// The limits of one axis: \[m\], \[N\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisBounds {
     pub displacement: Interval,
@@ -107,7 +76,7 @@ pub struct AxisBounds {
 }
 
 impl Bounds {
-    /// Whether every axis has a place to stand, and a speed to go at.
+    /// Whether every axis has a possible position, and a possible speed.
     #[must_use]
     pub fn allow_something(&self) -> bool {
         let some = |bounds: Interval| bounds.low <= bounds.high;
@@ -132,21 +101,22 @@ pub enum Kind {
 pub struct Reply {
     pub kind: Kind,
     pub sequence: u32,
-    /// As it came, without its ending.
+    /// As received, without its ending.
     pub line: Vec<u8>,
-    /// Where the word of the power-up begins in it.
+    /// Index of the boot identifier in it.
     boot: usize,
 }
 
 impl Reply {
-    /// Word of the power-up, 4 hexadecimal digits.
+    /// The boot identifier, 4 hexadecimal digits.
     #[must_use]
     pub fn boot(&self) -> &str {
         text(&self.line[self.boot..self.boot + BOOT_DIGITS])
     }
 
-    /// What it says, word by word. Whole and in order it may have an empty or a strange field: the rig says the same however
-    /// often it is asked for this reply, so that it is no reading, not a broken line. A word that is none is empty, and no number.
+    /// Its words. A complete reply in order may still have an empty or unknown field: the rig repeats the same reply
+    /// however often it is requested, so this is an invalid reading, not a broken line. A missing word is empty, and not a
+    /// number.
     #[must_use]
     pub fn words(&self) -> Vec<&str> {
         let said = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
@@ -156,11 +126,11 @@ impl Reply {
     }
 }
 
-/// Of the word of a power-up, and of `*` with the checksum behind it.
+/// Length of a boot identifier, and of `*` with the checksum.
 const BOOT_DIGITS: usize = 4;
 const CHECK_LENGTH: usize = 5;
 
-/// Words of a reading of one axis, and some to spare.
+/// Words of a reading of one axis, with reserve.
 const USUAL_WORDS: usize = 8;
 
 /// Why a line is no reply.
@@ -170,7 +140,7 @@ pub enum Broken {
     Checksum,
 }
 
-/// What a rig says of itself.
+/// The identity and limits that a rig reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hello {
     pub model: String,
@@ -180,7 +150,7 @@ pub struct Hello {
     pub last: Option<LastMove>,
 }
 
-/// What a rig says that it does.
+/// The state that a rig reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     Idle,
@@ -197,7 +167,7 @@ pub struct Data {
     pub state: State,
 }
 
-/// What one axis says: m, N.
+/// The reading of one axis: \[m\], \[N\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisData {
     pub displacement: f64,
@@ -206,95 +176,7 @@ pub struct AxisData {
     pub flags: Flags,
 }
 
-/// The frame of a request; nothing where one of its numbers cannot be said or it would be too long.
-#[must_use]
-pub fn frame(sequence: u32, request: &Request<'_>) -> Option<Vec<u8>> {
-    let mut longest = LONGEST_FRAME;
-    let mut several = |axes: usize| {
-        if axes > 1 {
-            longest = LONGEST_FRAME_OF_SEVERAL;
-        }
-    };
-    let mut out = String::with_capacity(LONGEST_FRAME);
-    match request {
-        Request::Hello => write!(out, ">HELLO {sequence}"),
-        Request::Limits(bounds) => {
-            several(bounds.axes.len());
-            let axes: Vec<String> = bounds.axes.iter().map(bounds_of).collect::<Option<_>>()?;
-            write!(
-                out,
-                ">LIM {sequence} {} {}",
-                axes.join(" "),
-                length(bounds.top_speed)?
-            )
-        }
-        Request::Move { id, targets, speed } => {
-            several(targets.split(' ').count());
-            write!(out, ">MOVE {sequence} {id} {targets} {speed}")
-        }
-        Request::Glide { id, ends, seconds } => {
-            several(ends.len());
-            write!(
-                out,
-                ">GLIDE {sequence} {id} {} {}",
-                lengths(&in_turn(ends))?,
-                time(*seconds)?
-            )
-        }
-        Request::Measure { readings } => write!(out, ">MEAS {sequence} {readings}"),
-        Request::Status => write!(out, ">STAT {sequence}"),
-        Request::Stop => write!(out, ">STOP {sequence}"),
-        Request::Clear => write!(out, ">CLR {sequence}"),
-        Request::Reference { token } => {
-            let word = !token.is_empty()
-                && token
-                    .bytes()
-                    .all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
-            word.then(|| write!(out, ">REF {sequence} {token}"))?
-        }
-    }
-    .ok()?;
-    let sum = checksum(&out.as_bytes()[1..]);
-    writeln!(out, "*{sum:04X}").ok()?;
-    (out.len() <= longest).then(|| out.into_bytes())
-}
-
-/// `d_low d_high f_low f_high`
-fn bounds_of(axis: &AxisBounds) -> Option<String> {
-    let (low, high) = (
-        length(axis.displacement.low)?,
-        length(axis.displacement.high)?,
-    );
-    let (least, most) = (
-        number::write(axis.force.low, 3)?,
-        number::write(axis.force.high, 3)?,
-    );
-    Some(format!("{low} {high} {least} {most}"))
-}
-
-/// Lengths after each other.
-#[must_use]
-pub fn lengths(values: &[f64]) -> Option<String> {
-    let words: Vec<String> = values
-        .iter()
-        .map(|value| length(*value))
-        .collect::<Option<_>>()?;
-    Some(words.join(" "))
-}
-
-/// Place and velocity of each end after each other.
-pub(crate) fn in_turn(ends: &[End]) -> Vec<f64> {
-    ends.iter()
-        .flat_map(|end| [end.place, end.velocity])
-        .collect()
-}
-
-/// s as it is written: ms.
-pub(crate) fn time(seconds: f64) -> Option<String> {
-    number::write(seconds * 1e3, 3)
-}
-
-/// How long it is to the end of a way (s), as the reply to `GLIDE` says.
+/// Time until the end of a path \[s\], from the reply to `GLIDE`.
 #[must_use]
 pub fn left(words: &[&str]) -> Option<f64> {
     let [_, left] = words else { return None };
@@ -303,23 +185,10 @@ pub fn left(words: &[&str]) -> Option<f64> {
         .map(|left| left / 1e3)
 }
 
-/// The sequence number of a frame to be sent.
-#[must_use]
-pub fn sequence(frame: &[u8]) -> Option<u32> {
-    let word = frame.split(|byte| matches!(byte, b' ' | b'*')).nth(1)?;
-    number::count(word).and_then(|count| u32::try_from(count).ok())
-}
-
-/// m or m/s as it is written: mm or mm/s.
-#[must_use]
-pub fn length(value: f64) -> Option<String> {
-    number::write(value * 1e3, 6)
-}
-
 /// The reply a line is, without its ending.
 ///
 /// # Errors
-/// It is none.
+/// It is not a valid reply.
 pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
     let [b'<', body @ .., b'*', a, b, c, d] = line else {
         return Err(Broken::Shape);
@@ -352,7 +221,7 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
     })
 }
 
-/// A word of a line; of what is none nothing.
+/// A word of a line; empty for invalid bytes.
 fn text(bytes: &[u8]) -> &str {
     let printable = bytes.iter().all(u8::is_ascii_graphic);
     str::from_utf8(bytes)
@@ -361,7 +230,7 @@ fn text(bytes: &[u8]) -> &str {
         .unwrap_or_default()
 }
 
-/// What a rig says of itself.
+/// The identity and limits that a rig reports.
 #[must_use]
 pub fn hello(words: &[&str]) -> Option<Hello> {
     let [model, serial, firmware, numbers @ ..] = words else {
@@ -370,7 +239,7 @@ pub fn hello(words: &[&str]) -> Option<Hello> {
     if words.iter().any(|word| word.is_empty()) {
         return None;
     }
-    // For each axis four limits and a target, and two words for all.
+    // Four limits and a target for each axis, and two words for all.
     let axes = numbers
         .len()
         .checked_sub(2)
@@ -471,7 +340,7 @@ fn millimetres(word: &str) -> Option<f64> {
     number::fixed(word.as_bytes()).map(|value| value / 1e3)
 }
 
-/// A word of flags; one with a bit nobody knows says nothing.
+/// A word of flags. One with an unknown bit is invalid.
 #[must_use]
 pub fn flags(word: &str) -> Option<Flags> {
     let bits =
@@ -499,7 +368,7 @@ pub fn state(word: &str) -> Option<State> {
     }
 }
 
-/// What the code of an `ERR` means.
+/// The meaning of an `ERR` code.
 #[must_use]
 pub fn refusal(words: &[&str]) -> String {
     let code = words.first().copied().unwrap_or_default();
@@ -520,35 +389,6 @@ pub fn refusal(words: &[&str]) -> String {
     };
     format!("{meaning} (`ERR {}`)", words.join(" "))
 }
-
-/// CRC-16/CCITT-FALSE.
-#[must_use]
-pub fn checksum(bytes: &[u8]) -> u16 {
-    bytes.iter().fold(0xffff, |sum: u16, byte| {
-        let [high, low] = sum.to_be_bytes();
-        u16::from_be_bytes([low, 0]) ^ REMAINDERS[usize::from(high ^ byte)]
-    })
-}
-
-/// What the polynomial 1021 leaves of each byte, shifted through bit by bit.
-const REMAINDERS: [u16; 256] = {
-    let mut table = [0; 256];
-    let mut byte: u16 = 0;
-    while byte < 256 {
-        let (mut sum, mut bit) = (byte << 8, 0);
-        while bit < 8 {
-            sum = if sum & 0x8000 == 0 {
-                sum << 1
-            } else {
-                sum << 1 ^ 0x1021
-            };
-            bit += 1;
-        }
-        table[byte as usize] = sum;
-        byte += 1;
-    }
-    table
-};
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,5 @@
-//! NEES "LabVIEW plugin" ASCII, spec v1.4, the coordinator's side: one line a message, fields divided by tabs. In: a
-//! transaction, a control point, metres. Out: the bytes of a request; what a reply says. Lengths are in metres and
+//! NEES "LabVIEW plugin" ASCII, spec v1.4, the coordinator's side: one line a message, fields separated by tabs. In: a
+//! transaction, a control point, \[m\]. Out: the bytes of a request; the meaning of a reply. Lengths are in metres and
 //! forces in newtons, as OpenFresco sends them: the protocol itself names no unit. It knows no device.
 
 use crate::rig::controllers::number;
@@ -9,19 +9,19 @@ pub const ENDING: &[u8] = b"\n";
 
 const DIRECTION: &str = "x";
 
-/// What a reply says.
+/// The meaning of a reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
     /// The fields after `OK` and its code; the first is the transaction where the request had one.
     Done(Vec<String>),
-    /// Anything else, in its own words, with the transaction it names.
+    /// Any other reply, as text, with the transaction it names.
     Refused {
         transaction: Option<String>,
         reason: String,
     },
 }
 
-/// What was measured at a control point.
+/// The measured values of a control point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
     /// m
@@ -40,14 +40,14 @@ pub fn close_session(name: &str) -> Vec<u8> {
     line(&["close-session", name])
 }
 
-/// Announces how many steps will come.
+/// Announces the number of steps to come.
 #[must_use]
 pub fn steps(transaction: &str, steps: u32) -> Vec<u8> {
     line(&["set-parameter", transaction, "nstep", &steps.to_string()])
 }
 
-/// Proposes a displacement (m) of every control point in one transaction, and says what its bytes say. None where one is no
-/// number.
+/// Proposes a displacement \[m\] of every control point in one transaction, and gives the decoded values. None if one is
+/// not finite.
 #[must_use]
 pub fn propose(transaction: &str, displacements: &[(&str, f64)]) -> Option<(Vec<u8>, Vec<f64>)> {
     let written: Vec<String> = displacements
@@ -124,12 +124,12 @@ pub fn reply(line: &[u8]) -> Reply {
     }
 }
 
-/// What the fields after the transaction measure: the control point, then triples of direction, kind and value. None
-/// where they are not that, or a value is no number.
+/// The measured values in the fields after the transaction: the control point, then triples of direction, kind and value.
+/// None for other fields, or a value that is not a number.
 #[must_use]
 pub fn measured(fields: &[String], control_point: &str) -> Option<Measured> {
     let (point, values) = fields.split_first()?;
-    // Some rigs say the point without its suffix.
+    // Some rigs name the point without its suffix.
     if point != control_point && Some(point.as_str()) != control_point.split(':').next() {
         return None;
     }

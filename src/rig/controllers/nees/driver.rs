@@ -1,25 +1,26 @@
-//! NEES "LabVIEW plugin" ASCII as the coordinator: one session over one TCP connection. In: metres and metres a second.
-//! Out: a proposal that the rig may refuse, its execution, the reading of the control point. The rig answers an
-//! execution when its motion is done, and hears nothing before: `start` waits that long. There is no stop out of band:
-//! holding is `cancel`, heard when the rig next listens. The protocol has no speed: the rig's own is to be below it.
-//! Several axes are several control points of one session: proposed, executed and refused together in one transaction, and
-//! asked for one after the other.
+//! NEES "LabVIEW plugin" ASCII as the coordinator: one session over one TCP connection. In: \[m\] and \[m/s\]. Out: a
+//! proposal that the rig may refuse, its execution, the reading of the control point. The rig answers an execution when its
+//! motion is done, and receives nothing before: `start` waits that long. There is no stop out of band: a hold is `cancel`,
+//! received when the rig next reads its line. The protocol has no speed: the rig's own must be below the limit. Several
+//! axes are several control points of one session: proposed, executed and refused together in one transaction, and read one
+//! after the other.
 
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::controllers::nees;
 use crate::rig::controllers::nees::codec::Reply;
 use crate::rig::controllers::{
-    Answer, Channel, Device, DeviceFault, DeviceIdentity, Flags, Force, Move, Sample, Talk,
+    Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient,
+    Sample,
 };
 
-/// What the session is called.
+/// Name of the session.
 const SESSION: &str = "psd";
-/// Steps announced when a session opens: a coordinator must say a number, and rigs only show it.
+/// Steps announced when a session opens: a coordinator must give a number, and rigs only display it.
 const ANNOUNCED_STEPS: u32 = 1_000_000;
 
 /// The site at the other end of a line.
 pub struct Nees {
-    talk: Talk,
+    client: LineClient,
     /// One an axis.
     control_points: Vec<String>,
     /// Longest time that the rig takes to settle after its motion, s.
@@ -35,14 +36,14 @@ pub struct Nees {
 }
 
 impl Nees {
-    /// A control point is `MDL-00-01` or `MDL-00-01:name`, one an axis; an execution is waited for twice as long as its way takes,
-    /// and `settling` s more.
+    /// A control point is `MDL-00-01` or `MDL-00-01:name`, one per axis; the longest wait for an execution is twice its
+    /// travel time, plus `settling` \[s\].
     #[must_use]
-    pub const fn new(talk: Talk, control_points: Vec<String>, settling: f64) -> Self {
+    pub const fn new(client: LineClient, control_points: Vec<String>, settling: f64) -> Self {
         let prefix = String::new();
         let last = Vec::new();
         Self {
-            talk,
+            client,
             control_points,
             settling,
             prefix,
@@ -53,10 +54,10 @@ impl Nees {
         }
     }
 
-    /// Displacement and force at a control point, and the reply that says so.
+    /// Displacement and force at a control point, and the reply with them.
     fn ask(&mut self, control_point: &str) -> Result<(f64, f64, Vec<u8>), DeviceFault> {
         let transaction = self.next_transaction();
-        let wait = self.talk.reply_timeout();
+        let wait = self.client.reply_timeout();
         let question = nees::codec::get_control_point(&transaction, control_point);
         let (fields, raw) = self.request(&question, Some(&transaction), wait)?;
         match measured(&fields, control_point) {
@@ -80,17 +81,17 @@ impl Nees {
         transaction: Option<&str>,
         wait: f64,
     ) -> Result<(Vec<String>, Vec<u8>), DeviceFault> {
-        self.talk.send(line)?;
+        self.client.send(line)?;
         self.answered(transaction, wait)
     }
 
-    /// Waits for the reply to what was sent.
+    /// Waits for the reply to the last request.
     fn answered(
         &mut self,
         transaction: Option<&str>,
         wait: f64,
     ) -> Result<(Vec<String>, Vec<u8>), DeviceFault> {
-        let deadline = self.talk.now() + wait;
+        let deadline = self.client.now() + wait;
         let executing = self.executing.clone();
         let mut ended = false;
         let mut accept = |line: &[u8]| match (nees::codec::reply(line), transaction) {
@@ -113,9 +114,11 @@ impl Nees {
             }
             (Reply::Refused { reason, .. }, _) => Answer::Fault(DeviceFault::Refused { reason }),
         };
-        let answer = self.talk.answer(nees::codec::ENDING, deadline, &mut accept);
+        let answer = self
+            .client
+            .answer(nees::codec::ENDING, deadline, &mut accept);
         if ended {
-            // The late answer to an execution: whatever it says, nothing moves any more.
+            // The late answer to an execution: whatever its text, nothing moves any more.
             self.executing = None;
         }
         answer?.ok_or(DeviceFault::Silent { seconds: wait })
@@ -126,9 +129,9 @@ impl Nees {
         let Some(transaction) = self.executing.clone() else {
             return Ok(());
         };
-        self.talk.send(&nees::codec::cancel(&transaction))?;
-        let wait = self.talk.reply_timeout();
-        let deadline = self.talk.now() + wait;
+        self.client.send(&nees::codec::cancel(&transaction))?;
+        let wait = self.client.reply_timeout();
+        let deadline = self.client.now() + wait;
         let mut refusal = None;
         let mut accept = |line: &[u8]| match nees::codec::reply(line) {
             Reply::Done(fields) if fields.first() == Some(&transaction) => Answer::Take(()),
@@ -139,7 +142,7 @@ impl Nees {
             }
         };
         if self
-            .talk
+            .client
             .answer(nees::codec::ENDING, deadline, &mut accept)?
             .is_none()
         {
@@ -166,15 +169,15 @@ impl Device for Nees {
             ));
         }
         self.prefix = self
-            .talk
+            .client
             .clock()
             .wall()
             .unwrap_or_default()
             .chars()
             .filter(char::is_ascii_digit)
             .collect();
-        let wait = self.talk.reply_timeout();
-        self.talk.drain()?;
+        let wait = self.client.reply_timeout();
+        self.client.drain()?;
         let (_, welcome) = self.request(&nees::codec::open_session(SESSION), None, wait)?;
         self.open = true;
         let transaction = self.next_transaction();
@@ -192,7 +195,7 @@ impl Device for Nees {
         self.control_points.len()
     }
 
-    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         if targets.len() != self.control_points.len() {
             let (points, targets) = (self.control_points.len(), targets.len());
             return Err(DeviceFault::Unfit(format!(
@@ -211,7 +214,7 @@ impl Device for Nees {
             .collect();
         let (proposal, targets) = nees::codec::propose(&transaction, &points)
             .ok_or_else(|| DeviceFault::Unfit(format!("{targets:?} m are no targets")))?;
-        Ok(Move {
+        Ok(DeviceMove {
             frames: vec![proposal, nees::codec::execute(&transaction)],
             targets,
             speed,
@@ -219,34 +222,34 @@ impl Device for Nees {
         })
     }
 
-    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
-        self.offer(going)?;
+    fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
+        self.propose(going)?;
         self.begin(going)?;
         self.finish(going)
     }
 
-    fn offer(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn propose(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let (proposal, _, transaction) = proposed(going)?;
-        let wait = self.talk.reply_timeout();
+        let wait = self.client.reply_timeout();
         self.request(proposal, Some(&transaction), wait).map(drop)
     }
 
-    fn withdraw(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn cancel(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let (.., transaction) = proposed(going)?;
-        let wait = self.talk.reply_timeout();
+        let wait = self.client.reply_timeout();
         self.request(&nees::codec::cancel(&transaction), Some(&transaction), wait)
             .map(drop)
     }
 
-    fn begin(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn begin(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let (_, execution, transaction) = proposed(going)?;
         self.executing = Some(transaction);
-        self.talk.send(execution)
+        self.client.send(execution)
     }
 
-    fn finish(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn finish(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let (.., transaction) = proposed(going)?;
-        let wait = self.talk.reply_timeout();
+        let wait = self.client.reply_timeout();
         let way = going
             .targets
             .iter()
@@ -276,7 +279,7 @@ impl Device for Nees {
         })
     }
 
-    /// Cancels what is being executed; at rest there is nothing to say.
+    /// Cancels the present execution; at rest there is nothing to send.
     fn hold(&mut self) -> Result<(), DeviceFault> {
         self.cancel()
     }
@@ -288,12 +291,12 @@ impl Device for Nees {
             .unwrap_or_default()
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
-/// Who a site is that answers the opening of a session with this line.
+/// The identity of a site from its answer to the opening of a session.
 pub(crate) fn introduced(control_points: &[String], welcome: &[u8]) -> Option<DeviceIdentity> {
     let Reply::Done(said) = nees::codec::reply(welcome) else {
         return None;
@@ -321,14 +324,6 @@ fn measured(fields: &[String], control_point: &str) -> Option<(f64, f64)> {
     at.displacement.zip(at.force)
 }
 
-/// The same from the reply itself.
-pub(crate) fn decoded(reply: &[u8], control_point: &str) -> Option<(f64, f64)> {
-    match nees::codec::reply(reply) {
-        Reply::Done(fields) => measured(&fields, control_point),
-        Reply::Refused { .. } => None,
-    }
-}
-
 /// The reading of all control points, from displacement (m) and force (N) of each.
 pub(crate) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
     let mut channels = points.iter().map(|(displacement, force)| Channel {
@@ -351,28 +346,8 @@ pub(crate) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
     }
 }
 
-/// Whether these are the bytes of a proposal of these places (m), and of its execution.
-pub(crate) fn sends(wire: &[u8], control_points: &[String], targets: &[f64]) -> bool {
-    let Some(transaction) = nees::codec::transaction(
-        wire.split_inclusive(|byte| *byte == b'\n')
-            .next()
-            .unwrap_or_default(),
-    ) else {
-        return false;
-    };
-    let points: Vec<(&str, f64)> = control_points
-        .iter()
-        .map(String::as_str)
-        .zip(targets.iter().copied())
-        .collect();
-    let again = nees::codec::propose(transaction, &points);
-    again.is_some_and(|(proposal, said)| {
-        said == targets && [proposal, nees::codec::execute(transaction)].concat() == wire
-    })
-}
-
 /// Proposal, execution and name of a transaction.
-fn proposed(going: &Move) -> Result<(&[u8], &[u8], String), DeviceFault> {
+fn proposed(going: &DeviceMove) -> Result<(&[u8], &[u8], String), DeviceFault> {
     let ours = |frame: &[u8]| nees::codec::transaction(frame).map(str::to_owned);
     match (
         going.frames.as_slice(),
@@ -384,10 +359,10 @@ fn proposed(going: &Move) -> Result<(&[u8], &[u8], String), DeviceFault> {
 }
 
 impl Drop for Nees {
-    /// Whether the rig hears it or not, the line is closed after it.
+    /// The line is closed after it, whether the rig receives it or not.
     fn drop(&mut self) {
         if self.open {
-            self.talk.send(&nees::codec::close_session(SESSION)).ok();
+            self.client.send(&nees::codec::close_session(SESSION)).ok();
         }
     }
 }

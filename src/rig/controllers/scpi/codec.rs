@@ -1,12 +1,12 @@
-//! SCPI transducers: `*IDN?` and `READ?`. In: a line without its ending. Out: who answers; the number it reads. What the
-//! number weighs is the plan's to say.
+//! SCPI transducers: `*IDN?` and `READ?`. In: a line without its ending. Out: the identity; the number of a reading. The
+//! force of one unit is stated in the plan.
 
 use crate::rig::controllers::number;
 
 pub const IDENTIFY: &[u8] = b"*IDN?\n";
 pub const READ: &[u8] = b"READ?\n";
 
-/// What `*IDN?` says.
+/// The answer to `*IDN?`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identification {
     pub maker: String,
@@ -15,7 +15,7 @@ pub struct Identification {
     pub firmware: String,
 }
 
-/// What `READ?` says.
+/// The answer to `READ?`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
     Number(f64),
@@ -51,7 +51,7 @@ pub fn identification(line: &[u8]) -> Option<Identification> {
 /// The one number of an answer.
 ///
 /// # Errors
-/// Why it is none.
+/// The reason why it is invalid.
 pub fn answer(line: &[u8]) -> Result<Answer, &'static str> {
     let value = number::scientific(line).ok_or("it is no number")?;
     if value.abs() < INFINITY {

@@ -1,10 +1,10 @@
-//! A transducer that is asked `READ?`. In: nothing. Out: a force, by the plan's N per reading unit. After a silence it is
-//! asked who it is until it says so: whatever was late has then come before. It moves nothing.
+//! A transducer that answers `READ?`. In: nothing. Out: a force, by the plan's N per reading unit. After a silence its
+//! identity is requested until it answers: all late answers have then been received. It moves nothing.
 
-use crate::rig::Tally;
+use crate::rig::LineStatistics;
 use crate::rig::controllers::scpi;
 use crate::rig::controllers::{
-    Answer, Channel, DeviceFault, DeviceIdentity, Flags, Force, Gauge, Sample, Talk,
+    Answer, Channel, DeviceFault, DeviceIdentity, Flags, Force, LineClient, LoadCell, Sample,
 };
 
 /// How often a question is put before it is given up.
@@ -12,30 +12,30 @@ const ATTEMPTS: u32 = 3;
 
 /// The meter at the other end of a line.
 pub struct ScpiDevice {
-    talk: Talk,
+    client: LineClient,
     /// One a channel.
     newtons_per_unit: Vec<f64>,
-    /// As it says who it is.
+    /// The reply with its identity.
     name: Vec<u8>,
-    /// An earlier answer may still come.
-    doubtful: bool,
+    /// An earlier answer is still possible.
+    late_answer_possible: bool,
 }
 
 impl ScpiDevice {
     #[must_use]
-    pub const fn new(talk: Talk, newtons_per_unit: Vec<f64>) -> Self {
+    pub const fn new(client: LineClient, newtons_per_unit: Vec<f64>) -> Self {
         Self {
-            talk,
+            client,
             newtons_per_unit,
             name: Vec::new(),
-            doubtful: false,
+            late_answer_possible: false,
         }
     }
 
-    /// Asks who it is; every other line is thrown away.
+    /// Requests its identity; every other line is discarded.
     fn say_name(&mut self) -> Result<Vec<u8>, DeviceFault> {
         let expected = std::mem::take(&mut self.name);
-        let named = self.talk.exchange(scpi::codec::IDENTIFY, b"\n", |line| {
+        let named = self.client.exchange(scpi::codec::IDENTIFY, b"\n", |line| {
             let line = stripped(line);
             let fits = scpi::codec::identification(line).is_some()
                 && (expected.is_empty() || line == expected);
@@ -49,29 +49,29 @@ impl ScpiDevice {
         named
     }
 
-    /// Of several questions one answer came: the others are waited for no longer than a time-out.
+    /// One answer came to several questions: the others are waited for no longer than a time-out.
     fn catch_up(&mut self) -> Result<(), DeviceFault> {
-        self.talk.drain()?;
-        let before = self.talk.tally().resent;
+        self.client.drain()?;
+        let before = self.client.line_statistics().resent;
         self.say_name()?;
-        if self.talk.tally().resent > before {
-            self.talk.until_quiet(self.talk.reply_timeout())?;
+        if self.client.line_statistics().resent > before {
+            self.client.until_quiet(self.client.reply_timeout())?;
         }
-        self.doubtful = false;
+        self.late_answer_possible = false;
         Ok(())
     }
 
     /// The answer to a question put now.
     fn read(&mut self) -> Result<Vec<u8>, DeviceFault> {
-        let began = self.talk.now();
+        let began = self.client.now();
         for attempt in 0..ATTEMPTS {
             if attempt > 0 {
-                self.talk.tally_mut().resent += 1;
+                self.client.line_statistics_mut().resent += 1;
             }
-            if self.doubtful {
+            if self.late_answer_possible {
                 self.catch_up()?;
             }
-            self.talk.drain()?;
+            self.client.drain()?;
             let name = &self.name;
             let accept = |line: &[u8]| {
                 let line = stripped(line);
@@ -81,18 +81,18 @@ impl ScpiDevice {
                     Answer::Take(line.to_vec())
                 }
             };
-            match self.talk.exchange_once(scpi::codec::READ, b"\n", accept) {
+            match self.client.exchange_once(scpi::codec::READ, b"\n", accept) {
                 Ok(line) => return Ok(line),
-                Err(DeviceFault::Silent { .. }) => self.doubtful = true,
+                Err(DeviceFault::Silent { .. }) => self.late_answer_possible = true,
                 Err(fault) => {
                     // An interrupted question may be answered yet.
-                    self.doubtful = true;
+                    self.late_answer_possible = true;
                     return Err(fault);
                 }
             }
         }
         Err(DeviceFault::Silent {
-            seconds: self.talk.now() - began,
+            seconds: self.client.now() - began,
         })
     }
 }
@@ -101,7 +101,7 @@ fn stripped(line: &[u8]) -> &[u8] {
     line.strip_suffix(b"\r").unwrap_or(line)
 }
 
-/// Who a meter is that says this of itself.
+/// The identity of a meter from this reply.
 pub(crate) fn introduced(name: &[u8]) -> Option<DeviceIdentity> {
     let who = scpi::codec::identification(name)?;
     let simulated = who.maker.starts_with(crate::rig::controllers::SIMULATED)
@@ -178,7 +178,7 @@ pub(crate) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample,
     })
 }
 
-impl Gauge for ScpiDevice {
+impl LoadCell for ScpiDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.name = Vec::new();
         self.catch_up()?;
@@ -194,8 +194,8 @@ impl Gauge for ScpiDevice {
         decoded(self.read()?, &self.newtons_per_unit)
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 
@@ -211,7 +211,7 @@ mod tests {
         let port = ScriptedPort::new(&clock);
         (
             ScpiDevice::new(
-                Talk::new(Box::new(port.clone()), Box::new(clock), 0.5),
+                LineClient::new(Box::new(port.clone()), Box::new(clock), 0.5),
                 vec![-100.0],
             ),
             port,
@@ -283,14 +283,14 @@ mod tests {
     fn after_a_silence_what_is_late_comes_before_its_name_and_is_thrown_away() {
         let (mut device, port) = identified();
         reply(&port, 0.8, "6.66");
-        // The name is asked for while the old answer is still on its way; it comes behind it.
+        // The name is requested while the old answer is still under way; it comes after that answer.
         reply(&port, 0.1, NAME);
         reply(&port, 0.1, "1.5");
         assert_eq!(device.sample().unwrap().force, Some(Force::Newtons(-150.0)));
         assert_eq!(sent(&port)[1..], [&b"READ?\n"[..], b"*IDN?\n", b"READ?\n"]);
         assert_eq!(
-            device.tally(),
-            Tally {
+            device.line_statistics(),
+            LineStatistics {
                 resent: 1,
                 ignored: 1,
                 reread: 0
@@ -336,8 +336,8 @@ mod tests {
     #[test]
     fn silence_ends_within_a_bounded_time() {
         let (mut device, _) = identified();
-        let began = device.talk.now();
+        let began = device.client.now();
         assert!(matches!(device.sample(), Err(DeviceFault::Silent { .. })));
-        assert!(device.talk.now() - began < 10.0 * 0.5);
+        assert!(device.client.now() - began < 10.0 * 0.5);
     }
 }

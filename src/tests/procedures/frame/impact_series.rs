@@ -193,7 +193,7 @@ fn the_residual_drift_of_a_series_has_the_uncertainty_of_the_zero_offsets() {
             .rest
             .as_ref()
             .unwrap()
-            .doubts_of_drifts()
+            .drift_contributions()
     );
 }
 

@@ -195,7 +195,7 @@ fn a_blow_is_no_trend_to_go_on_with() {
     };
     let plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
     let disk = PowerLoss::new();
-    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     begin(
         &mut journal,
         &crate::tests::testing::header(),
@@ -304,7 +304,7 @@ fn a_continuous_run_is_played_back_from_its_record() {
     use crate::record::journal::{Durability, EntryKind, Journal, recover};
     use crate::rig::VirtualRig;
     use crate::run::Unwatched;
-    use crate::run::replay::{Played, begin, record, replay};
+    use crate::run::replay::{LoggedRun, begin, record, replay};
 
     let mut plan = let_go(CONTINUOUS, 50.0, 0.05, 5e-3);
     plan.rig.link = Link::Virtual(VirtualLink {
@@ -314,7 +314,7 @@ fn a_continuous_run_is_played_back_from_its_record() {
         ..VirtualLink::default()
     });
     let disk = PowerLoss::new();
-    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     begin(
         &mut journal,
         &crate::tests::testing::header(),
@@ -330,7 +330,7 @@ fn a_continuous_run_is_played_back_from_its_record() {
         whole.record.events
     );
     let recovered = recover(&disk.written()).unwrap();
-    let again = replay(&plan, Played::of(&recovered).unwrap());
+    let again = replay(&plan, LoggedRun::of(&recovered).unwrap());
     assert_eq!(again.mismatch, None);
     assert_eq!(format!("{:?}", again.record), format!("{:?}", whole.record));
 
@@ -348,7 +348,7 @@ fn a_continuous_run_is_played_back_from_its_record() {
             serde_json::json!(f64::from_bits(velocity.to_bits() ^ 1));
     });
     assert!(
-        replay(&plan, Played::of(&forged).unwrap())
+        replay(&plan, LoggedRun::of(&forged).unwrap())
             .mismatch
             .is_some()
     );

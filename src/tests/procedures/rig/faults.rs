@@ -2,7 +2,9 @@
 
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::{DeclaredNoise, EachReading, Identity, Offer, Reading, Rig, RigFault, VirtualRig};
+use crate::rig::{
+    DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault, VirtualRig,
+};
 use crate::run::{Unwatched, run};
 use crate::tests::testing::{elastic_plan, number, ramp};
 
@@ -32,7 +34,7 @@ impl Rig for Failing {
     fn time(&self) -> f64 {
         self.rig.time()
     }
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<Offer, RigFault> {
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         self.moves_after_hold = self.moves_after_hold.map(|moves| moves + 1);
         self.rig.propose(targets, speed)
     }

@@ -3,4 +3,3 @@
 pub(crate) mod faults;
 pub(crate) mod remote_control;
 pub(crate) mod settled_hold;
-pub(crate) mod storage_bound;

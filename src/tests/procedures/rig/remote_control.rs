@@ -9,10 +9,11 @@ use crate::record::journal::{Durability, Journal, recover};
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
 use crate::rig::{RigFault, virtual_rig};
-use crate::run::remote_control::{Driver, Specimen};
+use crate::run::client_run::Driver;
+use crate::run::remote_control::Specimen;
 use crate::run::replay;
-use crate::run::replay::{Header, Played};
-use crate::run::{Inspection, Observer, Parting};
+use crate::run::replay::{Header, LoggedRun};
+use crate::run::{Disconnect, Inspection, Observer};
 use crate::tests::testing::elastic_plan;
 
 /// 0.1 N/s on a cell that may drift by so much, N.
@@ -41,7 +42,7 @@ fn client(specimen: &mut Specimen<'_, '_>) {
         Ok(())
     };
     talk().unwrap();
-    specimen.leave(Parting::Closed, "closed by the client".to_owned());
+    specimen.leave(Disconnect::Closed, "closed by the client".to_owned());
     specimen.close();
 }
 
@@ -79,7 +80,7 @@ fn served(plan: &Plan, wants: bool) -> Record {
 fn played(plan: &Plan, disk: &PowerLoss) -> replay::Replayed {
     let again = replay::replay(
         plan,
-        Played::of(&recover(&disk.written()).unwrap()).unwrap(),
+        LoggedRun::of(&recover(&disk.written()).unwrap()).unwrap(),
     );
     assert_eq!(again.mismatch, None);
     again
@@ -87,7 +88,7 @@ fn played(plan: &Plan, disk: &PowerLoss) -> replay::Replayed {
 
 fn recorded(plan: &Plan, wants: bool) -> (PowerLoss, Record, Vec<DrivenStep>) {
     let disk = PowerLoss::new();
-    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EveryPromise);
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
     let (mut person, mut rig) = (
         Person {

@@ -20,9 +20,10 @@ use crate::cli::settings::Settings;
 use crate::evidence::Folder;
 use crate::plan::{Datum, Link, Plan};
 use crate::report;
-use crate::rig::{Connected, Rig, Wish, connect, virtual_rig};
+use crate::rig::{Connected, Rig, StopRequest, connect, virtual_rig};
 use crate::run::Unwatched;
-use crate::run::remote_control::{Driver, Specimen};
+use crate::run::client_run::Driver;
+use crate::run::remote_control::Specimen;
 use crate::run::replay;
 use crate::run::replay::BY_HAND;
 use crate::units::Dimension;
@@ -60,12 +61,12 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
             .transpose()?,
     };
     let attendance = real_rig::named(attendance, plan)?;
-    let wish = Wish::default().letting_go(arguments.let_go);
-    let _signals = Signals::holding(&wish).map_err(Failure::Signals)?;
+    let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
+    let _signals = Signals::holding(&stop_request).map_err(Failure::Signals)?;
     let by = real_rig::operator(plan, &attendance).unwrap_or_else(|| "somebody".to_owned());
     let person = Person {
         typed: None,
-        wish: &wish,
+        stop_request: &stop_request,
         yes: arguments.yes,
         by,
     };
@@ -78,7 +79,7 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
                 .map(|run| datum_of(run, plan))
                 .transpose()?;
             let rig = plan.rig.with_recorded_datum(recorded.as_deref());
-            let connected = connect(&rig, &plan.limits, &wish).map_err(Failure::Rig);
+            let connected = connect(&rig, &plan.limits, &stop_request).map_err(Failure::Rig);
             let place = |fault: &str| plan_file::place_of_link(&checked, &arguments.plan, fault);
             let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
             if !settings.can_ask && !connected.rig.identity().simulated {

@@ -10,9 +10,9 @@ use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
-use crate::rig::{Identity, LimitedQuantity, OWN_SPEED, RigFault, Wish};
+use crate::rig::{Identity, LimitedQuantity, OWN_SPEED, RigFault, StopRequest};
 use crate::run::remote_control::Specimen;
-use crate::run::{Extent, Motion, Parting};
+use crate::run::{Disconnect, Extent, Motion};
 use crate::units::Dimension;
 use crate::units::display::{plain, readable};
 
@@ -36,7 +36,7 @@ impl JogSession<'_> {
             .come(format!("{}, by hand", self.person.by))
             .map_err(Failure::Rig);
         let ended = come.and_then(|()| {
-            if self.person.wish.lets_go() {
+            if self.person.stop_request.release_allowed() {
                 specimen.remark(format!(
                     "what was found held was let go of where it stands ({})",
                     self.person.by
@@ -45,15 +45,15 @@ impl JogSession<'_> {
             self.moves(specimen)
         });
         let (parting, reason) = match &ended {
-            Ok(Exit::Met) => (Parting::Closed, "done".to_owned()),
+            Ok(Exit::Met) => (Disconnect::Closed, "done".to_owned()),
             Ok(_) => (
-                Parting::Stopped,
+                Disconnect::Stopped,
                 "a limit or a person stood in the way".to_owned(),
             ),
             Err(failure) if failure.exit() == Exit::Stopped => {
-                (Parting::Stopped, failure.to_string())
+                (Disconnect::Stopped, failure.to_string())
             }
-            Err(failure) => (Parting::Failed, failure.to_string()),
+            Err(failure) => (Disconnect::Failed, failure.to_string()),
         };
         specimen.leave(parting, reason);
         specimen.close();
@@ -88,7 +88,7 @@ impl JogSession<'_> {
             ));
             let Some(line) = self.person.line(specimen)? else {
                 print_message("\n");
-                return Ok(if refused || self.person.wish.wants_end() {
+                return Ok(if refused || self.person.stop_request.end_requested() {
                     Exit::Stopped
                 } else {
                     Exit::Met
@@ -102,7 +102,7 @@ impl JogSession<'_> {
                     Err(failure) => print_message(&failure.report(self.settings)),
                 },
             }
-            if self.person.wish.wants_end() {
+            if self.person.stop_request.end_requested() {
                 return Ok(Exit::Stopped);
             }
         }
@@ -163,8 +163,8 @@ impl JogSession<'_> {
             print_message("  nothing moved\n");
             return Ok(Exit::Stopped);
         }
-        for target in specimen.way_to(to) {
-            if self.person.wish.wants_end() {
+        for target in specimen.increments_to(to) {
+            if self.person.stop_request.end_requested() {
                 specimen.hold();
                 print_message("  held\n");
                 return Ok(Exit::Stopped);
@@ -177,8 +177,8 @@ impl JogSession<'_> {
             }
             specimen.commit();
         }
-        let stopped = self.person.wish.wants_end();
-        let feedback = specimen.felt();
+        let stopped = self.person.stop_request.end_requested();
+        let feedback = specimen.feedback();
         let rows =
             feedback
                 .displacement
@@ -242,7 +242,7 @@ fn refused(fault: RigFault) -> Result<Exit, Failure> {
 /// The operator and the answers.
 pub(super) struct Person<'a> {
     pub typed: Option<Typed>,
-    pub wish: &'a Wish,
+    pub stop_request: &'a StopRequest,
     /// Whether `--yes` consents to every move.
     pub yes: bool,
     /// Name of the operator.
@@ -253,7 +253,7 @@ impl Person<'_> {
     /// A line of the operator; None at the end of the input and on Ctrl-C. The rig is polled meanwhile.
     fn line(&mut self, specimen: &mut Specimen<'_, '_>) -> Result<Option<String>, Failure> {
         let typed = self.typed.get_or_insert_with(Typed::from_the_terminal);
-        next_line(typed, self.wish, || specimen.listen()).map_err(Failure::Rig)
+        next_line(typed, self.stop_request, || specimen.listen()).map_err(Failure::Rig)
     }
 
     /// Whether the operator consents to a move. Question and answer are recorded.
@@ -268,8 +268,8 @@ impl Person<'_> {
         } else {
             let typed = self.typed.get_or_insert_with(Typed::from_the_terminal);
             let asked = Question::of(Kind::Jog, motion);
-            let yes =
-                agrees(typed, &asked, self.wish, || specimen.listen()).map_err(Failure::Rig)?;
+            let yes = agrees(typed, &asked, self.stop_request, || specimen.listen())
+                .map_err(Failure::Rig)?;
             (yes, if yes { "yes" } else { "no" })
         };
         specimen.remark(format!("{question} {how} ({})", self.by));

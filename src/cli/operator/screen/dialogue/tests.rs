@@ -18,10 +18,10 @@ fn of(kind: Kind) -> Question {
 
 /// What stands there has been drawn, and could be read; then these keys.
 fn type_in(dialogue: &mut Dialogue, text: &str) {
-    let wish = Wish::default();
+    let stop_request = StopRequest::default();
     for character in text.chars() {
         dialogue.drawn(dialogue.appeared, Duration::ZERO);
-        dialogue.press(key(character), LATER, &wish);
+        dialogue.press(key(character), LATER, &stop_request);
     }
 }
 
@@ -137,11 +137,11 @@ fn only_the_word_releases_a_rig() {
 
 #[test]
 fn no_key_counts_before_a_question_could_be_read() {
-    let wish = Wish::default();
+    let stop_request = StopRequest::default();
     let mut dialogue = Dialogue::new(Some("A".to_owned()));
     let press = |dialogue: &mut Dialogue, text: &str, now: Duration| {
         text.chars()
-            .for_each(|character| dialogue.press(key(character), now, &wish));
+            .for_each(|character| dialogue.press(key(character), now, &stop_request));
     };
     dialogue.ask(&of(Kind::Release));
     press(&mut dialogue, "RELEASE\nqhn\n\u{4}", LATER);
@@ -178,7 +178,7 @@ fn no_key_counts_before_a_question_could_be_read() {
         dialogue.ask(&of(Kind::Release)),
         Inspection::GoOn { .. }
     ));
-    assert!(!wish.wants_end());
+    assert!(!stop_request.end_requested());
     dialogue.ask(&of(Kind::GoOn));
     press(&mut dialogue, "RELEASE\n", LATER + 2 * DEAF);
     assert_eq!(
@@ -187,7 +187,7 @@ fn no_key_counts_before_a_question_could_be_read() {
         "the next question is a new one"
     );
     press(&mut dialogue, "\u{3}", LATER);
-    assert!(wish.wants_end(), "Ctrl-C always counts");
+    assert!(stop_request.end_requested(), "Ctrl-C always counts");
 }
 
 #[test]
@@ -234,12 +234,12 @@ fn a_paused_run_goes_on_step_by_step() {
 #[test]
 fn the_help_lets_the_keys_through_that_it_names_for_stopping() {
     for (key, held) in [('h', true), ('H', true), ('q', false), ('p', false)] {
-        let wish = Wish::default();
+        let stop_request = StopRequest::default();
         let mut dialogue = Dialogue::new(None);
-        dialogue.press(Key::Character('?'), LATER, &wish);
-        dialogue.press(Key::Character(key), LATER, &wish);
+        dialogue.press(Key::Character('?'), LATER, &stop_request);
+        dialogue.press(Key::Character(key), LATER, &stop_request);
         assert_eq!(
-            (wish.wants_hold(), wish.wants_end()),
+            (stop_request.hold_requested(), stop_request.end_requested()),
             (held, key != 'p'),
             "{key}"
         );
@@ -380,8 +380,8 @@ fn nobody_leaves_a_rig_that_may_still_move_unseen() {
         Stay::Wait,
         "it was left while it held"
     );
-    let wish = Wish::default();
-    dialogue.press(Key::Character('a'), LATER, &wish);
+    let stop_request = StopRequest::default();
+    dialogue.press(Key::Character('a'), LATER, &stop_request);
     assert_eq!(
         dialogue.stay(After::NotHeld),
         Stay::Wait,
@@ -392,7 +392,7 @@ fn nobody_leaves_a_rig_that_may_still_move_unseen() {
     type_in(&mut dialogue, "a");
     assert_eq!(dialogue.stay(After::NotHeld), Stay::Leave);
     let mut lost = Dialogue::new(None);
-    lost.lose(&wish);
+    lost.lose(&stop_request);
     assert_eq!(
         (
             lost.ask_to_unload(&of(Kind::Unload)),
@@ -405,19 +405,19 @@ fn nobody_leaves_a_rig_that_may_still_move_unseen() {
 
 #[test]
 fn stop_and_hold_are_wishes_and_a_lost_terminal_is_a_hold() {
-    let wish = Wish::default();
+    let stop_request = StopRequest::default();
     let mut dialogue = Dialogue::default();
-    dialogue.press(Key::Character('q'), LATER, &wish);
-    assert!(wish.wants_end() && !wish.wants_hold());
-    dialogue.press(Key::Interrupt, LATER, &wish);
-    assert!(wish.wants_hold());
-    let wish = Wish::default();
-    dialogue.press(Key::Quit, LATER, &wish);
-    assert!(wish.wants_hold());
-    let wish = Wish::default();
+    dialogue.press(Key::Character('q'), LATER, &stop_request);
+    assert!(stop_request.end_requested() && !stop_request.hold_requested());
+    dialogue.press(Key::Interrupt, LATER, &stop_request);
+    assert!(stop_request.hold_requested());
+    let stop_request = StopRequest::default();
+    dialogue.press(Key::Quit, LATER, &stop_request);
+    assert!(stop_request.hold_requested());
+    let stop_request = StopRequest::default();
     dialogue.paused = true;
-    dialogue.lose(&wish);
-    assert!(wish.wants_hold());
+    dialogue.lose(&stop_request);
+    assert!(stop_request.hold_requested());
     assert_eq!(
         dialogue.next(),
         Next::GoOn,

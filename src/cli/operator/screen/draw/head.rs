@@ -95,9 +95,9 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
             Ended::NotHeld => ("NOT CONFIRMED HELD: EMERGENCY STOP", Color::Red),
             Ended::Unloading => ("UNLOADING, THE RIG MOVES", Color::Red),
         }
-    } else if view.wish.wants_hold() {
+    } else if view.stop_request.hold_requested() {
         ("HOLDING", Color::Red)
-    } else if view.wish.wants_end() {
+    } else if view.stop_request.end_requested() {
         ("STOPPING", Color::Red)
     } else if let Some(question) = &view.dialogue.question {
         (
@@ -124,12 +124,13 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
 
 /// The last numbers, in words as long as there is room for.
 fn numbers_line(view: &View<'_>, width: usize) -> String {
-    let felt = view.model.felt();
-    if felt.is_empty() {
+    let feedback = view.model.feedback();
+    if feedback.is_empty() {
         return String::new();
     }
-    let line =
-        |words: [&str; 3], between: &str| format!(" {}", numbers(view, &felt, words).join(between));
+    let line = |words: [&str; 3], between: &str| {
+        format!(" {}", numbers(view, &feedback, words).join(between))
+    };
     let long = line(["tracking error", "energy error", "tracking energy"], "   ");
     let short = line(["error", "energy", "Et"], "   ");
     if long.chars().count() <= width {
@@ -144,11 +145,11 @@ fn numbers_line(view: &View<'_>, width: usize) -> String {
 /// The numbers by name; `words`: of the tracking error, the energy error, the energy error of tracking.
 fn numbers(
     view: &View<'_>,
-    felt: &[(f64, f64)],
+    feedback: &[(f64, f64)],
     [tracking, energy, tracking_energy]: [&str; 3],
 ) -> Vec<String> {
     let several = view.model.axes() > 1;
-    let (highest, sum) = felt
+    let (highest, sum) = feedback
         .iter()
         .fold((0.0, 0.0), |(_, sum), (displacement, force)| {
             (*displacement, sum + force)
@@ -231,9 +232,9 @@ pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
         }
     } else if view.model.ended == Some(Ended::Held) {
         " the rig is held"
-    } else if view.wish.wants_hold() {
+    } else if view.stop_request.hold_requested() {
         " the rig holds now"
-    } else if view.wish.wants_end() {
+    } else if view.stop_request.end_requested() {
         " stops at the end of this step   h or Ctrl-C again: hold now"
     } else if dialogue.monitor {
         " q end   ? help"

@@ -20,7 +20,7 @@ use ratatui::widgets::{Block, Borders};
 
 use super::dialogue::Dialogue;
 use super::model::{Ended, Model};
-use crate::rig::Wish;
+use crate::rig::StopRequest;
 use crate::text::diagnostic::excerpt::escape;
 
 /// The smallest terminal that is drawn on: columns and rows.
@@ -30,7 +30,7 @@ pub const SMALLEST: (u16, u16) = (60, 16);
 pub struct View<'a> {
     pub model: &'a Model,
     pub dialogue: &'a Dialogue,
-    pub wish: &'a Wish,
+    pub stop_request: &'a StopRequest,
     /// Wall time since the screen was wanted.
     pub now: Duration,
     pub color: bool,

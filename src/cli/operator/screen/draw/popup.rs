@@ -154,7 +154,7 @@ fn held(view: &View<'_>, after: After) -> (&'static str, Vec<String>) {
     ];
     lines.extend(
         view.model
-            .felt()
+            .feedback()
             .into_iter()
             .map(|(displacement, force)| felt(displacement, force)),
     );

@@ -13,7 +13,7 @@ use crate::cli::operator::screen::model::Model;
 use crate::cli::operator::watch::Stay;
 use crate::plan::Interval;
 use crate::record::{Event, EventKind};
-use crate::rig::{Felt, Identity, Wish};
+use crate::rig::{Feedback, Identity, StopRequest};
 use crate::run::{Extent, Motion, StepReport};
 use crate::tests::testing::empty_plan;
 
@@ -101,7 +101,7 @@ fn picture(size: (u16, u16), dialogue: &Dialogue, model: &Model) -> String {
     let view = View {
         model,
         dialogue,
-        wish: &Wish::default(),
+        stop_request: &StopRequest::default(),
         now,
         color: false,
     };
@@ -151,7 +151,7 @@ fn press(dialogue: &mut Dialogue, keys: &str) {
         } else {
             Key::Character(key)
         };
-        dialogue.press(key, Duration::from_secs(83), &Wish::default());
+        dialogue.press(key, Duration::from_secs(83), &StopRequest::default());
     }
 }
 
@@ -251,7 +251,7 @@ fn a_held_rig_stays_on_the_screen_with_what_may_be_done() {
             text: text.to_owned(),
         });
     }
-    held.live = Some(Felt {
+    held.live = Some(Feedback {
         number: 7,
         displacement: vec![7.63e-3],
         force: vec![2288.0],

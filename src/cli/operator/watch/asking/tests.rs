@@ -333,19 +333,19 @@ fn a_line_ends_with_the_input_and_with_ctrl_c() {
         let (send, lines) = channel();
         (send, Typed::of(lines, Box::new(|| Duration::ZERO)))
     };
-    let wish = Wish::default();
+    let stop_request = StopRequest::default();
     let (send, mut lines) = typed();
     send.send("y".to_owned()).unwrap();
     drop(send);
-    let line = |typed: &mut Typed| next_line(typed, &wish, || Ok::<_, ()>(()));
+    let line = |typed: &mut Typed| next_line(typed, &stop_request, || Ok::<_, ()>(()));
     assert_eq!(line(&mut lines), Ok(Some("y".to_owned())));
     assert_eq!(line(&mut lines), Ok(None));
     let (kept, mut lines) = typed();
-    wish.stop_after_step();
+    stop_request.stop_after_step();
     assert_eq!(line(&mut lines), Ok(None), "Ctrl-C while a question waits");
-    let wish = Wish::default();
+    let stop_request = StopRequest::default();
     let mut looks = 0;
-    let heard = next_line(&mut lines, &wish, || {
+    let heard = next_line(&mut lines, &stop_request, || {
         looks += 1;
         if looks == 3 {
             kept.send("late".to_owned())
@@ -360,7 +360,7 @@ fn a_line_ends_with_the_input_and_with_ctrl_c() {
     );
     let (_kept, mut lines) = typed();
     assert_eq!(
-        next_line(&mut lines, &wish, || Err("it trips")),
+        next_line(&mut lines, &stop_request, || Err("it trips")),
         Err("it trips")
     );
 }
@@ -375,18 +375,23 @@ fn one_move_by_hand_wants_its_word() {
         send.send("MOVE".to_owned()).unwrap();
         let mut send = Some(send);
         let mut looks = 0;
-        let agreed = agrees(&mut lines, &question(Kind::Jog), &Wish::default(), || {
-            looks += 1;
-            if looks == 1 {
-                now.set(Duration::from_secs(1));
-            } else if looks == 2 {
-                let send = send.take().unwrap();
-                for line in typed {
-                    send.send((*line).to_owned()).unwrap();
+        let agreed = agrees(
+            &mut lines,
+            &question(Kind::Jog),
+            &StopRequest::default(),
+            || {
+                looks += 1;
+                if looks == 1 {
+                    now.set(Duration::from_secs(1));
+                } else if looks == 2 {
+                    let send = send.take().unwrap();
+                    for line in typed {
+                        send.send((*line).to_owned()).unwrap();
+                    }
                 }
-            }
-            Ok::<_, ()>(())
-        });
+                Ok::<_, ()>(())
+            },
+        );
         assert_eq!(agreed, Ok(moves), "{typed:?}");
     }
 }

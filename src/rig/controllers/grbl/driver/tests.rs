@@ -1,4 +1,4 @@
-//! Transcripts of Grbl: what is sent, what comes back, what it means.
+//! Transcripts of Grbl: commands, replies, and their meaning.
 
 use super::*;
 use crate::plan::Limits;
@@ -11,7 +11,11 @@ fn device() -> (GrblDevice, ScriptedPort) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     (
-        GrblDevice::new(Talk::new(Box::new(port.clone()), Box::new(clock), 0.25)),
+        GrblDevice::new(LineClient::new(
+            Box::new(port.clone()),
+            Box::new(clock),
+            0.25,
+        )),
         port,
     )
 }
@@ -72,8 +76,8 @@ fn it_says_who_it_is_and_its_settings_are_looked_at() {
     );
     assert_eq!(sent(&port), ["?", "?", "?", "$I\n", "$$\n"]);
     assert_eq!(
-        device.tally(),
-        Tally::default(),
+        device.line_statistics(),
+        LineStatistics::default(),
         "an answer of many lines has nothing that is ignored"
     );
     assert!(device.narrow_limits(&[Limits::NONE]).is_ok());
@@ -291,20 +295,20 @@ fn a_late_status_is_not_taken_for_a_fresh_one() {
     status(&port, "Idle", 1.0);
     status(&port, "Idle", 1.0);
     assert_eq!(device.sample().unwrap().displacement, Some(1e-3));
-    assert_eq!(device.tally().resent, 1);
+    assert_eq!(device.line_statistics().resent, 1);
 }
 
 /// A board that is held at 1 mm, opened by somebody who wants it let go of, up to the answer to the reset.
 fn held_and_let_go(answer: &str) -> (GrblDevice, ScriptedPort) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
-    let talk = Talk::new(Box::new(port.clone()), Box::new(clock), 0.25)
-        .heeding(crate::rig::Wish::default().letting_go(true));
+    let client = LineClient::new(Box::new(port.clone()), Box::new(clock), 0.25)
+        .observing(crate::rig::StopRequest::default().with_release_allowed(true));
     for _ in 0..4 {
         status(&port, "Hold:0", 1.0);
     }
     reply(&port, answer);
-    (GrblDevice::new(talk), port)
+    (GrblDevice::new(client), port)
 }
 
 const BANNER: &str = "\r\nGrbl 1.1h ['$' for help]\r\n";
@@ -343,12 +347,12 @@ fn an_axis_that_lost_its_place_or_is_elsewhere_is_not_taken_for_let_go() {
     // It still creeps: a reset would lose its place.
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
-    let talk = Talk::new(Box::new(port.clone()), Box::new(clock), 0.25)
-        .heeding(crate::rig::Wish::default().letting_go(true));
+    let client = LineClient::new(Box::new(port.clone()), Box::new(clock), 0.25)
+        .observing(crate::rig::StopRequest::default().with_release_allowed(true));
     for x in [1.0, 1.0, 1.0, 1.001] {
         status(&port, "Hold:0", x);
     }
-    assert!(reason(GrblDevice::new(talk).identify()).contains("does not rest"));
+    assert!(reason(GrblDevice::new(client).identify()).contains("does not rest"));
     assert!(!sent(&port).contains(&"\u{18}".to_owned()));
 }
 
@@ -361,5 +365,5 @@ fn a_start_seen_while_its_port_is_opened_is_told_as_one() {
         device.identify().unwrap().boot.as_deref(),
         Some(crate::rig::JUST_STARTED)
     );
-    assert_eq!(device.tally().ignored, 0);
+    assert_eq!(device.line_statistics().ignored, 0);
 }

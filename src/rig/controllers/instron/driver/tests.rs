@@ -31,8 +31,8 @@ fn text(frame: &[u8]) -> String {
 fn console() -> (Instron, Transcript) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
-    let talk = Talk::new(Box::new(port.clone()), Box::new(clock), T);
-    (Instron::new(talk), Transcript::new(port, 0.02, text))
+    let client = LineClient::new(Box::new(port.clone()), Box::new(clock), T);
+    (Instron::new(client), Transcript::new(port, 0.02, text))
 }
 
 /// 100 mm and 50 kN of full scale, at rest at 1 % of each.
@@ -88,7 +88,7 @@ fn a_ramp_is_read_back_before_it_starts() {
         .on("Q1 ", "1");
     console.start(&going).unwrap();
     script.done();
-    assert_eq!(console.tally().resent, 2);
+    assert_eq!(console.line_statistics().resent, 2);
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn an_exact_zero_is_asked_again_and_believed_twice() {
     console.sample().unwrap();
     script.done();
     assert_eq!(
-        console.tally().reread,
+        console.line_statistics().reread,
         1,
         "a zero that is one mended nothing"
     );
@@ -184,7 +184,7 @@ fn after_a_silence_only_the_second_of_two_lone_answers_counts() {
         .on("Q134,2,0 ", "0.01");
     assert_eq!(console.sample().unwrap().displacement, Some(0.003));
     script.done();
-    assert_eq!(console.tally().resent, 1);
+    assert_eq!(console.line_statistics().resent, 1);
     // Nobody answers at all: bounded.
     let (mut console, script) = self::console();
     assert!(matches!(

@@ -1,7 +1,7 @@
-//! Transcripts of a stand with its gauge: limits read back, lost letters, silences, overruns.
+//! Transcripts of a stand with its gauge: limits read back, lost characters, silences, overruns.
 
 use super::*;
-use crate::rig::controllers::Mark10Gauge;
+use crate::rig::controllers::mark10::load_cell::Mark10Gauge;
 use crate::rig::testing::{Say, ScriptedPort, Transcript, VirtualClock};
 
 const T: f64 = 0.2;
@@ -21,19 +21,19 @@ fn text(frame: &[u8]) -> String {
     String::from_utf8(frame.to_vec()).unwrap()
 }
 
-fn line() -> (Talk, Transcript) {
+fn line() -> (LineClient, Transcript) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     (
-        Talk::new(Box::new(port.clone()), Box::new(clock), T),
+        LineClient::new(Box::new(port.clone()), Box::new(clock), T),
         Transcript::new(port, 0.01, text),
     )
 }
 
 /// At 1 mm, stopped.
 fn opened() -> (Mark10, Transcript) {
-    let (talk, mut script) = line();
-    let mut stand = Mark10::new(talk);
+    let (client, mut script) = line();
+    let mut stand = Mark10::new(client);
     round(script.on("ilo", "").on("p", "SL"), "SL", "1.00", "100.0 N");
     stand.identify().unwrap();
     (stand, script)
@@ -129,10 +129,10 @@ fn it_never_sets_off_with_another_limit_or_outside_limit_mode() {
         Err(DeviceFault::Rebooted { .. })
     ));
     script.done();
-    let (talk, mut script) = line();
+    let (client, mut script) = line();
     script.on("ilo", "").on("p", "SM");
     assert!(matches!(
-        Mark10::new(talk).identify(),
+        Mark10::new(client).identify(),
         Err(DeviceFault::Unfit(_))
     ));
 }
@@ -219,7 +219,7 @@ fn a_garbled_answer_outside_of_a_reading_is_asked_for_again() {
         .on("p", "UL");
     stand.start(&going).unwrap();
     script.done();
-    assert_eq!(stand.tally().reread, 2);
+    assert_eq!(stand.line_statistics().reread, 2);
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn after_a_silence_travel_and_force_are_asked_twice() {
     script.port.say(&[Say::After(0.0, b"999.99\r\n".to_vec())]);
     round(&mut script, "SL", "1.00", "100 N");
     assert_eq!(stand.sample().unwrap().displacement, Some(0.001));
-    assert!(stand.tally().ignored >= 1);
+    assert!(stand.line_statistics().ignored >= 1);
 }
 
 #[test]
@@ -278,8 +278,8 @@ fn it_holds_by_stopping_and_looks_whether_it_does() {
 
 #[test]
 fn the_gauge_alone_weighs_and_does_not_move() {
-    let (talk, mut script) = line();
-    let mut gauge = Mark10Gauge::new(talk);
+    let (client, mut script) = line();
+    let mut gauge = Mark10Gauge::new(client);
     script
         .on("?\r", "12.5 N")
         .on("?\r", "2 kgF")

@@ -1,4 +1,4 @@
-//! The native dialect against the vectors of its specification, and against every single fault of a line.
+//! The native protocol against the vectors of its specification, and against every single fault of a line.
 
 use super::*;
 use crate::rig::safety::failpoint::without;

@@ -1,5 +1,5 @@
-//! Driver for psd's own protocol. In: moves and requests in SI. Out: replies that are complete, in
-//! order and from the same power-up. `codec` knows the bytes. It does not judge a reading.
+//! Driver for psd's own protocol. In: moves and requests in SI. Out: replies that are complete, in order and from the same
+//! power-up. `codec` knows the bytes. It does not validate a reading.
 
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::Limits;
@@ -9,10 +9,10 @@ use crate::rig::controllers::native::codec::{
 };
 use crate::rig::controllers::number;
 use crate::rig::controllers::{
-    Answer, Channel, Device, DeviceFault, DeviceIdentity, Force, Move, Sample, Talk,
+    Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Force, LineClient, Sample,
 };
 use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{LastMove, Tally};
+use crate::rig::{LastMove, LineStatistics};
 
 mod path;
 
@@ -21,14 +21,14 @@ pub const SIMULATED: &str = "PSD-SIM";
 
 /// The firmware at the other end of a line.
 pub struct NativeDevice {
-    talk: Talk,
+    client: LineClient,
     /// Of the last request.
     sequence: u32,
     boot: Option<String>,
     hello: Option<Hello>,
-    /// The reply that said it.
+    /// The reply with its identity.
     introduction: Vec<u8>,
-    /// The limits of this run, as they were told.
+    /// The limits of this run, as they were sent.
     narrowed: Option<Bounds>,
     /// A request was not answered: rig and program may disagree on its number.
     out_of_step: bool,
@@ -49,9 +49,9 @@ struct Proposed {
 
 impl NativeDevice {
     #[must_use]
-    pub const fn new(talk: Talk) -> Self {
+    pub const fn new(client: LineClient) -> Self {
         Self {
-            talk,
+            client,
             sequence: 0,
             boot: None,
             hello: None,
@@ -64,10 +64,10 @@ impl NativeDevice {
         }
     }
 
-    /// Tells the rig that its position is to be trusted from now on; `token` says by whose word (letters, digits, `-`).
+    /// Declares the position of the rig as trusted from now on; `token` states by whom (letters, digits, `-`).
     ///
     /// # Errors
-    /// It refuses or is not heard.
+    /// It refuses or does not receive the request.
     pub fn reference(&mut self, token: &str) -> Result<(), DeviceFault> {
         self.request(&Request::Reference { token }, Kind::Ack)
             .map(drop)
@@ -79,7 +79,7 @@ impl NativeDevice {
             .ok_or_else(|| DeviceFault::Unfit("the rig has not been asked who it is".to_owned()))
     }
 
-    /// Asks and waits for the reply of this kind, having taken up the conversation again where it was broken off.
+    /// Sends a request and waits for the reply of this kind, after resynchronising an interrupted conversation.
     fn request(&mut self, request: &Request<'_>, kind: Kind) -> Result<Reply, DeviceFault> {
         if self.out_of_step {
             self.say_hello()?;
@@ -97,7 +97,7 @@ impl NativeDevice {
         self.out_of_step = true;
         let (sequence, boot) = (self.sequence, self.boot.as_deref());
         let answered = self
-            .talk
+            .client
             .exchange(frame, b"\n", |line| judge(line, sequence, kind, boot))?;
         let refused = answered.kind == Kind::Err;
         self.out_of_step = refused && answered.words().first() == Some(&"SEQ");
@@ -132,9 +132,9 @@ impl NativeDevice {
         Ok(())
     }
 
-    /// Sends a move or a way as it was made. The reply to its last frame.
-    fn send(&mut self, going: &Move) -> Result<Option<Reply>, DeviceFault> {
-        // The bytes are on record before they are sent: they are never made anew with another number.
+    /// Sends an encoded move or path. Gives the reply to its last frame.
+    fn send(&mut self, going: &DeviceMove) -> Result<Option<Reply>, DeviceFault> {
+        // The bytes are in the run log before they are sent: they are never encoded again with a different number.
         let next = self.sequence.wrapping_add(1);
         if self.out_of_step
             || going
@@ -161,7 +161,7 @@ impl NativeDevice {
         Ok(last)
     }
 
-    /// The frames of a request that moves, in order: a latched hold is let go of first.
+    /// The frames of a motion request, in order: a latched hold is cleared first.
     fn frames_of(&self, moving: Request<'_>) -> Result<Vec<Vec<u8>>, DeviceFault> {
         let requests = if self.held {
             vec![Request::Clear, moving]
@@ -187,7 +187,7 @@ fn framed(sequence: u32, request: &Request<'_>) -> Result<Vec<u8>, DeviceFault> 
         .ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be said in a frame")))
 }
 
-/// Who a rig is that says this of itself.
+/// The identity of a rig from its reply to HELLO.
 pub fn native_identity(hello: &Hello, boot: Option<String>) -> DeviceIdentity {
     let Hello {
         model,
@@ -206,7 +206,7 @@ pub fn native_identity(hello: &Hello, boot: Option<String>) -> DeviceIdentity {
     }
 }
 
-/// The reading that a `DATA` reply of so many axes says.
+/// The reading of a `DATA` reply with this number of axes.
 pub(crate) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> {
     let words = reply.words();
     let Some(data) = native::codec::data(&words).filter(|data| data.axes.len() == axes) else {
@@ -242,7 +242,7 @@ pub(crate) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> 
     })
 }
 
-/// What a line is to the request that is open.
+/// The meaning of a received line for the open request.
 fn judge(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Reply> {
     let Ok(reply) = native::codec::reply(line) else {
         return Answer::Ignore;
@@ -276,7 +276,7 @@ fn state(reply: &Reply) -> Result<State, DeviceFault> {
 
 impl Device for NativeDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
-        self.talk.drain()?;
+        self.client.drain()?;
         self.narrowed = None;
         self.say_hello()?;
         let reply = self.request(&Request::Status, Kind::Ack)?;
@@ -293,8 +293,8 @@ impl Device for NativeDevice {
                 "the emergency stop is pressed".to_owned(),
             ));
         }
-        // Between two runs nothing is said to the rig, so that its watchdog has tripped: beginning a run is the
-        // operator's act that lets go of it. Within a run it is never let go of.
+        // Between two runs the rig receives no frames, so its watchdog has tripped. The start of a run is the operator's
+        // act that clears the hold. Within a run it is never cleared.
         if state(&reply)? == State::Held {
             self.command(&Request::Clear)?;
         }
@@ -313,7 +313,7 @@ impl Device for NativeDevice {
             .map_or(1, |hello| hello.bounds.axes.len())
     }
 
-    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<Move, DeviceFault> {
+    fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         let bounds = &self.hello()?.bounds;
         if self.out_of_step {
             return Err(DeviceFault::Unfit(
@@ -360,7 +360,7 @@ impl Device for NativeDevice {
         }
         let id = match &self.proposed {
             Some(proposed) if proposed.targets == written || !proposed.sent => proposed.id,
-            // The rig may have heard the other targets under this number.
+            // The rig may have received different targets under this number.
             Some(proposed) => proposed.id + 1,
             None => self.next_id,
         };
@@ -378,7 +378,7 @@ impl Device for NativeDevice {
             targets: written,
             sent,
         });
-        Ok(Move {
+        Ok(DeviceMove {
             frames,
             targets,
             speed,
@@ -386,11 +386,11 @@ impl Device for NativeDevice {
         })
     }
 
-    fn encode_way(&mut self, paths: &[Path]) -> Result<Move, DeviceFault> {
-        self.way(paths)
+    fn encode_path(&mut self, paths: &[Path]) -> Result<DeviceMove, DeviceFault> {
+        self.glide_move(paths)
     }
 
-    fn set_out(&mut self, going: &Move) -> Result<f64, DeviceFault> {
+    fn start_path(&mut self, going: &DeviceMove) -> Result<f64, DeviceFault> {
         let Some(reply) = self.send(going)? else {
             return Err(nothing_to_send());
         };
@@ -401,7 +401,7 @@ impl Device for NativeDevice {
         native::codec::left(&reply.words()).ok_or_else(strange)
     }
 
-    fn start(&mut self, going: &Move) -> Result<(), DeviceFault> {
+    fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         self.send(going)?.map(drop).ok_or_else(nothing_to_send)
     }
 
@@ -411,7 +411,7 @@ impl Device for NativeDevice {
     }
 
     fn hold(&mut self) -> Result<(), DeviceFault> {
-        self.talk.send(&self.emergency())?;
+        self.client.send(&self.emergency())?;
         self.held = true;
         match self.command(&Request::Stop)? {
             State::Held => Ok(()),
@@ -459,8 +459,8 @@ impl Device for NativeDevice {
         self.hello.as_ref().and_then(|hello| hello.last.clone())
     }
 
-    fn tally(&self) -> Tally {
-        self.talk.tally()
+    fn line_statistics(&self) -> LineStatistics {
+        self.client.line_statistics()
     }
 }
 

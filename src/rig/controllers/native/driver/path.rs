@@ -1,7 +1,7 @@
-//! Ways of a rig that speaks psd's own protocol: smooth paths whose ends it passes. In: a path an axis, in the device's own
-//! directions. Out: the frame of a `GLIDE`, and what it says. It sends nothing.
+//! Continuous motion in psd's own protocol: smooth paths whose ends are passed. In: a path per axis, in the device's own
+//! directions. Out: the frame of a `GLIDE`, and its decoded values. It sends nothing.
 
-use super::{Move, NativeDevice, Proposed};
+use super::{DeviceMove, NativeDevice, Proposed};
 use crate::physics::tracking::trajectory::Path;
 use crate::rig::controllers::DeviceFault;
 use crate::rig::controllers::native;
@@ -9,7 +9,7 @@ use crate::rig::controllers::native::codec::{End, Request};
 use crate::rig::controllers::number;
 
 impl NativeDevice {
-    pub(super) fn way(&mut self, paths: &[Path]) -> Result<Move, DeviceFault> {
+    pub(super) fn glide_move(&mut self, paths: &[Path]) -> Result<DeviceMove, DeviceFault> {
         let bounds = &self.hello()?.bounds;
         if self.out_of_step {
             return Err(DeviceFault::Unfit(
@@ -70,7 +70,7 @@ impl NativeDevice {
             targets: written,
             sent: false,
         });
-        Ok(Move {
+        Ok(DeviceMove {
             frames,
             targets: ends.iter().map(|end| end.place).collect(),
             speed,

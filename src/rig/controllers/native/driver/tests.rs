@@ -1,4 +1,4 @@
-//! Transcripts of the native dialect: what is sent, what comes back, what it means; and every fault of a line.
+//! Transcripts of the native protocol: commands, replies, and their meaning; and every fault of a line.
 
 use super::*;
 use crate::plan::Interval;
@@ -38,7 +38,11 @@ fn device() -> (NativeDevice, ScriptedPort) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     (
-        NativeDevice::new(Talk::new(Box::new(port.clone()), Box::new(clock), 0.25)),
+        NativeDevice::new(LineClient::new(
+            Box::new(port.clone()),
+            Box::new(clock),
+            0.25,
+        )),
         port,
     )
 }
@@ -250,8 +254,8 @@ fn a_lost_frame_is_sent_again_as_it_was_and_a_doubled_reply_used_once() {
     assert_eq!(force(&device.sample().unwrap()), 2.0);
     assert_eq!(sent(&port)[2..], ["MEAS 3 1", "MEAS 3 1", "MEAS 4 1"]);
     assert_eq!(
-        device.tally(),
-        Tally {
+        device.line_statistics(),
+        LineStatistics {
             resent: 1,
             ignored: 1,
             reread: 0
@@ -270,7 +274,7 @@ fn a_reply_to_another_request_is_ignored_and_without_the_guard_it_would_pass() {
     };
     let (mut device, port) = identified();
     assert_eq!(late(&mut device, &port), 1.0);
-    assert_eq!(device.tally().ignored, 1);
+    assert_eq!(device.line_statistics().ignored, 1);
     let (mut device, port) = identified();
     assert_eq!(
         without(Guarding::Sequence, || late(&mut device, &port)),
@@ -291,8 +295,8 @@ fn a_broken_reply_is_asked_for_again_and_without_the_guard_it_would_pass() {
     let (mut device, port) = identified();
     assert_eq!(broken(&mut device, &port), 512.375);
     assert_eq!(
-        device.tally(),
-        Tally {
+        device.line_statistics(),
+        LineStatistics {
             resent: 1,
             ignored: 1,
             reread: 0
@@ -328,13 +332,13 @@ fn a_new_power_up_is_seen_in_any_reply_and_without_the_guard_it_would_pass() {
 }
 
 /// What a fault of one reply leaves of a reading: the reply kept by the rig comes to the frame sent again.
-fn after_fault(pieces: &[Say]) -> (f64, Tally) {
+fn after_fault(pieces: &[Say]) -> (f64, LineStatistics) {
     let (mut device, port) = identified();
     port.reply(pieces);
     for _ in 0..3 {
         say(&port, &reading(3, "512.375"));
     }
-    (force(&device.sample().unwrap()), device.tally())
+    (force(&device.sample().unwrap()), device.line_statistics())
 }
 
 #[test]
@@ -343,17 +347,17 @@ fn every_bit_flipped_and_every_truncation_gives_the_reading_or_asks_again() {
     for bit in 0..whole.len() * 8 {
         let mut flipped = whole.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
-        let (force, tally) = after_fault(&[Say::After(0.01, flipped)]);
+        let (force, line_statistics) = after_fault(&[Say::After(0.01, flipped)]);
         assert_eq!(force, 512.375, "bit {bit}");
         assert!(
-            tally.resent >= 1 && tally.ignored >= 1,
-            "bit {bit}: {tally:?}"
+            line_statistics.resent >= 1 && line_statistics.ignored >= 1,
+            "bit {bit}: {line_statistics:?}"
         );
     }
     for length in 1..whole.len() {
-        let (force, tally) = after_fault(&[Say::After(0.01, whole[..length].to_vec())]);
+        let (force, line_statistics) = after_fault(&[Say::After(0.01, whole[..length].to_vec())]);
         assert_eq!(force, 512.375, "{length} bytes");
-        assert!(tally.resent >= 1, "{length} bytes");
+        assert!(line_statistics.resent >= 1, "{length} bytes");
     }
 }
 
@@ -364,15 +368,15 @@ fn bytes_one_at_a_time_and_noise_around_are_read_through() {
         .iter()
         .map(|byte| Say::After(0.001, vec![*byte]))
         .collect();
-    assert_eq!(after_fault(&pieces), (512.375, Tally::default()));
+    assert_eq!(after_fault(&pieces), (512.375, LineStatistics::default()));
     let noise = [b"\0\xff<<>\n".to_vec(), whole.clone()].concat();
     assert_eq!(
         after_fault(&[Say::After(0.0, noise)]),
         (
             512.375,
-            Tally {
+            LineStatistics {
                 ignored: 1,
-                ..Tally::default()
+                ..LineStatistics::default()
             }
         )
     );
@@ -381,9 +385,9 @@ fn bytes_one_at_a_time_and_noise_around_are_read_through() {
         after_fault(&[Say::After(0.0, endless)]),
         (
             512.375,
-            Tally {
+            LineStatistics {
                 ignored: 1,
-                ..Tally::default()
+                ..LineStatistics::default()
             }
         )
     );

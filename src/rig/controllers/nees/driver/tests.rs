@@ -1,22 +1,23 @@
 //! Transcripts of a session: proposals, refusals, an execution that takes its time, replies to other transactions.
 
 use super::*;
-use crate::rig::Wish;
+use crate::rig::StopRequest;
 use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
 use crate::rig::transport::Clock as _;
 
 const T: f64 = 1.0;
 const POINT: &str = "MDL-00-01";
 
-fn session() -> (Nees, ScriptedPort, VirtualClock, Wish) {
-    let (clock, wish) = (VirtualClock::default(), Wish::default());
+fn session() -> (Nees, ScriptedPort, VirtualClock, StopRequest) {
+    let (clock, stop_request) = (VirtualClock::default(), StopRequest::default());
     let port = ScriptedPort::new(&clock);
-    let talk = Talk::new(Box::new(port.clone()), Box::new(clock.clone()), T).heeding(wish.clone());
+    let client = LineClient::new(Box::new(port.clone()), Box::new(clock.clone()), T)
+        .observing(stop_request.clone());
     (
-        Nees::new(talk, vec![POINT.to_owned()], 5.0),
+        Nees::new(client, vec![POINT.to_owned()], 5.0),
         port,
         clock,
-        wish,
+        stop_request,
     )
 }
 
@@ -35,8 +36,8 @@ fn sent(port: &ScriptedPort) -> Vec<String> {
 }
 
 /// At 1 mm and 100 N.
-fn opened() -> (Nees, ScriptedPort, VirtualClock, Wish) {
-    let (mut rig, port, clock, wish) = session();
+fn opened() -> (Nees, ScriptedPort, VirtualClock, StopRequest) {
+    let (mut rig, port, clock, stop_request) = session();
     port.reply(&[after(0.1, "OK 0 hall")]);
     port.reply(&[after(0.1, "OK 0 yes")]);
     port.reply(&[after(
@@ -47,7 +48,7 @@ fn opened() -> (Nees, ScriptedPort, VirtualClock, Wish) {
         rig.identify().unwrap().model,
         "NEES control point MDL-00-01: hall"
     );
-    (rig, port, clock, wish)
+    (rig, port, clock, stop_request)
 }
 
 #[test]
@@ -128,7 +129,11 @@ fn a_reply_to_another_transaction_is_counted_and_left() {
         (Some(0.002), Some(Force::Newtons(200.0)))
     );
     assert_eq!(
-        (sample.moving, sample.raw.len(), rig.tally().ignored),
+        (
+            sample.moving,
+            sample.raw.len(),
+            rig.line_statistics().ignored
+        ),
         (Some(false), 1, 2)
     );
 }
@@ -164,16 +169,16 @@ fn what_is_no_number_is_no_reading() {
 
 #[test]
 fn holding_cancels_what_is_being_executed_and_says_nothing_at_rest() {
-    let (mut rig, port, _, wish) = opened();
+    let (mut rig, port, _, stop_request) = opened();
     rig.hold().unwrap();
     assert_eq!(sent(&port).len(), 3);
     let going = rig.encode(&[0.011], 0.001).unwrap();
     port.reply(&[after(0.1, "OK 0 psd-000003")]);
-    wish.hold_now();
+    stop_request.hold_now();
     assert_eq!(rig.start(&going), Err(DeviceFault::Interrupted));
     rig.hold().unwrap();
     assert_eq!(sent(&port).len(), 4, "not executed: nothing to cancel");
-    wish.heed();
+    stop_request.acknowledge();
     let going = rig.encode(&[0.011], 0.001).unwrap();
     port.reply(&[after(0.1, "OK 0 psd-000003"), after(0.1, "OK 0 psd-000004")]);
     assert!(matches!(rig.start(&going), Err(DeviceFault::Silent { .. })));
@@ -221,7 +226,7 @@ fn targets_and_names_that_cannot_be_said_are_refused() {
     }
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
-    let talk = Talk::new(Box::new(port.clone()), Box::new(clock), T);
-    let mut rig = Nees::new(talk, vec!["MDL\tx".to_owned()], 1.0);
+    let client = LineClient::new(Box::new(port.clone()), Box::new(clock), T);
+    let mut rig = Nees::new(client, vec!["MDL\tx".to_owned()], 1.0);
     assert!(matches!(rig.identify(), Err(DeviceFault::Unfit(_))) && port.sent().is_empty());
 }

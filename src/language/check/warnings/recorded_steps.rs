@@ -1,0 +1,30 @@
+//! Counts the steps of a whole run, as far as the plan states them. In: a checked plan and the positions of its procedures
+//! in the text. Out: an error at the first procedure whose steps exceed the limit of one run.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::whole;
+use crate::plan::{MOST_RECORDED_STEPS, Plan};
+use crate::procedures;
+
+/// Compares the steps of all procedures that integrate, added up in their order, with [`MOST_RECORDED_STEPS`].
+pub fn check(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
+    let mut before = 0_u64;
+    for (procedure, block) in plan.procedures.iter().zip(blocks.iter().copied()) {
+        let Some(steps) = procedures::known_steps(&procedure.kind, plan) else {
+            continue;
+        };
+        let after = before.saturating_add(steps);
+        if after > MOST_RECORDED_STEPS {
+            let head = checker.scope.blocks[block].block.head;
+            let at = checker
+                .field(block, "duration")
+                .map_or(head, |(_, entry)| entry.value.span);
+            let remaining = MOST_RECORDED_STEPS - before;
+            checker
+                .diagnostics
+                .push(whole::too_many_recorded_steps(at, after, steps, remaining));
+            return;
+        }
+        before = after;
+    }
+}

@@ -1,0 +1,106 @@
+//! The last hold of a run, on a scripted device and a virtual clock: it is held where it was seen at rest, and nothing is called held
+//! that was not seen to be.
+
+use super::{Stand, stand};
+use crate::rig::controllers::DeviceFault;
+use crate::rig::{FinalHold, Rig as _};
+
+/// On its way to 2 mm at 1 mm/s, for a second: what it says, and what becomes of it when it is to be held.
+fn halted_on_the_way(mut stand: Stand) -> (Stand, FinalHold) {
+    stand.rig.propose(&[0.002], Some(0.001)).unwrap();
+    let stop_request = stand.stop_request.clone();
+    stand.device.alter(move |sample, _| {
+        if sample == 19 {
+            stop_request.hold_now();
+        }
+        Ok(())
+    });
+    stand.rig.execute().unwrap_err();
+    stand.device.inside().alter = None;
+    let halted = stand.rig.halt().unwrap();
+    (stand, halted)
+}
+
+#[test]
+fn it_is_held_where_it_was_seen_at_rest_and_read_there_once() {
+    for tells_motion in [true, false] {
+        let stand = stand();
+        stand.device.inside().tells_motion = tells_motion;
+        let (stand, halted) = halted_on_the_way(stand);
+        let position = stand.device.inside().position;
+        assert!((0.5e-3..1.5e-3).contains(&position), "{position}");
+        assert!(halted.is_held(), "{halted}");
+        assert_eq!(halted.found, Some((vec![position], vec![1e5 * position])));
+        assert!(halted.raw.len() == 1 && halted.time > 0.9, "{halted:?}");
+        let newest = stand.rig.live().newest().unwrap();
+        assert_eq!(newest.displacement, [position], "who watches sees it too");
+    }
+}
+
+#[test]
+fn a_hold_that_found_no_ear_is_called_none() {
+    let mut stand = stand();
+    stand.device.inside().deaf = true;
+    stand.rig.propose(&[0.002], Some(0.001)).unwrap();
+    stand.stop_request.hold_now();
+    stand.rig.execute().unwrap_err();
+    let halted = stand.rig.halt().unwrap();
+    assert!(!halted.is_held() && halted.found.is_none(), "{halted:?}");
+    let told = halted.to_string();
+    assert!(
+        told.starts_with("NOT CONFIRMED HELD (actuator on rig:1: no usable answer within 2.81 s)"),
+        "{told}"
+    );
+    assert!(told.ends_with("use the emergency stop"), "{told}");
+}
+
+#[test]
+fn a_rig_that_goes_on_is_not_called_held_and_is_not_waited_for_for_ever() {
+    let mut stand = stand();
+    stand.device.alter(|_, sample| {
+        sample.moving = Some(true);
+        Ok(())
+    });
+    let began = stand.rig.time();
+    let halted = stand.rig.halt().unwrap();
+    assert_eq!(halted.unconfirmed.as_deref(), Some("it still moves"));
+    assert!(
+        (5.0..6.5).contains(&(halted.time - began)),
+        "{}",
+        halted.time - began
+    );
+    stand.device.alter(|_, _| {
+        Err(DeviceFault::Lost {
+            reason: "unplugged".to_owned(),
+        })
+    });
+    let halted = stand.rig.halt().unwrap();
+    assert!(
+        halted.to_string().contains("the line is gone: unplugged"),
+        "{halted}"
+    );
+}
+
+#[test]
+fn what_is_read_on_the_way_is_seen_beside_the_run() {
+    let mut stand = stand();
+    let live = stand.rig.live();
+    let before = live.newest().unwrap();
+    stand.rig.propose(&[0.002], Some(0.001)).unwrap();
+    stand.rig.execute().unwrap();
+    let after = live.newest().unwrap();
+    assert!(
+        after.number > before.number + 40,
+        "two seconds at twenty a second: {}",
+        after.number
+    );
+    assert_eq!(
+        (before.displacement, after.displacement),
+        (vec![0.0], vec![0.002])
+    );
+    stand.rig.pause(2.0).unwrap();
+    assert!(
+        live.newest().unwrap().number > after.number,
+        "and while nothing moves"
+    );
+}

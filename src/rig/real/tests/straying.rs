@@ -1,0 +1,89 @@
+//! An axis that deviates from its path, and a force that does not follow from the dwell before it, on a scripted device and
+//! a virtual clock: each is caught by its guard, and missed without it.
+
+use super::stand;
+use crate::rig::controllers::Force;
+use crate::rig::safety::failpoint::{Guarding, without};
+use crate::rig::{Rig as _, RigFault};
+
+/// Sent to 2 mm by a line that makes `reaches` times as much of it: where it stood when it was held, m, and what was said.
+fn sent(reaches: f64) -> (f64, Option<String>) {
+    let mut stand = stand();
+    stand.device.inside().reaches = reaches;
+    stand.rig.propose(&[0.002], Some(0.001)).unwrap();
+    let fault = stand.rig.execute().err().map(|fault| fault.to_string());
+    let stood = stand.device.inside().position;
+    (stood, fault)
+}
+
+/// 2 mm and a quarter, and two bands of 10 um.
+const BEYOND: f64 = 2.52e-3;
+
+#[test]
+fn an_axis_that_goes_past_its_target_is_held_on_the_way() {
+    let (stood, fault) = sent(5.0);
+    let fault = fault.expect("held");
+    assert!(
+        fault.starts_with("the rig went off its way: it is at 2.5"),
+        "{fault}"
+    );
+    // Two readings, 50 ms apart at 1 mm/s.
+    assert!((BEYOND..BEYOND + 2e-4).contains(&stood), "{stood}");
+    let (stood, fault) = without(Guarding::PathDeviation, || sent(5.0));
+    assert!(
+        stood > 6e-3 && fault.is_some_and(|fault| fault.contains("settle")),
+        "it alone catches it on the way: {stood}"
+    );
+}
+
+#[test]
+fn an_axis_that_goes_the_other_way_is_held() {
+    let (stood, fault) = sent(-0.4);
+    assert!(
+        fault.is_some_and(|fault| fault.contains("off its way"))
+            && (-7.2e-4..=-5.2e-4).contains(&stood),
+        "{stood}"
+    );
+}
+
+#[test]
+fn an_overshoot_and_a_single_spike_are_no_straying() {
+    let mut stand = stand();
+    stand.device.alter(|number, sample| {
+        // A fifth too far in some readings, ten times in one.
+        let factor = if number == 20 {
+            10.0
+        } else if (30..45).contains(&number) {
+            1.2
+        } else {
+            1.0
+        };
+        sample.displacement = sample.displacement.map(|at| at * factor);
+        Ok(())
+    });
+    stand.rig.propose(&[0.002], Some(0.001)).unwrap();
+    assert_eq!(stand.rig.execute(), Ok(()));
+}
+
+/// At 2 mm and 200 N, ±2 N of noise declared; so many of the readings after it settled have lost a digit. What was read, N.
+fn read_with(lost: u64) -> Result<f64, RigFault> {
+    let mut stand = stand();
+    stand.rig.propose(&[0.002], Some(0.001)).unwrap();
+    stand.rig.execute().unwrap();
+    stand.device.alter(move |number, sample| {
+        if number < lost {
+            sample.force = Some(Force::Newtons(20.0));
+        }
+        Ok(())
+    });
+    stand.rig.read().map(|reading| reading.force[0])
+}
+
+#[test]
+fn a_force_that_nothing_leads_to_is_read_anew() {
+    assert_eq!(read_with(1), Ok(200.0), "the median");
+    assert_eq!(read_with(2), Ok(200.0));
+    assert_eq!(without(Guarding::ForceJump, || read_with(2)), Ok(20.0));
+    // It stays there: something happened, and it settles anew.
+    assert_eq!(read_with(u64::MAX), Ok(20.0));
+}

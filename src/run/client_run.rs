@@ -1,0 +1,122 @@
+//! A session in which a client drives the rig of a plan. In: the plan, the rig, the client. Out: the record, and the steps
+//! that the client asked for. It knows no protocol.
+
+use std::time::Duration;
+
+use crate::plan::{DriftCheck, Plan, ZeroAfter};
+use crate::record::remote::DrivenStep;
+use crate::record::{Drift, EventKind, Outcome, Record};
+use crate::rig::Rig;
+use crate::run::remote_control::Specimen;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+use crate::run::{Observer, pretest_check, zero_drift};
+
+/// The record and the steps of a driven rig.
+pub struct ClientRunRecord {
+    pub record: Record,
+    pub steps: Vec<DrivenStep>,
+}
+
+/// The source of the requests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Driver {
+    /// A program: a real rig must have passed the gate first.
+    Client,
+    /// The operator by hand, who confirms every move; there may be no specimen yet for a pre-test check.
+    ByHand,
+}
+
+/// Lets `client` drive the plan's rig. Never fails: a fault is the outcome of the record.
+#[must_use]
+pub fn drive(
+    plan: &Plan,
+    rig: &mut dyn Rig,
+    observer: &mut dyn Observer,
+    driver: Driver,
+    client: &mut dyn FnMut(&mut Specimen<'_, '_>),
+) -> ClientRunRecord {
+    let identity = rig.identity();
+    let ended = |events, outcome| ClientRunRecord {
+        record: Record {
+            rig: identity.clone(),
+            procedures: Vec::new(),
+            events,
+            outcome,
+            drift: None,
+        },
+        steps: Vec::new(),
+    };
+    let mut session = match Session::begin(plan, rig, observer) {
+        Ok(session) => session,
+        Err(early) => return ended(vec![early.0], early.1.outcome()),
+    };
+    let link = plan.rig.link.as_real();
+    if let Some(link) = link.filter(|_| driver == Driver::Client)
+        && let Err(stop) = pretest_check::pass(plan, link, afterwards(plan), &mut session)
+    {
+        session.end(&stop);
+        return ended(session.finish(), stop.outcome());
+    }
+    // By hand there may be no specimen yet, and no position to return to.
+    let check = plan.rig.drift.filter(|_| driver == Driver::Client);
+    let home = session.guard.commanded().to_vec();
+    let mut drift = match check
+        .map(|check| zero_drift::before(check, &mut session))
+        .transpose()
+    {
+        Ok(drift) => drift,
+        Err(stop) => {
+            session.end(&stop);
+            return ended(session.finish(), stop.outcome());
+        }
+    };
+    let (guard, observer, events) = session.parts();
+    let beat = link.map(|link| Duration::from_secs_f64((link.watchdog / 8.0).max(0.0)));
+    let mut specimen = Specimen::new(guard, observer, beat);
+    client(&mut specimen);
+    let (mut outcome, steps) = (specimen.outcome(), std::mem::take(&mut specimen.steps));
+    events.append(&mut specimen.events);
+    drop(specimen);
+    if let Some(drift) = &mut drift {
+        drift.held = session.guard.take_held();
+        if outcome == Outcome::Completed
+            && let Err(stop) = once_more(drift, &home, &mut session)
+        {
+            session.event(stop.event_kind(), stop.to_string());
+            outcome = stop.outcome();
+        }
+    }
+    session.guard.hold();
+    let ClientRunRecord { record, .. } = ended(session.finish(), outcome);
+    ClientRunRecord {
+        steps,
+        record: Record { drift, ..record },
+    }
+}
+
+/// The zeros after the last client, as after a test. If a stop was requested, the rig is to hold: then nothing moves, and
+/// they are not read.
+fn once_more(drift: &mut Drift, home: &[f64], session: &mut Session<'_>) -> Result<(), Stop> {
+    if session.stop_if_requested().is_err() {
+        session.event(
+            EventKind::Note,
+            "the zeros are not read again: stopped on request".to_owned(),
+        );
+        return Ok(());
+    }
+    zero_drift::after(drift, home, session)
+}
+
+/// The motion of a real rig after the pre-test check.
+fn afterwards(plan: &Plan) -> &'static str {
+    match plan.rig.drift {
+        Some(DriftCheck {
+            after: ZeroAfter::Start,
+            ..
+        }) => {
+            "as its client says, within the plan's limits, and after the last client back to where it began"
+        }
+        _ => "as its client says, within the plan's limits",
+    }
+}

@@ -1,0 +1,111 @@
+//! Entries of the run log from the answers of a rig: its identity, a target, a reading.
+
+use super::entry::{IntentBody, RigBody, SampleBody, escaped};
+use super::state::State;
+use crate::record::journal::EntryKind;
+use crate::rig::{DeclaredNoise, EncodedMove, Identity, Reading, Rig, RigFault};
+
+impl RigBody {
+    /// The RIG entry of a rig.
+    #[must_use]
+    pub fn of(rig: &dyn Rig) -> Self {
+        Self {
+            t: rig.time(),
+            identity: rig.identity(),
+            axes: rig.degrees_of_freedom(),
+            noise: rig.declared_noise(),
+            own_speed: rig.own_speed(),
+            last_move: rig.last_move(),
+            datum: rig.datum(),
+            said: rig
+                .introduction()
+                .iter()
+                .map(|reply| escaped(reply))
+                .collect(),
+        }
+    }
+}
+
+/// For a run log that ended before its rig answered.
+pub(super) fn unknown_rig() -> RigBody {
+    let unknown = String::new;
+    let identity = Identity {
+        name: unknown(),
+        model: unknown(),
+        serial: unknown(),
+        firmware: unknown(),
+        boot: None,
+        simulated: true,
+    };
+    RigBody {
+        t: 0.0,
+        identity,
+        axes: 1,
+        noise: DeclaredNoise::default(),
+        own_speed: None,
+        last_move: None,
+        datum: None,
+        said: Vec::new(),
+    }
+}
+
+pub(super) fn intent(
+    targets: &[f64],
+    speed: Option<f64>,
+    offer: &EncodedMove,
+    samples: Option<usize>,
+) -> IntentBody {
+    IntentBody {
+        n: 0,
+        t: 0.0,
+        to: targets.to_vec(),
+        speed,
+        said: (!same_bits(&offer.targets, targets)).then(|| offer.targets.clone()),
+        rate: offer.speed,
+        wire: (!offer.wire.is_empty()).then(|| escaped(&offer.wire)),
+        id: offer.move_id,
+        own: offer.at_the_rig.clone(),
+        path: None,
+        samples,
+        wall: None,
+    }
+}
+
+pub(super) fn append_sample(
+    state: &mut State,
+    reading: &Reading,
+    moved: Option<[f64; 2]>,
+) -> Result<(), RigFault> {
+    state.time = reading.time;
+    let sample = SampleBody {
+        t: reading.time,
+        x: reading.displacement.clone(),
+        r: reading.force.clone(),
+        raw: reading.raw.iter().map(|raw| escaped(raw)).collect(),
+        moved,
+        wall: state.wall(),
+    };
+    state.append(EntryKind::Sample, &sample)
+}
+
+/// A reading that is no number is a fault of the rig, with the numbers as they came.
+pub(super) fn finite(reading: Reading) -> Result<Reading, RigFault> {
+    let numbers = || reading.displacement.iter().chain(&reading.force);
+    if numbers().all(|value| value.is_finite()) {
+        return Ok(reading);
+    }
+    Err(RigFault::Device(format!(
+        "a reading is no number: {:?}",
+        numbers().collect::<Vec<_>>()
+    )))
+}
+
+pub(super) fn same_bits(one: &[f64], other: &[f64]) -> bool {
+    one.iter()
+        .map(|value| value.to_bits())
+        .eq(other.iter().map(|value| value.to_bits()))
+}
+
+pub(super) fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}

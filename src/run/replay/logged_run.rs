@@ -1,0 +1,240 @@
+//! The entries of a run log that count: those set aside by a resumption are left out, with the events that report this. In:
+//! lines. Out: the source of a replay. It knows no physics.
+
+use std::collections::VecDeque;
+
+use serde::de::DeserializeOwned;
+
+use super::entry::{AmendBody, Header, PlanBody, ResumeBody, RigBody, TargetStatus};
+use crate::record::journal::{EntryKind, Line, Recovered};
+use crate::record::{Event, EventKind};
+use crate::rig::{LineStatistics, position_and_force};
+
+/// The content of a run log.
+#[derive(Clone, Debug)]
+pub struct LoggedRun {
+    /// The header that applies at the end: that of the last amendment, otherwise the first.
+    pub header: Header,
+    /// Text of each file of the header.
+    pub texts: Vec<String>,
+    /// The rig at the start of the run.
+    pub rig: Option<RigBody>,
+    /// The rig as it answered last.
+    pub last_rig: Option<RigBody>,
+    /// Records that count, in order: targets, readings, steps, answers, faults, events.
+    pub lines: VecDeque<Line>,
+    /// Resumptions and amendments, as events of the run.
+    pub interruptions: Vec<Event>,
+    /// The status of the last target, from the last resumption, if no entry followed it.
+    pub target_status: Option<TargetStatus>,
+    /// Rig time of the last entry \[s\].
+    pub time: f64,
+    /// Whether the run came to its own end.
+    pub ended: bool,
+    /// Communication errors recovered up to the last entry, also if that entry no longer counts.
+    pub line_statistics: LineStatistics,
+}
+
+/// The file is complete, but is not the run log of a run.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum UnreadableLog {
+    #[error("record {seq} is no {kind:?} that this version can read: {reason}")]
+    Body {
+        seq: u64,
+        kind: EntryKind,
+        reason: String,
+    },
+    #[error("it has no header")]
+    NoHeader,
+}
+
+/// The replay of the run log gave a different result.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("record {seq}: the run calls for {called}, but the record has {found}")]
+pub struct Mismatch {
+    pub seq: u64,
+    pub called: String,
+    pub found: String,
+}
+
+impl LoggedRun {
+    /// Sorts the records of a journal.
+    ///
+    /// # Errors
+    /// An entry cannot be read.
+    pub fn of(recovered: &Recovered) -> Result<Self, UnreadableLog> {
+        let mut lines = recovered.lines.iter();
+        let first = lines
+            .next()
+            .filter(|line| line.kind == EntryKind::Header)
+            .ok_or(UnreadableLog::NoHeader)?;
+        let mut logged = Self {
+            texts: Vec::new(),
+            header: body(first)?,
+            rig: None,
+            last_rig: None,
+            lines: VecDeque::with_capacity(recovered.lines.len()),
+            interruptions: Vec::new(),
+            target_status: None,
+            time: 0.0,
+            ended: recovered.ended,
+            line_statistics: LineStatistics::default(),
+        };
+        for line in lines {
+            logged.take(line)?;
+        }
+        // An empty file has no part.
+        logged
+            .texts
+            .resize(logged.header.files.len(), String::new());
+        Ok(logged)
+    }
+
+    fn take(&mut self, line: &Line) -> Result<(), UnreadableLog> {
+        if let Some(time) = line.time() {
+            self.time = time;
+        }
+        match line.kind {
+            EntryKind::Rig => {
+                let rig: RigBody = body(line)?;
+                self.rig.get_or_insert_with(|| rig.clone());
+                self.last_rig = Some(rig);
+            }
+            EntryKind::Plan => {
+                let part: PlanBody = body(line)?;
+                if part.file >= self.header.files.len() {
+                    let reason = "there is no such file".to_owned();
+                    return Err(UnreadableLog::Body {
+                        seq: line.seq,
+                        kind: line.kind,
+                        reason,
+                    });
+                }
+                self.texts.resize(self.header.files.len(), String::new());
+                self.texts[part.file].push_str(&part.text);
+            }
+            EntryKind::Amend => self.amended(body(line)?),
+            EntryKind::Resume => self.resumed(body(line)?),
+            EntryKind::Recover => self.recovered(),
+            EntryKind::Tally => self.line_statistics = body(line)?,
+            EntryKind::Header | EntryKind::End => {}
+            EntryKind::Intent
+            | EntryKind::Sample
+            | EntryKind::Stroke
+            | EntryKind::Step
+            | EntryKind::Operator
+            | EntryKind::Event
+            | EntryKind::Fault
+            | EntryKind::Held => {
+                self.target_status = None;
+                self.lines.push_back(line.clone());
+            }
+        }
+        Ok(())
+    }
+
+    /// Something else holds from here on; its texts follow.
+    pub fn amended(&mut self, amend: AmendBody) {
+        let text = format!(
+            "{} ({}): {}",
+            amend.differences.join("; "),
+            amend.by,
+            amend.reason
+        );
+        self.interrupted(EventKind::Amendment, text);
+        self.header = amend.header;
+        self.texts.clear();
+    }
+
+    /// The run is continued from here.
+    pub fn resumed(&mut self, resume: ResumeBody) {
+        while self
+            .lines
+            .back()
+            .is_some_and(|last| last.seq >= resume.from)
+        {
+            self.lines.pop_back();
+        }
+        self.interrupted(EventKind::Resume, describe(&resume));
+        self.target_status = Some(resume.target_status);
+    }
+
+    /// Bytes after the last entry were put aside.
+    pub fn recovered(&mut self) {
+        self.interrupted(
+            EventKind::Resume,
+            "a torn end of the record was put aside".to_owned(),
+        );
+    }
+
+    fn interrupted(&mut self, kind: EventKind, text: String) {
+        self.interruptions.push(Event {
+            time: self.time,
+            procedure: None,
+            step: None,
+            kind,
+            text,
+        });
+    }
+}
+
+/// A resumption, in one sentence.
+fn describe(resume: &ResumeBody) -> String {
+    let target = match resume.target_status {
+        TargetStatus::None => "no target was in doubt",
+        TargetStatus::Executed => "the last target had been carried out, its reading is late",
+        TargetStatus::NotExecuted => "the last target had not arrived and was sent",
+        TargetStatus::HeldOnTheWay if resume.held.is_some() => {
+            "the last target had been held on the way and was sent anew"
+        }
+        TargetStatus::HeldOnTheWay => "the last target had not been reached and was sent anew",
+        TargetStatus::RestOfTheWay { .. } => {
+            "a way had been cut off and was gone on with from where the rig stood"
+        }
+        TargetStatus::Stroke { .. } => {
+            "a way had been cut off, and the rig was brought back to where it begins"
+        }
+    };
+    // At a position different from that of the last reading, the force tells nothing about the specimen.
+    let relaxed = match (&resume.recorded, resume.found.1.as_slice()) {
+        (Some((_, recorded)), [found])
+            if recorded.len() == 1 && resume.target_status == TargetStatus::None =>
+        {
+            format!("; the force had changed by {:.3} N", found - recorded[0])
+        }
+        _ => String::new(),
+    };
+    let released = resume
+        .released
+        .as_ref()
+        .map_or_else(String::new, |by| format!("; released by {by}"));
+    let stood = match resume.target_status {
+        TargetStatus::HeldOnTheWay => format!(
+            ", from {}",
+            position_and_force(&resume.found.0, &resume.found.1)
+        ),
+        _ => String::new(),
+    };
+    let when = resume
+        .wall
+        .as_ref()
+        .map_or_else(String::new, |wall| format!(" at {wall}"));
+    let assured = resume.assured.iter().map(|assured| assured.describe());
+    let said: Vec<&str> = std::iter::once(resume.reason.as_str())
+        .chain(assured)
+        .collect();
+    format!(
+        "resumed{when} by {}: {}; {target}{stood}{relaxed}{released}",
+        resume.by,
+        said.join("; ")
+    )
+}
+
+/// The body of an entry, typed.
+pub(super) fn body<T: DeserializeOwned>(line: &Line) -> Result<T, UnreadableLog> {
+    line.read().map_err(|error| UnreadableLog::Body {
+        seq: line.seq,
+        kind: line.kind,
+        reason: error.to_string(),
+    })
+}

@@ -1,0 +1,481 @@
+//! The recorded rig: between guard and rig, it answers from the run log as long as that has entries; after it, it passes
+//! calls on and logs the answers. INTENT is durable before a target is sent, SAMPLE before a reading is used.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use super::continuous_move::ContinuousMove;
+use super::entry::{
+    Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody, TargetStatus, escaped,
+};
+use super::entry_of::{append_sample, finite, intent, same_bits, unknown_rig};
+use super::state::{State, ended};
+use crate::physics::tracking::trajectory::Path;
+use crate::record::journal::EntryKind;
+use crate::rig::safety::failpoint;
+use crate::rig::safety::failpoint::Guarding;
+use crate::rig::{
+    DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, LastMove, LineStatistics,
+    Reading, Rig, RigFault,
+};
+
+/// A rig whose answers are all logged.
+pub struct RecordedRig<'rig> {
+    /// None during a replay.
+    live: Option<&'rig mut dyn Rig>,
+    pub(super) state: Rc<RefCell<State<'rig>>>,
+    about: RigBody,
+    /// Proposed, and not executed: targets and speed as requested, and as encoded by the rig.
+    pending: Option<(Vec<f64>, Option<f64>, EncodedMove)>,
+    /// Difference between the rig time of the run log and that of the rig \[s\].
+    pub(super) offset: Option<f64>,
+}
+
+impl<'rig> RecordedRig<'rig> {
+    pub(super) fn new(live: Option<&'rig mut dyn Rig>, state: Rc<RefCell<State<'rig>>>) -> Self {
+        let known = state.borrow().rig.clone();
+        let about = known.unwrap_or_else(|| {
+            let about = live.as_deref().map_or_else(unknown_rig, RigBody::of);
+            let mut state = state.borrow_mut();
+            // A run log that fails here reports it at the first call.
+            if state
+                .append(EntryKind::Rig, &about)
+                .and_then(|()| state.sync_point())
+                .is_ok()
+            {
+                state.time = about.t;
+            }
+            about
+        });
+        Self {
+            live,
+            state,
+            about,
+            pending: None,
+            offset: None,
+        }
+    }
+
+    /// Whether answers still come from the run log.
+    pub(super) fn answers_from_the_log(&self) -> bool {
+        self.state.borrow_mut().answers_from_the_log()
+    }
+
+    /// The rig itself, where there is one.
+    pub(super) fn live(&mut self) -> Option<&mut (dyn Rig + 'rig)> {
+        if self.live.is_none() {
+            self.live = self.state.borrow_mut().take_opened();
+        }
+        self.live.as_deref_mut()
+    }
+
+    /// The rig itself, after the replay.
+    pub(super) fn rig(&mut self) -> Result<&mut (dyn Rig + 'rig), RigFault> {
+        self.state.borrow().healthy()?;
+        self.live().ok_or_else(ended)?;
+        let rig = self.live.as_deref_mut().ok_or_else(ended)?;
+        if self.offset.is_none() {
+            self.offset = Some(self.state.borrow().time - rig.time());
+        }
+        Ok(rig)
+    }
+
+    /// Logs the communication errors recovered since the last entry about them.
+    pub(super) fn count(&self) -> Result<(), RigFault> {
+        let Some(rig) = self.live.as_deref() else {
+            return Ok(());
+        };
+        self.state.borrow_mut().count(rig.line_statistics())
+    }
+
+    /// Rig time of the run log \[s\].
+    fn now(&self) -> f64 {
+        let state = self.state.borrow();
+        match (&self.live, self.offset) {
+            (Some(rig), Some(offset)) => offset + rig.time(),
+            _ => state.time,
+        }
+    }
+
+    /// Logs that a call failed, and passes its fault on.
+    pub(super) fn failed<T>(&mut self, call: Call, fault: RigFault) -> Result<T, RigFault> {
+        let t = self.now();
+        let mut state = self.state.borrow_mut();
+        state.time = t;
+        let wall = state.wall();
+        // If the run log fails too, the fault of the rig is still the one that ended the run.
+        let _ = state
+            .append(
+                EntryKind::Fault,
+                &FaultBody {
+                    t,
+                    call,
+                    fault: fault.clone(),
+                    wall,
+                },
+            )
+            .and_then(|()| state.sync_point());
+        Err(fault)
+    }
+
+    pub(super) fn record_intent(&mut self, intent: &mut IntentBody) -> Result<(), RigFault> {
+        let mut state = self.state.borrow_mut();
+        intent.n = state.next_target();
+        intent.t = state.time;
+        intent.wall = state.wall();
+        state.append(EntryKind::Intent, intent)?;
+        if failpoint::on(Guarding::IntentDurable) {
+            state.sync_point()
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Sends a target that is in the run log already.
+    pub(super) fn send_again(
+        &mut self,
+        targets: &[f64],
+        speed: Option<f64>,
+    ) -> Result<(), RigFault> {
+        let rig = self.rig()?;
+        let sent = rig.propose(targets, speed).and_then(|_| rig.execute());
+        sent.or_else(|fault| self.failed(Call::Execute, fault))
+    }
+
+    /// The next entry as an INTENT, if it has these targets.
+    fn logged_intent(
+        &self,
+        targets: &[f64],
+        speed: Option<f64>,
+        stroke: Option<usize>,
+    ) -> Result<IntentBody, RigFault> {
+        let mut state = self.state.borrow_mut();
+        let intent: IntentBody = state.peek(EntryKind::Intent, "a target")?;
+        let same = same_bits(&intent.to, targets)
+            && intent.speed.map(f64::to_bits) == speed.map(f64::to_bits)
+            && intent.samples == stroke;
+        if same {
+            return Ok(intent);
+        }
+        Err(state.report_mismatch(format!("a target of {targets:?} m at {speed:?} m/s")))
+    }
+
+    fn logged_reading(&self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        let mut state = self.state.borrow_mut();
+        if let Some(fault) = state.logged_fault(Call::Read) {
+            return Err(fault);
+        }
+        let sample: SampleBody = state.peek(EntryKind::Sample, "a reading")?;
+        state.consume();
+        Ok((
+            Reading {
+                time: sample.t,
+                displacement: sample.x,
+                force: sample.r,
+                raw: Vec::new(),
+            },
+            sample.moved,
+        ))
+    }
+
+    /// A reading, with when the rig went on its last move where that was asked for.
+    fn take_reading(
+        &mut self,
+        read: impl FnOnce(&mut dyn Rig) -> Result<(Reading, Option<[f64; 2]>), RigFault>,
+    ) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        if self.answers_from_the_log() {
+            return self.logged_reading();
+        }
+        let read = read(self.rig()?);
+        let offset = self.offset.unwrap_or(0.0);
+        let checked = read.and_then(|(reading, moved)| {
+            let reading = finite(Reading {
+                time: reading.time + offset,
+                ..reading
+            })?;
+            Ok((
+                reading,
+                moved
+                    .map(|ends| ends.map(|end| end + offset))
+                    .filter(|ends| ends.iter().all(|end| end.is_finite())),
+            ))
+        });
+        let (reading, moved) = checked.or_else(|fault| self.failed(Call::Read, fault))?;
+        self.count()?;
+        append_sample(&mut self.state.borrow_mut(), &reading, moved)?;
+        if failpoint::on(Guarding::SampleDurable) {
+            self.state.borrow_mut().sync_point()?;
+        }
+        Ok((reading, moved))
+    }
+
+    /// A move that the guard refuses is logged too, so that the run can be replayed up to here.
+    fn forget_proposal(&mut self) {
+        let Some((targets, speed, offer)) = self.pending.take() else {
+            return;
+        };
+        if self.answers_from_the_log() {
+            if self.logged_intent(&targets, speed, None).is_ok() {
+                self.state.borrow_mut().consume();
+            }
+        } else {
+            let _ = self.record_intent(&mut intent(&targets, speed, &offer, None));
+        }
+    }
+
+    /// The readings of a stroke, up to its end or to its fault. Gives their number if the run log ends before the stroke.
+    pub(super) fn logged_stroke(
+        &self,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<Option<usize>, RigFault> {
+        let mut taken = 0;
+        loop {
+            if let Some(fault) = self.state.borrow_mut().logged_fault(Call::Traverse) {
+                return Err(fault);
+            }
+            if !self.answers_from_the_log() {
+                return Ok(Some(taken));
+            }
+            let mut state = self.state.borrow_mut();
+            if state.next_kind() == Some(EntryKind::Stroke) {
+                let stroke: StrokeBody = state.peek(EntryKind::Stroke, "the end of a stroke")?;
+                if stroke.samples != taken {
+                    return Err(state.report_mismatch(format!("a stroke of {taken} readings")));
+                }
+                state.consume();
+                return Ok(None);
+            }
+            drop(state);
+            if taken == samples {
+                return Err(self
+                    .state
+                    .borrow_mut()
+                    .report_mismatch(format!("a stroke of at most {samples} readings")));
+            }
+            taken += 1;
+            each(self.logged_reading()?.0)?;
+        }
+    }
+}
+
+impl Rig for RecordedRig<'_> {
+    fn identity(&self) -> Identity {
+        self.about.identity.clone()
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.about.axes
+    }
+
+    fn time(&self) -> f64 {
+        self.state.borrow().time
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
+        if self.answers_from_the_log() {
+            if let Some(fault) = self.state.borrow_mut().logged_fault(Call::Propose) {
+                return Err(fault);
+            }
+            let intent = if self.state.borrow().driven {
+                self.state.borrow().intent_ahead()
+            } else {
+                Some(self.logged_intent(targets, speed, None)?)
+            };
+            // A proposal that was never sent has no bytes in the run log.
+            let unsent = || EncodedMove {
+                targets: targets.to_vec(),
+                speed: speed.unwrap_or(0.0),
+                wire: Vec::new(),
+                move_id: None,
+                at_the_rig: None,
+            };
+            let offer = intent.map_or_else(unsent, |intent| EncodedMove {
+                targets: intent.said.clone().unwrap_or_else(|| intent.to.clone()),
+                speed: intent.rate,
+                wire: Vec::new(),
+                move_id: intent.id,
+                at_the_rig: intent.own.clone(),
+            });
+            self.pending = Some((targets.to_vec(), speed, offer.clone()));
+            return Ok(offer);
+        }
+        match self.rig()?.propose(targets, speed) {
+            Ok(offer) => {
+                self.pending = Some((targets.to_vec(), speed, offer.clone()));
+                Ok(offer)
+            }
+            Err(fault) => self.failed(Call::Propose, fault),
+        }
+    }
+
+    fn execute(&mut self) -> Result<(), RigFault> {
+        let (targets, speed, offer) = self
+            .pending
+            .take()
+            .ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
+        if self.answers_from_the_log() {
+            // A target is compared with the run log here, if a client's requests came first.
+            self.logged_intent(&targets, speed, None)?;
+            let mut state = self.state.borrow_mut();
+            state.consume();
+            if let Some(fault) = state.logged_fault(Call::Execute) {
+                return Err(fault);
+            }
+            if state.answers_from_the_log() || state.is_at_the_logged_end() {
+                return Ok(());
+            }
+            if !state.can_continue() {
+                return Err(ended());
+            }
+            let target_status = state.take_target_status();
+            drop(state);
+            return match target_status {
+                Some(TargetStatus::Executed) => Ok(()),
+                _ => self.send_again(&targets, speed),
+            };
+        }
+        self.rig()?;
+        self.record_intent(&mut intent(&targets, speed, &offer, None))?;
+        match self.rig()?.execute() {
+            Ok(()) => Ok(()),
+            Err(fault) => self.failed(Call::Execute, fault),
+        }
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        if self.answers_from_the_log() {
+            let mut state = self.state.borrow_mut();
+            // A wait for the next entry would never end.
+            let fault = state
+                .mismatch_fault()
+                .or_else(|| state.logged_fault(Call::Pause));
+            return fault.map_or(Ok(()), Err);
+        }
+        if self.state.borrow().is_at_the_logged_end() {
+            return Ok(());
+        }
+        let paused = self.rig()?.pause(seconds);
+        paused.or_else(|fault| self.failed(Call::Pause, fault))
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        self.take_reading(|rig| Ok((rig.read()?, None)))
+            .map(|(reading, _)| reading)
+    }
+
+    fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
+        self.take_reading(|rig| rig.read_moved())
+    }
+
+    fn traverse(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.replay_or_follow(&ContinuousMove::Stroke(targets, velocity), samples, each)
+    }
+
+    fn glide(
+        &mut self,
+        paths: &[Path],
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.replay_or_follow(&ContinuousMove::Paths(paths), samples, each)
+    }
+
+    fn hold(&mut self) {
+        self.state.borrow_mut().note_hold();
+        self.forget_proposal();
+        if let Some(rig) = self.live() {
+            rig.hold();
+        }
+    }
+
+    fn halt(&mut self) -> Option<FinalHold> {
+        self.state.borrow_mut().note_hold();
+        self.forget_proposal();
+        if self.answers_from_the_log() {
+            let logged = self.state.borrow_mut().logged_final_hold();
+            if let (None, Some(rig)) = (&logged, self.live()) {
+                rig.hold();
+            }
+            return logged.map(
+                |HeldBody {
+                     t,
+                     unconfirmed,
+                     found,
+                     ..
+                 }| FinalHold {
+                    time: t,
+                    unconfirmed,
+                    found,
+                    raw: Vec::new(),
+                },
+            );
+        }
+        // Also if the run log fails: the rig comes first. An answer that is not logged is not part of the run.
+        let rig = self.live()?;
+        let before = rig.time();
+        let halted = rig.halt()?;
+        let time = self.state.borrow().time;
+        let offset = *self.offset.get_or_insert(time - before);
+        let halted = FinalHold {
+            time: halted.time + offset,
+            ..halted
+        };
+        let mut state = self.state.borrow_mut();
+        let FinalHold {
+            unconfirmed,
+            found,
+            raw,
+            ..
+        } = halted.clone();
+        let raw = raw.iter().map(|raw| escaped(raw)).collect();
+        let held = HeldBody {
+            t: halted.time,
+            unconfirmed,
+            found,
+            raw,
+            wall: state.wall(),
+        };
+        state
+            .append(EntryKind::Held, &held)
+            .and_then(|()| state.sync_point())
+            .ok()?;
+        state.time = halted.time;
+        Some(halted)
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        self.about.noise
+    }
+
+    fn datum(&self) -> Option<Vec<f64>> {
+        self.about.datum.clone()
+    }
+
+    fn own_speed(&self) -> Option<f64> {
+        self.about.own_speed
+    }
+
+    /// Not part of the run log: it is only displayed.
+    fn seen_speed(&self) -> Option<f64> {
+        self.live.as_deref().and_then(Rig::seen_speed)
+    }
+
+    fn last_move(&self) -> Option<LastMove> {
+        self.live.as_deref().and_then(Rig::last_move)
+    }
+
+    fn line_statistics(&self) -> LineStatistics {
+        if !self.answers_from_the_log() {
+            // The run already knows of a run log that fails.
+            let _ = self.count();
+        }
+        self.state.borrow().mended()
+    }
+}

@@ -1,0 +1,150 @@
+//! No target is sent and no reading is used before it is durable, and a disk that fails holds the rig.
+
+use super::*;
+
+/// A rig that looks, whenever it is asked for anything, at what a loss of power would leave of the record.
+struct Suspicious {
+    rig: Standing,
+    disk: PowerLoss,
+    proposed: f64,
+    read: bool,
+    /// What was found missing.
+    missing: Vec<&'static str>,
+}
+
+impl Suspicious {
+    /// Kind of the last durable record, and its target.
+    fn durable(&self) -> (EntryKind, Option<f64>) {
+        let recovered = recover(&self.disk.synced()).unwrap();
+        let last = recovered.lines.last().unwrap();
+        (last.kind, last.body()["to"][0].as_f64())
+    }
+
+    fn last_reading_is_durable(&mut self) {
+        let recovered = recover(&self.disk.synced()).unwrap();
+        let intent = recovered
+            .lines
+            .iter()
+            .rposition(|line| line.kind == EntryKind::Intent);
+        let sample = recovered
+            .lines
+            .iter()
+            .rposition(|line| line.kind == EntryKind::Sample);
+        if self.read && sample <= intent {
+            self.missing.push("sample");
+        }
+        self.read = false;
+    }
+}
+
+impl Rig for Suspicious {
+    fn identity(&self) -> Identity {
+        self.rig.identity()
+    }
+    fn degrees_of_freedom(&self) -> usize {
+        1
+    }
+    fn time(&self) -> f64 {
+        self.rig.time()
+    }
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
+        self.last_reading_is_durable();
+        self.proposed = targets[0];
+        self.rig.propose(targets, speed)
+    }
+    fn execute(&mut self) -> Result<(), RigFault> {
+        if self.durable() != (EntryKind::Intent, Some(self.proposed)) {
+            self.missing.push("intent");
+        }
+        self.rig.execute()
+    }
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        self.rig.pause(seconds)
+    }
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        self.last_reading_is_durable();
+        self.read = true;
+        self.rig.read()
+    }
+    fn traverse(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        if self.durable() != (EntryKind::Intent, Some(targets[0])) {
+            self.missing.push("intent");
+        }
+        self.rig.traverse(targets, velocity, samples, each)
+    }
+    fn hold(&mut self) {
+        self.rig.hold();
+    }
+    fn declared_noise(&self) -> DeclaredNoise {
+        self.rig.declared_noise()
+    }
+}
+
+/// What a loss of power at the worst moment would lose of a run.
+fn lost_to_power() -> Vec<&'static str> {
+    let (plan, disk) = (plan(), PowerLoss::new());
+    let mut rig = Suspicious {
+        rig: Standing::new(&plan),
+        disk: disk.clone(),
+        proposed: 0.0,
+        read: false,
+        missing: Vec::new(),
+    };
+    let mut journal = journal(disk);
+    begin(&mut journal, &header(), &[]).unwrap();
+    let recorded = record(&plan, &mut rig, &mut Witness, journal, no_wall());
+    assert_eq!(recorded.record.outcome, Outcome::Completed);
+    rig.missing
+}
+
+#[test]
+fn no_target_leaves_and_no_reading_is_used_before_it_is_durable() {
+    assert_eq!(lost_to_power(), [] as [&str; 0]);
+    assert!(without(Guarding::IntentDurable, lost_to_power).contains(&"intent"));
+    assert!(without(Guarding::SampleDurable, lost_to_power).contains(&"sample"));
+}
+
+#[test]
+fn a_disk_that_fails_holds_the_rig_and_nothing_more_is_sent() {
+    let plan = plan();
+    let healthy = recorded(&plan).0.0.borrow().carried_out.len();
+    let mut stopped = 0;
+    for failed_sync in 6..60 {
+        let disk = SickDisk::new(Sickness {
+            failed_sync: Some(failed_sync),
+            ..Sickness::default()
+        });
+        let mut rig = Standing::new(&plan);
+        let mut journal = journal(disk.clone());
+        begin(&mut journal, &header(), &[]).unwrap();
+        let recorded = record(&plan, &mut rig, &mut Witness, journal, no_wall());
+        assert!(
+            matches!(&recorded.record.outcome, Outcome::Faulted { reason } if reason.contains("cannot be kept"))
+        );
+        assert!(recorded.fault.is_some());
+        let carried_out = rig.0.borrow().carried_out.len();
+        let known = recover(&disk.written())
+            .unwrap()
+            .lines
+            .iter()
+            .filter(|line| line.kind == EntryKind::Intent)
+            .count();
+        assert!(
+            carried_out <= known && carried_out < healthy,
+            "{carried_out} of {known}"
+        );
+        assert_eq!(
+            replay(&plan, logged(&disk.written()).1).mismatch,
+            None,
+            "sync {failed_sync}: its last words end it again"
+        );
+        stopped += 1;
+    }
+    assert_eq!(stopped, 54);
+}

@@ -1,0 +1,324 @@
+//! The final hold is in the run log: its replay gives the same, and a rig that was moved or released since is not
+//! continued.
+
+use std::cell::Cell;
+
+use super::*;
+use super::{Standing, Witness, logged};
+use crate::physics::tracking::trajectory::Path;
+use crate::plan::formula::Formula;
+use crate::plan::{Move, Plan, ProcedureKind};
+use crate::record::EventKind;
+use crate::record::journal::Durability;
+use crate::record::journal::testing::PowerLoss;
+use crate::rig::{DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, Reading, RigFault};
+use crate::run::Inspection;
+use crate::tests::testing::{elastic_plan, header, ramp};
+
+/// Held by a person on the way to a target, at 40 % of it.
+struct HeldOnTheWay {
+    rig: Standing,
+    target: f64,
+    moves: u32,
+    /// Whether it is known to hold.
+    heard: bool,
+    /// It is real, and held at a look instead, once a person looks.
+    at_a_look: Option<Rc<Cell<bool>>>,
+}
+
+impl Rig for HeldOnTheWay {
+    fn identity(&self) -> Identity {
+        Identity {
+            simulated: self.at_a_look.is_none(),
+            ..self.rig.identity()
+        }
+    }
+    fn degrees_of_freedom(&self) -> usize {
+        1
+    }
+    fn time(&self) -> f64 {
+        self.rig.time()
+    }
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
+        self.target = targets[0];
+        self.rig.propose(targets, speed)
+    }
+    fn execute(&mut self) -> Result<(), RigFault> {
+        self.moves += 1;
+        if self.moves == 3 && self.at_a_look.is_none() {
+            Err(RigFault::Interrupted)
+        } else {
+            self.rig.execute()
+        }
+    }
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        let held = self.at_a_look.as_ref().is_some_and(|looks| looks.get());
+        if held {
+            Err(RigFault::Interrupted)
+        } else {
+            self.rig.pause(seconds)
+        }
+    }
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        self.rig.read()
+    }
+    fn traverse(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.rig.traverse(targets, velocity, samples, each)
+    }
+    fn glide(
+        &mut self,
+        paths: &[Path],
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.rig.glide(paths, samples, each)
+    }
+    fn hold(&mut self) {
+        self.rig.hold();
+    }
+    fn halt(&mut self) -> Option<FinalHold> {
+        let unconfirmed = (!self.heard).then(|| "the line is gone".to_owned());
+        let found = self.heard.then(|| (vec![place()], vec![force()]));
+        Some(FinalHold {
+            time: self.time() + 0.25,
+            unconfirmed,
+            found,
+            raw: Vec::new(),
+        })
+    }
+    fn declared_noise(&self) -> DeclaredNoise {
+        self.rig.declared_noise()
+    }
+}
+
+/// Between the second target of the ramp and the third, m; N.
+fn place() -> f64 {
+    2.4e-4
+}
+
+fn force() -> f64 {
+    300.0 * place()
+}
+
+fn plan() -> Plan {
+    elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramp(1e-4))])
+}
+
+/// What a person left who held it there, and its journal.
+fn held(heard: bool) -> (Recorded, Vec<u8>) {
+    let (plan, disk) = (plan(), PowerLoss::new());
+    let mut rig = HeldOnTheWay {
+        rig: Standing::new(&plan),
+        target: 0.0,
+        moves: 0,
+        heard,
+        at_a_look: None,
+    };
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
+    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let recorded = record(&plan, &mut rig, &mut Witness, journal, Box::new(|| None));
+    (recorded, disk.written())
+}
+
+#[test]
+fn what_became_of_the_rig_plays_back() {
+    for (heard, kind, told) in [
+        (true, EventKind::Held, "held at 0.2400 mm, 0.07200 N"),
+        (
+            false,
+            EventKind::NotHeld,
+            "NOT CONFIRMED HELD (the line is gone): it may still be moving; use the emergency stop",
+        ),
+    ] {
+        let (recorded, bytes) = held(heard);
+        let last = recorded.record.events.last().unwrap();
+        assert_eq!((last.kind, last.text.as_str()), (kind, told));
+        let (lines, again) = logged(&bytes);
+        assert_eq!(
+            lines
+                .lines
+                .iter()
+                .filter(|line| line.kind == EntryKind::Held)
+                .count(),
+            1
+        );
+        let replayed = replay(&plan(), again);
+        assert_eq!(replayed.mismatch, None);
+        assert_eq!(replayed.record.events, recorded.record.events, "times too");
+        assert_eq!(replayed.record.outcome, recorded.record.outcome);
+    }
+}
+
+/// Looks, and has not decided yet.
+struct Looking(Rc<Cell<bool>>);
+
+impl Observer for Looking {
+    fn inspect(&mut self, _: &str) -> Inspection {
+        self.0.set(true);
+        Inspection::Wait
+    }
+}
+
+#[test]
+fn a_hold_at_a_look_behind_a_step_is_played_back_as_one_at_the_look() {
+    let to = Move {
+        to: Formula::Constant(1e-4),
+        speed: None,
+    };
+    let look = ProcedureKind::Inspect {
+        note: "look".to_owned(),
+    };
+    let (plan, disk) = (
+        elastic_plan(300.0, vec![ProcedureKind::Move(to), look]),
+        PowerLoss::new(),
+    );
+    let looks = Rc::new(Cell::new(false));
+    let at_a_look = Some(Rc::clone(&looks));
+    let mut rig = HeldOnTheWay {
+        rig: Standing::new(&plan),
+        target: 0.0,
+        moves: 0,
+        heard: true,
+        at_a_look,
+    };
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
+    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let recorded = record(
+        &plan,
+        &mut rig,
+        &mut Looking(looks),
+        journal,
+        Box::new(|| None),
+    );
+    assert!(
+        matches!(recorded.record.outcome, Outcome::Aborted { .. }),
+        "{:?}",
+        recorded.record.outcome
+    );
+    let replayed = replay(&plan, logged(&disk.written()).1);
+    assert_eq!(replayed.mismatch, None);
+    assert_eq!(replayed.record.events, recorded.record.events);
+}
+
+/// What is decided of a rig that is found there, feeling that.
+fn decided(
+    heard: bool,
+    displacement: f64,
+    force: f64,
+    accept: bool,
+) -> Result<ResumeDecision, ResumeRefusal> {
+    let (_, bytes) = held(heard);
+    let (_, logged) = logged(&bytes);
+    let rig = Standing::new(&plan());
+    let about = RigBody {
+        last_move: None,
+        ..RigBody::of(&rig)
+    };
+    let found = Reading {
+        time: 0.0,
+        displacement: vec![displacement],
+        force: vec![force],
+        raw: Vec::new(),
+    };
+    let bands = Bands {
+        displacement: vec![1e-6],
+        force: vec![1e-3],
+    };
+    decide(&logged, &about, &found, &bands, accept)
+}
+
+#[test]
+fn a_rig_that_stands_as_it_was_held_is_sent_to_its_target_anew() {
+    let decision = decided(true, place(), force(), false).unwrap();
+    assert_eq!(
+        (&decision.target_status, decision.held.clone()),
+        (
+            &TargetStatus::HeldOnTheWay,
+            Some((vec![place()], vec![force()]))
+        )
+    );
+    let (to, speed) = decision.sends.clone().unwrap();
+    assert!((to[0] - 3e-4).abs() < 1e-12 && speed > 0.0, "{to:?}");
+    let found = Reading {
+        time: 0.0,
+        displacement: vec![place()],
+        force: vec![force()],
+        raw: Vec::new(),
+    };
+    let resumption = decision.resumption("A", "so", &found, 1.0);
+    assert_eq!(resumption.held, Some((vec![place()], vec![force()])));
+}
+
+#[test]
+fn a_rig_that_was_moved_or_let_go_of_since_is_refused() {
+    // Each of them stands between where the way began and where it led.
+    for elsewhere in [2.1e-4, 2.9e-4] {
+        let refused = decided(true, elsewhere, 300.0 * elsewhere, true);
+        assert!(
+            matches!(refused, Err(ResumeRefusal::Elsewhere { .. })),
+            "{refused:?}"
+        );
+    }
+    assert!(
+        matches!(
+            decided(true, place(), 0.0, false),
+            Err(ResumeRefusal::Relaxed { .. })
+        ),
+        "the specimen was taken out"
+    );
+    assert!(
+        decided(true, place(), 0.0, true).is_ok(),
+        "somebody answers for the force"
+    );
+    // Nobody knows where it came to rest: the place on the way is all there is, and a person is asked.
+    let decision = decided(false, 2.1e-4, 0.0, false).unwrap();
+    assert_eq!(
+        (decision.target_status, decision.held),
+        (TargetStatus::HeldOnTheWay, None)
+    );
+}
+
+#[test]
+fn a_record_that_does_not_say_where_it_was_held_plays_back_as_before() {
+    let (_, bytes) = held(true);
+    let (_, whole) = logged(&bytes);
+    let lines = whole.lines.iter().filter(|line| {
+        let event = line.kind == EntryKind::Event && line.body()["kind"] == "held";
+        line.kind != EntryKind::Held && !event
+    });
+    let older = LoggedRun {
+        lines: lines.cloned().collect(),
+        ..whole.clone()
+    };
+    // The event of the stop has its own time there: that of the fault before it.
+    let replayed = replay(
+        &plan(),
+        LoggedRun {
+            lines: without_events(&older),
+            ..older
+        },
+    );
+    assert_eq!(replayed.mismatch, None);
+    assert!(
+        replayed
+            .record
+            .events
+            .iter()
+            .all(|event| event.kind != EventKind::Held)
+    );
+}
+
+fn without_events(logged: &LoggedRun) -> std::collections::VecDeque<crate::record::journal::Line> {
+    logged
+        .lines
+        .iter()
+        .filter(|line| line.kind != EntryKind::Event)
+        .cloned()
+        .collect()
+}

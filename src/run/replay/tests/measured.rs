@@ -1,0 +1,111 @@
+//! The measured and computed results of a run, as text that tests compare. Knows no run log.
+
+use std::fmt::Write as _;
+
+use crate::record::{History, ImpactHistory, Record};
+
+/// What a run measured and computed, without the times at which it did.
+pub(super) fn measured(record: &Record) -> String {
+    let mut told = String::new();
+    for procedure in &record.procedures {
+        writeln!(told, "{} {:?}", procedure.name, procedure.results).unwrap();
+        match &procedure.history {
+            History::Ramp(history) => {
+                for step in &history.steps {
+                    writeln!(
+                        told,
+                        "{:?} {:?} {:?}",
+                        step.command, step.displacement, step.restoring_force
+                    )
+                    .unwrap();
+                }
+            }
+            History::Impact(ImpactHistory {
+                frame: Some(frame),
+                steps,
+                ..
+            }) => {
+                for (step, floors) in steps.iter().zip(&frame.floors) {
+                    writeln!(
+                        told,
+                        "{:?} {:?} {:?}",
+                        step.striker_velocity, step.energies, floors
+                    )
+                    .unwrap();
+                }
+            }
+            History::Impact(history) => {
+                for step in &history.steps {
+                    writeln!(
+                        told,
+                        "{:?} {:?} {:?} {:?}",
+                        step.command, step.velocity, step.restoring_force, step.energies
+                    )
+                    .unwrap();
+                }
+            }
+            History::Sweep(history) => {
+                for step in &history.steps {
+                    writeln!(told, "{:?} {:?}", step.displacement, step.restoring_force).unwrap();
+                }
+            }
+            History::Move(steps) => writeln!(
+                told,
+                "{:?}",
+                steps.iter().map(|step| step.command).collect::<Vec<_>>()
+            )
+            .unwrap(),
+            History::FrameUnload(steps) => {
+                for step in steps {
+                    writeln!(
+                        told,
+                        "{:?} {:?} {:?}",
+                        step.command, step.displacement, step.restoring_force
+                    )
+                    .unwrap();
+                }
+            }
+            History::Escalate(history) => {
+                writeln!(
+                    told,
+                    "{:?}",
+                    history
+                        .blows
+                        .iter()
+                        .map(|blow| (&blow.results, &blow.rest))
+                        .collect::<Vec<_>>()
+                )
+                .unwrap();
+            }
+            History::Cycle(history) => {
+                for step in &history.steps {
+                    writeln!(
+                        told,
+                        "{:?} {:?} {:?}",
+                        step.command, step.displacement, step.restoring_force
+                    )
+                    .unwrap();
+                }
+            }
+            History::Shake(history) => {
+                for step in &history.steps {
+                    writeln!(
+                        told,
+                        "{:?} {:?} {:?}",
+                        step.command, step.displacement, step.restoring_force
+                    )
+                    .unwrap();
+                }
+            }
+            History::Inspect => {}
+        }
+    }
+    if let Some(drift) = &record.drift {
+        let zeros = drift
+            .axes
+            .iter()
+            .map(|axis| (axis.before.force, axis.after.map(|after| after.force)));
+        writeln!(told, "{:?}", zeros.collect::<Vec<_>>()).unwrap();
+    }
+    told
+}

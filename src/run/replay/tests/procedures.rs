@@ -1,0 +1,259 @@
+//! A plan for every procedure that moves the rig.
+
+use crate::plan::formula::Formula::Constant;
+use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use crate::plan::{
+    Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
+    FrameUnload, Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Plan, Procedure,
+    ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
+    Until, WatchedHold, WatchedModel, ZeroAfter,
+};
+use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
+use crate::units::Dimension;
+
+pub(super) const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
+
+pub(super) fn to(place: f64) -> ProcedureKind {
+    ProcedureKind::Move(Move {
+        to: Constant(place),
+        speed: None,
+    })
+}
+
+/// K 300 N/m; yields at 3 N, 10 mm.
+pub(super) fn yielding(procedures: Vec<ProcedureKind>) -> Plan {
+    let mut plan = elastic_plan(300.0, procedures);
+    plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
+        stiffness: 300.0,
+        yield_force: 3.0,
+        hardening: 0.1,
+    });
+    plan
+}
+
+/// Five steps.
+pub(super) fn short(mode: Mode) -> Impact {
+    let stepping = Stepping {
+        mode,
+        ..every(0.01)
+    };
+    Impact {
+        stepping,
+        duration: Constant(0.05),
+        until: Until::Duration,
+        ..impact(Constant(300.0))
+    }
+}
+
+pub(super) fn cycle(rate: Option<f64>) -> Cycle {
+    Cycle {
+        specimen: 0,
+        levels: vec![Level {
+            amplitude: Constant(0.02),
+            cycles: 1,
+        }],
+        sides: Sides::Both,
+        about: Constant(0.001),
+        points: 3,
+        samples: 2,
+        pause: Constant(0.1),
+        speed: rate.map(|_| Constant(0.01)),
+        rate: rate.map(Constant),
+        inspect: Vec::new(),
+        fit: None,
+        evenly: false,
+    }
+}
+
+/// Two floors on a ground that shakes, and stops for a look. They yield, so that a way gone twice would show.
+pub(super) fn shaken(mode: Mode) -> Plan {
+    let behaviour = |stiffness| Behaviour::Bilinear {
+        stiffness,
+        yield_force: stiffness * 0.0002,
+        hardening: 0.1,
+    };
+    let storey = |mass, stiffness| Storey::new(mass, stiffness, behaviour(stiffness));
+    let mut plan = elastic_plan(300.0, Vec::new());
+    plan.specimens[0].behaviour = None;
+    plan.specimens[0].frame = Some(Frame::of_storeys(vec![
+        storey(2000.0, 3e6),
+        storey(1500.0, 2e6),
+    ]));
+    plan.grounds = vec![Ground {
+        name: "quake".to_owned(),
+        file: "quake.csv".to_owned(),
+        unit: 1.0,
+        scale: 1.0,
+        scale_uncertainty: 0.0,
+        times: vec![0.0, 0.02, 0.04, 0.06],
+        accelerations: vec![0.0, 8.0, -6.0, 0.0],
+    }];
+    let shake = Shake {
+        specimen: 0,
+        ground: 0,
+        damping: ShakeDamping::Rayleigh(Constant(0.02)),
+        damping_uncertainty: 0.0,
+        stepping: Stepping {
+            integrator: Integrator::Explicit,
+            mode,
+            inspect: if mode == Mode::StepAndPause {
+                vec![InspectTrigger::Every(4)]
+            } else {
+                Vec::new()
+            },
+            ..every(0.01)
+        },
+        scale: Constant(1.0),
+        duration: None,
+    };
+    plan.procedures = elastic_plan(300.0, vec![ProcedureKind::Shake(shake)]).procedures;
+    plan
+}
+
+pub(super) fn escalating() -> Plan {
+    let value = Formula::Result(ResultReference {
+        procedure: ProcedureId(0),
+        name: "max_velocity",
+        part: Part::Value,
+    });
+    // The blows are over before their peak, which would decide nothing.
+    let below = Condition {
+        text: String::new(),
+        value,
+        test: Test::Compare {
+            comparison: Comparison::Less,
+            limit: Constant(0.8),
+        },
+        dimension: Dimension::VELOCITY,
+    };
+    yielding(vec![ProcedureKind::Escalate(Escalate {
+        own: ProcedureId(0),
+        impact: Impact {
+            duration: Constant(0.03),
+            ..short(Mode::StepAndPause)
+        },
+        velocities: [0.2, 0.4, 0.6].map(Constant).to_vec(),
+        energies: None,
+        condition: vec![below],
+        between: Between::Unload,
+        inspect_between: true,
+    })])
+}
+
+pub(super) fn unloading() -> Plan {
+    let unload = Unload {
+        specimen: 0,
+        stiffness: Constant(500.0),
+        within: None,
+        speed: None,
+    };
+    yielding(vec![to(0.03), ProcedureKind::Unload(unload)])
+}
+
+/// The upper floor is struck, and the actuators never stop.
+pub(super) fn struck_on_the_way() -> Plan {
+    let mut plan = struck_frame();
+    if let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind {
+        (blow.stepping.mode, blow.duration) = (CONTINUOUS, Constant(0.05));
+    }
+    plan
+}
+
+/// Out past yield and back, each pause watched; then anew.
+pub(super) fn watched() -> Plan {
+    let watched = StiffnessRamp {
+        displacements: [0.005, 0.02].map(Constant).to_vec(),
+        pause: Constant(0.2),
+        samples: 2,
+        repeats: 2,
+        return_path: true,
+        relaxation: Some(WatchedHold {
+            model: WatchedModel::Reached {
+                law: None,
+                rate: 1.0,
+            },
+            readings: 3,
+        }),
+        ..ramp(1e-4)
+    };
+    yielding(vec![ProcedureKind::StiffnessRamp(watched), to(0.0)])
+}
+
+/// Zeros are read, also during a look, and the rig goes back for the last.
+pub(super) fn drifting() -> Plan {
+    let ramped = StiffnessRamp {
+        pause: Constant(0.5),
+        displacements: vec![Constant(1e-3), Constant(2e-3)],
+        ..ramp(1e-4)
+    };
+    let looked = ProcedureKind::Inspect {
+        note: "look".to_owned(),
+    };
+    let mut plan = elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramped), looked]);
+    plan.rig.drift = Some(DriftCheck {
+        force: 1.0,
+        displacement: Some(1e-6),
+        over: 0.4,
+        after: ZeroAfter::Start,
+    });
+    plan
+}
+
+/// Two blows on the upper of two floors, the load taken off both after each, and once more.
+pub(super) fn frame_row() -> Plan {
+    let mut plan =
+        crate::tests::procedures::frame::impact_series::rising(&[0.4, 0.8], Between::Unload);
+    let ProcedureKind::Escalate(escalate) = &mut plan.procedures[0].kind else {
+        panic!()
+    };
+    escalate.inspect_between = true;
+    let blow = &mut escalate.impact;
+    blow.duration = Constant(0.03);
+    let unload = ProcedureKind::FrameUnload(FrameUnload {
+        specimen: 0,
+        within: Some(Constant(1e-6)),
+        speed: None,
+    });
+    plan.procedures.push(Procedure {
+        name: "rest".to_owned(),
+        kind: unload,
+    });
+    plan
+}
+
+/// A sweep about a place past yield: one stroke that is not read takes the flow before those that are.
+pub(super) fn swept_past_yield() -> Plan {
+    let sweep = DampingSweep {
+        specimen: 0,
+        velocities: vec![Constant(0.01), Constant(0.02)],
+        stroke: Constant(5e-3),
+        about: Some(Constant(0.03)),
+        stiffness: Constant(300.0),
+        rate: Some(Constant(24.0)),
+    };
+    yielding(vec![ProcedureKind::DampingSweep(sweep), to(0.0)])
+}
+
+/// Every plan here, by what it shows.
+pub(super) fn plans() -> Vec<(&'static str, Plan)> {
+    vec![
+        (
+            "continuous",
+            yielding(vec![ProcedureKind::Impact(short(CONTINUOUS))]),
+        ),
+        ("cycle", yielding(vec![ProcedureKind::Cycle(cycle(None))])),
+        (
+            "cycle without a stop",
+            yielding(vec![ProcedureKind::Cycle(cycle(Some(2.0)))]),
+        ),
+        ("escalate", escalating()),
+        ("drift", drifting()),
+        ("shake", shaken(Mode::StepAndPause)),
+        ("shake without a stop", shaken(CONTINUOUS)),
+        ("storey without a stop", struck_on_the_way()),
+        ("unload", unloading()),
+        ("escalate on a storey", frame_row()),
+        ("watched", watched()),
+        ("sweep past yield", swept_past_yield()),
+    ]
+}

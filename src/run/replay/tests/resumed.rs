@@ -1,0 +1,268 @@
+//! Every procedure that moves the rig, killed at every write and every sync and resumed: the same end, no target executed
+//! twice, and the run log of both parts is replayed. A run without a run log has the same times as one with it.
+
+use super::entry::FaultBody;
+use super::procedures::{CONTINUOUS, cycle, plans, shaken, short, swept_past_yield, to};
+use super::*;
+use crate::plan::formula::Formula::Constant;
+use crate::plan::formula::ResultValue;
+use crate::plan::{Cycle, Impact, Mode, ProcedureKind, StiffnessRamp};
+use crate::record::History;
+use crate::record::journal::Durability;
+use crate::record::journal::testing::PowerLoss;
+use crate::rig::controllers::DeviceFault;
+use crate::rig::safety::failpoint::{Guarding, without};
+use crate::rig::{Identity, JUST_STARTED, RigFault};
+use crate::tests::testing::{elastic_plan, header, ramp, result_of};
+
+/// A record of a version whose targets stood evenly is played back so; what this version writes is not.
+#[test]
+fn a_cycle_is_played_back_by_the_spacing_of_its_time() {
+    let plan = |evenly| {
+        elastic_plan(
+            300.0,
+            vec![ProcedureKind::Cycle(Cycle {
+                evenly,
+                ..cycle(None)
+            })],
+        )
+    };
+    for (evenly, rules, fits) in [(true, 2, true), (true, 3, false), (false, 3, true)] {
+        let (_, recorded, bytes) = recorded(&plan(evenly));
+        assert!(recorded.fault.is_none());
+        let (_, mut logged) = logged(&bytes);
+        logged.header.rules = rules;
+        assert_eq!(
+            replay(&plan(false), logged).mismatch.is_none(),
+            fits,
+            "even: {evenly}, rules {rules}"
+        );
+    }
+}
+
+fn killed(name: &str) {
+    let plan = plans().into_iter().find(|(own, _)| *own == name).unwrap().1;
+    killed_everywhere(&plan, 30);
+}
+
+#[test]
+fn a_continuous_blow() {
+    killed("continuous");
+}
+
+#[test]
+fn cycles() {
+    killed("cycle");
+    killed("cycle without a stop");
+}
+
+#[test]
+fn rising_blows() {
+    killed("escalate");
+}
+
+#[test]
+fn rising_blows_on_a_storey() {
+    killed("escalate on a storey");
+}
+
+#[test]
+fn a_shake_of_two_floors() {
+    // Both storeys have yielded, each at 0.2 mm: a part of a way gone twice would be felt.
+    let (_, whole, _) = recorded(&shaken(CONTINUOUS));
+    let drifts = whole.record.procedures[0]
+        .result("max_drift")
+        .map(|result| result.value.clone());
+    assert!(
+        matches!(drifts, Some(ResultValue::List(drifts)) if drifts.iter().all(|drift| *drift > 4e-4))
+    );
+    killed("shake");
+    killed("shake without a stop");
+}
+
+#[test]
+fn a_blow_on_a_storey_without_a_stop() {
+    killed("storey without a stop");
+}
+
+#[test]
+fn pauses_that_are_watched() {
+    killed("watched");
+}
+
+/// Nothing of a stroke that flowed is read, and what is read comes back over the line that it went: there is no damper.
+#[test]
+fn a_sweep_about_a_place_past_yield() {
+    let (_, whole, _) = recorded(&swept_past_yield());
+    let (damping, _) = crate::tests::testing::number(&whole.record, 0, "damping");
+    assert!(damping.unwrap().abs() < 1e-9, "{damping:?}");
+    let History::Sweep(sweep) = &whole.record.procedures[0].history else {
+        panic!()
+    };
+    assert!(
+        sweep
+            .steps
+            .iter()
+            .all(|step| (step.displacement - 0.03).abs() < 2.6e-3),
+        "the stroke that flows is not read"
+    );
+    killed("sweep past yield");
+}
+
+#[test]
+fn zeros_before_and_after() {
+    killed("drift");
+}
+
+#[test]
+fn an_unloading() {
+    killed("unload");
+}
+
+#[test]
+fn each_is_played_back_to_the_last_bit_and_told_at_the_same_times_without_a_record() {
+    let ramped = StiffnessRamp {
+        pause: Constant(0.1),
+        ..ramp(1e-4)
+    };
+    let looked = vec![
+        ProcedureKind::StiffnessRamp(ramped),
+        ProcedureKind::Inspect {
+            note: "look".to_owned(),
+        },
+        ProcedureKind::Impact(
+            Impact {
+                ..short(Mode::StepAndPause)
+            }
+            .with_point(|point| point.stiffness = result_of(0, "stiffness")),
+        ),
+        to(0.0),
+    ];
+    for (name, plan) in plans()
+        .into_iter()
+        .chain([("a look after a way home", elastic_plan(300.0, looked))])
+    {
+        let (_, whole, bytes) = recorded(&plan);
+        assert_eq!(
+            whole.record.outcome,
+            Outcome::Completed,
+            "{name}: {:?}",
+            whole.record.events
+        );
+        let replayed = replay(&plan, logged(&bytes).1);
+        assert_eq!(replayed.mismatch, None, "{name}");
+        assert_eq!(
+            format!("{:?}", replayed.record),
+            format!("{:?}", whole.record),
+            "{name}: played back"
+        );
+        let plain = run(&plan, &mut Standing::new(&plan), &mut Witness);
+        // What the rig mended is counted from its first reading on in either.
+        assert_eq!(
+            format!("{plain:?}"),
+            format!("{:?}", whole.record),
+            "{name}: not recorded"
+        );
+    }
+}
+
+#[test]
+fn a_restart_on_record_needs_a_reference_whatever_else_is_said() {
+    let plan = crate::tests::testing::empty_plan();
+    let fault = DeviceFault::Rebooted {
+        was: "running".to_owned(),
+        is: "Grbl 1.1h".to_owned(),
+    };
+    let of = |fault: &str| {
+        let disk = PowerLoss::new();
+        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
+        begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        journal
+            .append(EntryKind::Rig, &RigBody::of(&Standing::new(&plan)))
+            .unwrap();
+        let fault = RigFault::Device(format!("actuator on /dev/ttyUSB0: {fault}"));
+        journal
+            .append(
+                EntryKind::Fault,
+                &FaultBody {
+                    t: 0.0,
+                    call: Call::Execute,
+                    fault,
+                    wall: None,
+                },
+            )
+            .unwrap();
+        journal.sync().unwrap();
+        logged(&disk.written()).1
+    };
+    let restarted = of(&fault.to_string());
+    let refused = not_restarted(&restarted, &[Assurance::SamePowerUp, Assurance::LetGo]);
+    assert!(
+        matches!(refused, Err(ResumeRefusal::Restarted { .. })),
+        "{refused:?}"
+    );
+    assert_eq!(
+        not_restarted(&restarted, &[Assurance::ReReferenced]),
+        Ok(())
+    );
+    assert_eq!(
+        not_restarted(&of("the line is gone: unplugged"), &[]),
+        Ok(())
+    );
+}
+
+#[test]
+fn a_rig_that_cannot_say_that_it_was_not_switched_off_needs_the_word_of_a_person() {
+    let plan = crate::tests::testing::empty_plan();
+    let of = |boot: Option<&str>| Identity {
+        boot: boot.map(str::to_owned),
+        ..Standing::new(&plan).identity()
+    };
+    let (nothing, word, anew) = (
+        &[][..],
+        &[Assurance::SamePowerUp][..],
+        &[Assurance::ReReferenced][..],
+    );
+    let refused = |was, is, assured| same_rig(&of(was), &of(is), assured).err();
+    for mute in [
+        (None, None),
+        (Some(JUST_STARTED), None),
+        (Some("7F3A + -"), Some("7F3A + -")),
+    ] {
+        assert_eq!(
+            refused(mute.0, mute.1, nothing),
+            Some(ResumeRefusal::PowerUpUnknown),
+            "{mute:?}"
+        );
+        assert_eq!(
+            (refused(mute.0, mute.1, word), refused(mute.0, mute.1, anew)),
+            (None, None),
+            "{mute:?}"
+        );
+        let unguarded = without(Guarding::PowerUp, || refused(mute.0, mute.1, nothing));
+        assert_eq!(unguarded, None, "{mute:?}: nothing else sees it");
+    }
+    for proven in ["7F3A", "7F3A + 11B0"] {
+        assert_eq!(refused(Some(proven), Some(proven), nothing), None);
+    }
+    let started = [
+        (Some("7F3A"), Some("11B0")),
+        (None, Some(JUST_STARTED)),
+        (Some(JUST_STARTED), Some(JUST_STARTED)),
+        (Some("7F3A"), None),
+        (Some("7F3A + -"), Some("11B0 + -")),
+        (Some("7F3A + -"), Some("7F3A")),
+    ];
+    for (was, is) in started {
+        for assured in [nothing, word] {
+            assert!(
+                matches!(
+                    refused(was, is, assured),
+                    Some(ResumeRefusal::Rebooted { .. })
+                ),
+                "no word outweighs what it says: {was:?} {is:?}"
+            );
+        }
+        assert_eq!(refused(was, is, anew), None, "{was:?} {is:?}");
+    }
+}
