@@ -33,7 +33,7 @@ pub(crate) enum StruckStructure {
     /// One degree of freedom.
     Point(Steps),
     /// A frame, one floor of which is struck.
-    Storey(FrameSteps),
+    Storey(Box<FrameSteps>),
 }
 
 impl Setting {
@@ -143,11 +143,11 @@ impl Setting {
             input: floor.struck_by(striker, &plan.stepping),
             approach,
             fastest: striker.velocity,
-            structure: StruckStructure::Storey(FrameSteps::new(
+            structure: StruckStructure::Storey(Box::new(FrameSteps::new(
                 properties,
                 plan.stepping.integrator,
                 steps,
-            )),
+            ))),
         })
     }
 

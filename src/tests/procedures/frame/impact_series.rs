@@ -68,7 +68,7 @@ fn within(velocities: &[f64], limit: f64) -> Plan {
 fn series(impact: Impact, velocities: &[f64], condition: Condition, between: Between) -> Plan {
     let escalate = Escalate {
         own: ProcedureId(0),
-        impact: impact,
+        impact,
         velocities: velocities.iter().copied().map(Constant).collect(),
         energies: None,
         condition: vec![condition],
