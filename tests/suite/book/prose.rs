@@ -62,7 +62,7 @@ fn sentences(text: &str) -> Vec<String> {
     for paragraph in paragraphs.iter().map(without_code) {
         let mut sentence = String::new();
         for word in paragraph.split_whitespace() {
-            sentence += &format!("{word} ");
+            sentence.extend([word, " "]);
             if word.ends_with(['.', ':', ';', '!', '?']) {
                 sentences.push(std::mem::take(&mut sentence));
             }
