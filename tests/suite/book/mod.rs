@@ -6,6 +6,7 @@ mod figures;
 mod generated;
 mod messages;
 mod plans;
+mod prose;
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -57,7 +58,7 @@ fn blocks(text: &str) -> Vec<Block> {
                 });
             }
             (Some(_), Some(_)) => blocks.extend(open.take()),
-            (Some(block), None) => block.body += &format!("{line}\n"),
+            (Some(block), None) => block.body.extend([line, "\n"]),
             (None, None) => {}
         }
     }
@@ -74,7 +75,7 @@ fn prose(text: &str) -> String {
             fenced = !fenced;
         } else if !fenced {
             let words: Vec<&str> = line.split('`').step_by(2).collect();
-            prose += &format!("{}\n", words.join(""));
+            prose.extend([words.join("").as_str(), "\n"]);
         }
     }
     prose
@@ -119,11 +120,7 @@ fn resolved(page: &Path, target: &str) -> Option<PathBuf> {
     let mut path = page.parent().unwrap_or(Path::new("")).to_owned();
     for part in Path::new(target).components() {
         match part {
-            Component::ParentDir => {
-                if !path.pop() {
-                    return None;
-                }
-            }
+            Component::ParentDir if !path.pop() => return None,
             Component::Normal(name) => path.push(name),
             _ => {}
         }

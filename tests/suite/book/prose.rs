@@ -1,0 +1,128 @@
+//! The style of the book: short sentences, and no idiom that the glossary replaces. Code, tables, headings and generated parts
+//! do not count.
+
+use std::path::Path;
+
+/// Words that have a plain term in the glossary.
+const IDIOMS: [&str; 22] = [
+    "anew",
+    "blessed",
+    "blow",
+    "blows",
+    "doubt",
+    "doubts",
+    "foretell",
+    "foretells",
+    "foretold",
+    "gets told",
+    "heeded",
+    "hears",
+    "is told",
+    "reckon",
+    "reckoned",
+    "reckons",
+    "somebody",
+    "stands in",
+    "taken again",
+    "tells",
+    "told",
+    "vouches",
+];
+
+/// The sentences of a page, in lower case, code replaced by a letter.
+fn sentences(text: &str) -> Vec<String> {
+    let (mut fenced, mut generated) = (false, false);
+    let mut paragraphs = vec![String::new()];
+    for line in text.lines() {
+        if line.starts_with("```") {
+            fenced = !fenced;
+            paragraphs.push(String::new());
+        } else if line.starts_with("<!--") {
+            generated = line == "<!-- generated -->";
+        } else if !fenced && !generated {
+            let list = line.starts_with("- ")
+                || line
+                    .trim_start_matches(|c: char| c.is_ascii_digit())
+                    .starts_with(". ");
+            if line.is_empty() || list {
+                paragraphs.push(String::new());
+            }
+            if !line.starts_with(['|', '#']) {
+                let last = paragraphs.last_mut().expect("never empty");
+                *last += line.trim_start_matches("- ");
+                last.push(' ');
+            }
+        }
+    }
+    let without_code = |paragraph: &String| {
+        let parts: Vec<&str> = paragraph.split('`').step_by(2).collect();
+        without_targets(&parts.join("x")).to_lowercase()
+    };
+    let mut sentences = Vec::new();
+    for paragraph in paragraphs.iter().map(without_code) {
+        let mut sentence = String::new();
+        for word in paragraph.split_whitespace() {
+            sentence.extend([word, " "]);
+            if word.ends_with(['.', ':', ';', '!', '?']) {
+                sentences.push(std::mem::take(&mut sentence));
+            }
+        }
+        sentences.push(sentence);
+    }
+    sentences.retain(|sentence| words(sentence) > 2);
+    sentences
+}
+
+/// A text without the targets of its links.
+fn without_targets(text: &str) -> String {
+    let mut parts = text.split("](");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |kept, part| {
+        kept + part.split_once(')').map_or("", |(_, rest)| rest)
+    })
+}
+
+fn words(sentence: &str) -> usize {
+    let is_word = |word: &&str| word.chars().any(char::is_alphanumeric);
+    sentence.split_whitespace().filter(is_word).count()
+}
+
+#[test]
+fn sentences_are_short_and_words_are_the_glossarys() {
+    let (mut total, mut count, mut long) = (0, 0, 0);
+    for page in super::pages() {
+        if page == Path::new("glossary.md") || page == Path::new("SUMMARY.md") {
+            continue;
+        }
+        for sentence in sentences(&super::text(&page)) {
+            let plain: String = sentence
+                .chars()
+                .map(|c| if c.is_alphanumeric() { c } else { ' ' })
+                .collect();
+            let padded = format!(
+                " {} ",
+                plain.split_whitespace().collect::<Vec<_>>().join(" ")
+            );
+            for idiom in IDIOMS {
+                assert!(
+                    !padded.contains(&format!(" {idiom} ")),
+                    "docs/{}: `{idiom}` in: {sentence}",
+                    page.display()
+                );
+            }
+            let words = words(&sentence);
+            total += words;
+            count += 1;
+            if words > 30 {
+                long += 1;
+                println!("docs/{}: {words} words: {sentence}", page.display());
+            }
+        }
+    }
+    assert!(count > 500, "{count} sentences");
+    assert!(total <= 17 * count, "{total} words in {count} sentences");
+    assert!(
+        20 * long < count,
+        "{long} of {count} sentences have more than 30 words"
+    );
+}
