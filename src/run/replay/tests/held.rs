@@ -12,7 +12,8 @@ use crate::record::EventKind;
 use crate::record::journal::Durability;
 use crate::record::journal::testing::PowerLoss;
 use crate::rig::{DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, Reading, RigFault};
-use crate::run::Inspection;
+use crate::run::session::Session;
+use crate::run::{Inspection, Motion};
 use crate::tests::testing::{elastic_plan, header, ramp};
 
 /// Held by a person on the way to a target, at 40 % of it.
@@ -201,9 +202,34 @@ fn a_hold_at_a_look_behind_a_step_is_played_back_as_one_at_the_look() {
         "{:?}",
         recorded.record.outcome
     );
+    let stop = &recorded.record.events[recorded.record.events.len() - 2];
+    assert_eq!(stop.text, "stopped on request", "no move was in progress");
     let replayed = replay(&plan, logged(&disk.written()).1);
     assert_eq!(replayed.mismatch, None);
     assert_eq!(replayed.record.events, recorded.record.events);
+}
+
+#[test]
+fn a_hold_requested_while_a_release_is_asked_releases_nothing() {
+    let (plan, looks) = (
+        elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramp(1e-4))]),
+        Rc::new(Cell::new(false)),
+    );
+    let mut rig = HeldOnTheWay {
+        rig: Standing::new(&plan),
+        target: 0.0,
+        moves: 0,
+        heard: true,
+        at_a_look: Some(Rc::clone(&looks)),
+    };
+    let mut observer = Looking(looks);
+    let Ok(mut session) = Session::begin(&plan, &mut rig, &mut observer) else {
+        panic!("the session begins")
+    };
+    let motion = Motion::of(&plan, session.identity(), "it moves".to_owned());
+    let stop = session.release("release", &motion).unwrap_err();
+    let reason = "stopped on request".to_owned();
+    assert_eq!(stop.outcome(), Outcome::NotReleased { reason });
 }
 
 /// What is decided of a rig that is found there, feeling that.
