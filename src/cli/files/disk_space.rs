@@ -33,7 +33,7 @@ mod tests {
     use crate::tests::testing::{elastic_plan, ramp};
     use std::io;
 
-    /// A disk with this free space, bytes.
+    /// A disk with this free space \[bytes\].
     struct Small(usize);
 
     impl Storage for Small {

@@ -110,7 +110,7 @@ fn read(path: &Path) -> Result<String, Unread> {
     })
 }
 
-/// Line and column, from 1, of the byte after these.
+/// Line and column, from 1, of the byte after `before`.
 fn place(before: &[u8]) -> (usize, usize) {
     let line = before
         .rsplit(|byte| *byte == b'\n')

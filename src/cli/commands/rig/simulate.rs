@@ -1,5 +1,5 @@
-//! `psd rig simulate`: an emulator of the rig of a plan, at the port of the plan, until it is stopped. In: a plan, a script
-//! of faults. Out: a serial line that answers, a log, and whether every target was within the limits.
+//! `psd rig simulate`: an emulator of the rig of a plan, at the port of the plan, until it is stopped. In: a plan, a script of faults.
+//! Out: a serial line that answers, a log, and whether every target was within the limits.
 
 use std::fs::{self, OpenOptions};
 use std::path::{Path, PathBuf};

@@ -22,7 +22,7 @@ pub(super) struct JogSession<'a> {
     pub plan: &'a Plan,
     /// Identity that the rig reports.
     pub identity: Identity,
-    /// Speed of the rig where none is commanded \[m/s\].
+    /// Speed of the rig if none is commanded \[m/s\].
     pub own_speed: Option<f64>,
     pub person: Person<'a>,
     pub settings: Settings,
