@@ -66,7 +66,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     Ok(Exit::Met)
 }
 
-/// The canonical text. None where the file has syntax errors, which are printed.
+/// The canonical text. None if the file has syntax errors, which are printed.
 fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
     let mut sources = Sources::default();
     let file = sources.add(name_of(path), text);

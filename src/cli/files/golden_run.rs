@@ -25,9 +25,9 @@ pub struct Trial {
     /// All files, or only those that are compared.
     pub files: Vec<OutputFile>,
     pub tolerances: Tolerances,
-    /// Verdict such as `pass`; None where the plan has errors.
+    /// Verdict such as `pass`; None if the plan has errors.
     pub verdict: Option<&'static str>,
-    /// Outcome of the run; None where the plan has errors.
+    /// Outcome of the run; None if the plan has errors.
     pub ended: Option<Outcome>,
 }
 

@@ -72,7 +72,7 @@ pub fn read_plan(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// The reason why a file is not a text, and the position of the byte where there is one.
+/// The reason why a file is not a text, and the position of the invalid byte if there is one.
 struct Unread {
     reason: String,
     at: Option<Position>,

@@ -90,7 +90,7 @@ fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
     sheets
 }
 
-/// The columns with the largest differences, over time where there is one.
+/// The columns with the largest differences, over time if there is a time column.
 fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> {
     let mut moved: Vec<(&str, f64)> = found
         .iter()

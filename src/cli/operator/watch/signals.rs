@@ -89,7 +89,7 @@ impl Signals {
     }
 }
 
-/// Whether and where signals are answered by a line.
+/// Whether a line reports signals, and on which kind of output.
 const SILENT: u8 = 0;
 const IN_A_PIPE: u8 = 1;
 const ON_A_TERMINAL: u8 = 2;
