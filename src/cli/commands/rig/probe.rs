@@ -12,7 +12,7 @@ use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::{plain, readable};
 
-/// Number of readings. The time between two readings is in \[s\].
+/// Number of readings; time between two readings \[s\].
 const READINGS: usize = 10;
 const APART: f64 = 0.1;
 
