@@ -21,7 +21,7 @@ use exit::Failure;
 /// Runs one command line, which begins with the name of the program, and returns its exit.
 #[must_use]
 pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
-    // Where the signal cannot be caught, a file over the size limit ends the program, and the watchdog of the rig holds it.
+    // If the signal cannot be caught, a file over the size limit ends the program, and the watchdog of the rig puts it on hold.
     let _ = operator::watch::catch_full_files();
     let arguments = match args::Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,

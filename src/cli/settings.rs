@@ -121,7 +121,7 @@ pub fn folder_of(plan: &Path) -> String {
     }
 }
 
-/// A terminal draws boxes unless it is the bare console or its locale names another encoding.
+/// A terminal draws boxes unless it is the bare console or its locale names a different encoding.
 fn draws_boxes(term: &str, locale: Option<&str>) -> bool {
     let utf8 = locale.is_none_or(|locale| {
         let locale = locale.to_ascii_lowercase();

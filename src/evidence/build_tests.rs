@@ -1,4 +1,4 @@
-//! The build of psd that made a run, in its record and its report.
+//! The build of psd that made a run, in its run log and its report.
 
 use super::rebuilt::{PlayedBack, Rebuilt};
 use super::tests::{folder, run, with};
@@ -9,7 +9,7 @@ use crate::files::recorded_run::JOURNAL;
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use crate::report::OutputFile;
 
-/// The record as another program would have begun it.
+/// The run log as a different program would have begun it.
 fn of_another_build(journal: &[u8]) -> Vec<u8> {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join(JOURNAL);
@@ -19,7 +19,7 @@ fn of_another_build(journal: &[u8]) -> Vec<u8> {
     );
     for line in recover(journal).unwrap().lines {
         let mut body = line.body();
-        // These the journal writes itself.
+        // The journal writes these fields itself.
         for own in ["format", "count", "head"] {
             body.as_object_mut().unwrap().shift_remove(own);
         }
@@ -53,7 +53,7 @@ fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_repo
     let page = String::from_utf8(page.bytes.clone()).unwrap();
     assert!(page.contains(&"0".repeat(64)) && page.contains("riscv64, another compiler"));
     assert!(!page.contains(BUILD) && !page.contains(TOOLCHAIN));
-    // And nothing else of the results knows of it.
+    // No other part of the results depends on it.
     let others = files
         .iter()
         .filter(|file| !file.path.starts_with("certificate."));

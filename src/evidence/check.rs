@@ -1,5 +1,5 @@
-//! A run folder held against what its record gives, against its manifest and against its signatures. In: the folder, the
-//! record played back, the keys that must have signed. Out: findings, one a part.
+//! Checks of a run folder against the results of its run log, its manifest and its signatures. In: the folder, the replayed run log, the
+//! required keys. Out: findings, one per part.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,10 +13,10 @@ use super::sidecar;
 use super::signature;
 use crate::report::manifest_with;
 
-/// Most names told of one fault.
+/// Largest number of names listed for one finding.
 const NAMED: usize = 6;
 
-/// Everything that can be said of a run folder. With keys, each of them must have signed, and nobody else.
+/// All findings of a run folder. With keys, each of them must have signed, and no other key.
 pub fn examine(folder: &Folder, rebuilt: &Rebuilt, keys: &[KnownKey]) -> Vec<Finding> {
     let mut findings = rebuilt.findings.clone();
     let sidecars = sidecars(folder, rebuilt.report.as_ref());
@@ -49,7 +49,7 @@ pub fn examine(folder: &Folder, rebuilt: &Rebuilt, keys: &[KnownKey]) -> Vec<Fin
     findings
 }
 
-/// What lies beside the files of the run and is of one of them: nothing that record or manifest name.
+/// The sidecars of files of the run: files that neither run log nor manifest lists.
 fn sidecars<'a>(folder: &'a Folder, report: Option<&Report>) -> BTreeSet<&'a str> {
     let listed = folder.bytes(MANIFEST).and_then(lines).unwrap_or_default();
     let is_of_the_run = |name: &str| {
@@ -62,7 +62,7 @@ fn sidecars<'a>(folder: &'a Folder, report: Option<&Report>) -> BTreeSet<&'a str
         .collect()
 }
 
-/// The parts of the results, each with the paths that are its own.
+/// The parts of the results, each with its paths.
 const PARTS: &[(&str, &str)] = &[
     ("figures", "figures/"),
     ("certificate", "certificate."),
@@ -77,7 +77,7 @@ fn part_of(path: &str) -> &'static str {
         .map_or("results", |(part, _)| part)
 }
 
-/// Every file of the results against the one that the record gives.
+/// Compares every file of the results with the file from the replay.
 fn results(
     folder: &Folder,
     report: &Report,
@@ -143,7 +143,7 @@ fn results(
     }
 }
 
-/// What has no place in a run folder, whatever a manifest says.
+/// Files that are not allowed in a run folder, even if a manifest lists them.
 fn foreign(folder: &Folder) -> Vec<String> {
     let odd = folder
         .odd
@@ -154,7 +154,7 @@ fn foreign(folder: &Folder) -> Vec<String> {
     odd.chain(reserve).collect()
 }
 
-/// Every file of the folder against its manifest, and the manifest against the one that the record gives.
+/// Compares every file of the folder with its manifest, and the manifest with the one from the replay.
 fn manifest(folder: &Folder, report: Option<&Report>, sidecars: &BTreeSet<&str>) -> Finding {
     let Some(bytes) = folder.bytes(MANIFEST) else {
         return Finding::wrong("manifest", "there are results and no manifest");
@@ -203,7 +203,7 @@ fn manifest(folder: &Folder, report: Option<&Report>, sidecars: &BTreeSet<&str>)
     }
 }
 
-/// Name and digest of every line; None where it is no manifest, or names a file twice.
+/// Name and digest of every line; None if it is not a manifest, or if it lists a file twice.
 fn lines(bytes: &[u8]) -> Option<BTreeMap<&str, &str>> {
     let mut lines = BTreeMap::new();
     for line in str::from_utf8(bytes).ok()?.lines() {

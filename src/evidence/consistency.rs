@@ -1,5 +1,5 @@
 //! Consistency of a run log with itself: repeated entries agree, the run id follows from the plan and its circumstances, and no entry
-//! is missing that this program writes. In: a run log as it was read. Out: the first error. It replays nothing.
+//! that this program writes is missing. In: a run log as it was read. Out: the first error. It replays nothing.
 
 use crate::files::provenance::{BUILD, recorded_id};
 use crate::files::recorded_run::{ReadRecord, plan_of};
@@ -36,7 +36,7 @@ pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
     Ok(())
 }
 
-/// The run log as its run began: its run id, and the entries that this program would have written.
+/// The start of the run log: its run id, and the entries that this program would have written.
 fn begins(recovered: &Recovered, played: &LoggedRun, plan: &Plan) -> Result<(), String> {
     let header = &played.header;
     let id = recorded_id(header, plan);
@@ -52,7 +52,7 @@ fn begins(recovered: &Recovered, played: &LoggedRun, plan: &Plan) -> Result<(), 
     Ok(())
 }
 
-/// Remarks on a consistent run log.
+/// Observations on a consistent run log.
 pub fn remarks(recovered: &Recovered, header: &Header) -> String {
     let version = if header.equipment.is_none() {
         ", of version 1: it does not say what was measured with"

@@ -1,5 +1,5 @@
-//! No record, however it is damaged, panics what reads it or keeps it for ever: it is an error with its place, or a run that the
-//! record does not fit.
+//! A damaged run log never causes a panic or an endless replay. It gives an error with its position, or a run that does not fit the run
+//! log.
 
 use std::path::Path;
 
@@ -19,15 +19,15 @@ use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::Bands;
 
-/// Changes the records of a journal.
+/// A change to the entries of a run log.
 type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
 
-/// All that `verify`, `report` and `resume` do with a record before they write or move anything; what is wrong with it.
+/// Everything that `verify`, `report` and `resume` do with a run log before they write or move anything; the error found.
 fn played(journal: &[u8]) -> Result<(), String> {
     let read = record_file::from_bytes(Path::new(JOURNAL), journal)
         .map_err(|failure| failure.to_string())?;
     let consistent = consistency::check_consistency(&read);
-    // A refusal is as good as none.
+    // A refusal has the same effect as a missing rig.
     let no_rig = || Err(replay::ResumeRefusal::NothingRecorded);
     let _ = replay::resume(
         &read.plan,
@@ -70,7 +70,7 @@ fn played(journal: &[u8]) -> Result<(), String> {
         .map_or(Ok(()), |mismatch| Err(mismatch.to_string()))
 }
 
-/// Records that once panicked a replay, or kept it for ever: each is an error with its place.
+/// Run logs that once caused a panic or an endless replay: each gives an error with its position.
 #[test]
 fn known_damage_is_an_error_with_its_place() {
     let cases: [(&str, &[u8], &str); 10] = [
@@ -136,7 +136,7 @@ fn known_damage_is_an_error_with_its_place() {
     }
 }
 
-/// What else no run writes: each is told with its place.
+/// Other entries that no run writes: each is reported with its position.
 #[test]
 fn what_no_run_writes_is_malformed() {
     let journal = &run()[JOURNAL];
@@ -207,7 +207,7 @@ fn position(records: &[(EntryKind, Value)], kind: EntryKind) -> usize {
     records.iter().position(|(of, _)| *of == kind).unwrap()
 }
 
-/// Random damage, the same each time; what comes of it is of no matter, as long as it comes.
+/// Random damage, the same in each run. The result does not matter, as long as there is one.
 #[test]
 fn no_vandal_makes_a_record_that_panics() {
     const ROUNDS: u64 = 150;

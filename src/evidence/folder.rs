@@ -1,5 +1,5 @@
-//! A run folder as it lies there: every file by its name, with its digest, and what has no place in such a folder. In: a
-//! path. Out: [`Folder`]. It follows no link and does not know what a file means.
+//! A run folder as it is on disk: every file by its name, with its digest, and entries that are not allowed there. In: a path. Out:
+//! [`Folder`]. It follows no link and does not interpret the files.
 
 use std::collections::BTreeMap;
 use std::fs::OpenOptions;
@@ -18,19 +18,19 @@ use crate::text::digest::{hex, sha256};
 
 use super::names::{ISSUE, MANIFEST, OLDER_ISSUE, PAPER, is_sidecar, is_signature};
 
-/// The largest file of a run folder that is read, bytes: the record is the longest.
+/// The largest file of a run folder that is read \[bytes\]: the run log is the largest.
 const LISTED_BYTES: u64 = MOST_BYTES;
-/// The largest sidecar whose bytes are held.
+/// The largest sidecar whose bytes are kept in memory.
 const SIDECAR_BYTES: u64 = 64 << 20;
 
-/// The deepest that files of a run folder lie.
+/// Maximum depth of files in a run folder.
 const DEEPEST: usize = 64;
 
 /// The files of a run folder, by their names with `/`.
 #[derive(Clone, Debug, Default)]
 pub struct Folder {
     pub files: BTreeMap<String, Held>,
-    /// What is no file, and why.
+    /// Entries that are not regular files, with the reason.
     pub odd: Vec<(String, String)>,
 }
 
@@ -39,7 +39,7 @@ pub struct Folder {
 pub struct Held {
     /// SHA-256, hex.
     pub digest: String,
-    /// Only of files that are read: the record, the manifest, the issue, signatures, the report on paper, sidecars.
+    /// Only for files that are read: the run log, the manifest, the issue, signatures, the PDF report, sidecars.
     pub bytes: Option<Vec<u8>>,
 }
 
@@ -61,7 +61,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// The same of names and digests alone.
+    /// The same with names and digests only.
     pub fn digests(run: &Path) -> Result<Self, Failure> {
         let mut folder = Self::default();
         folder.walk(run, |_| false, ("", 0))?;
@@ -73,12 +73,12 @@ impl Folder {
         self.files.get(name)?.bytes.as_deref()
     }
 
-    /// The same, no longer held.
+    /// The same; the folder no longer keeps the bytes.
     pub fn take(&mut self, name: &str) -> Option<Vec<u8>> {
         self.files.get_mut(name)?.bytes.take()
     }
 
-    /// What psd keeps in a run folder whatever becomes of the results: the record, torn ends of it, the results before a
+    /// The files that psd keeps in a run folder independently of the results: the run log, its incomplete ends, and the results before a
     /// resumption. Names and digests.
     pub fn kept(&self) -> Vec<(String, String)> {
         let kept = self.files.iter().filter(|(name, _)| is_kept(name));
@@ -86,14 +86,14 @@ impl Folder {
             .collect()
     }
 
-    /// The files that a manifest lists: all but itself, the signatures over it, and the reserve of a run that was killed.
+    /// The files that a manifest lists: all except itself, its signatures, and the reserve file of a run that was killed.
     pub fn listed(&self) -> impl Iterator<Item = (&String, &Held)> {
         self.files
             .iter()
             .filter(|(name, _)| *name != MANIFEST && !is_signature(name) && !is_reserve(name))
     }
 
-    /// The reserve of a run that was killed holds what psd lays there and nothing else; None where there is none.
+    /// Whether the reserve file of a run that was killed contains only the bytes that psd writes there; None if there is no such file.
     pub fn reserve_is_ours(&self) -> Option<bool> {
         let (_, reserve) = self.files.iter().find(|(name, _)| is_reserve(name))?;
         Some(reserve.bytes.as_deref().is_some_and(is_part_of_a_reserve))
@@ -141,7 +141,7 @@ impl Folder {
     }
 }
 
-/// One file: a regular one, through no link.
+/// Reads one file: a regular one, not through a link.
 fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
     let said = |error: std::io::Error| plain(&error);
     let metadata = path.symlink_metadata().map_err(said)?;
@@ -154,7 +154,7 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
     if metadata.len() > LISTED_BYTES {
         return Err("is larger than any run's".to_owned());
     }
-    // What became a link or a pipe meanwhile is not followed, and not waited for.
+    // An entry that has become a link or a pipe is not followed and not waited for.
     let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
     let file = OpenOptions::new()
         .read(true)
@@ -163,7 +163,7 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
         .map_err(said)?;
     let mut file = file.take(LISTED_BYTES);
     if is_read && (metadata.len() <= SIDECAR_BYTES || !is_sidecar(name)) {
-        // As long as it is: a record of a gigabyte is not to grow by doubling.
+        // The capacity is the file size: the buffer of a gigabyte run log must not grow by doubling.
         let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
         file.read_to_end(&mut bytes).map_err(said)?;
         return Ok(Held::of(name, bytes));

@@ -1,5 +1,5 @@
-//! What the first line of a record says of rig, calibration and limits cannot be told otherwise, and a record of version 1,
-//! which does not say, still gives its results.
+//! The first line of a run log cannot be changed in its data of rig, calibration and limits without detection. A run log of version 1,
+//! which has no such data, still gives its results.
 
 use serde_json::{Value, json};
 
@@ -18,7 +18,7 @@ use crate::report::manifest_with;
 use crate::text::digest::sha256;
 use crate::verdict::Verdict;
 
-/// The run's folder with another first line, and every check word and the manifest as if it had always been so.
+/// The folder of the run with a different first line. All check values and the manifest are consistent with it.
 fn retold(mut alter: impl FnMut(&mut Value)) -> Folder {
     let journal = forged(&run()[JOURNAL], |kind, body| {
         if kind == EntryKind::Header {
@@ -53,7 +53,7 @@ fn the_record_alone_tells_device_channels_and_limits() {
         .collect();
     assert_eq!(measures, ["displacement", "force"]);
     assert_eq!(equipment["channels"][1]["factor"], 1.0);
-    // What nobody wrote and the guard holds all the same.
+    // A limit that no plan states and that the guard still applies.
     assert_eq!(
         equipment["limits"],
         json!([{"quantity": "tracking_energy_error", "low": 0.0, "high": 0.05}])
@@ -119,7 +119,7 @@ fn a_record_of_version_1_gives_the_same_results() {
     assert_eq!(found(&unknown), ["record"]);
 }
 
-/// A plan of before said `residual_…` of what is not unloaded. Its record is read, and the plan itself is to be corrected.
+/// An older plan wrote `residual_…` for results without unloading. Its run log is still read, and the plan itself gets a correction.
 #[test]
 fn a_record_of_a_plan_with_an_older_name_is_read() {
     let require = "\nrequire \"stays\" hit.residual_displacement < 1 m\n";

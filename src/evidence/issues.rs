@@ -1,6 +1,6 @@
-//! `issue.json`: what was stated of a report after the test. In: the particulars, the day, by whom and, of an amendment,
-//! why. Out: the file, its report's id, and plan and provenance with what it states. Particulars of the `plan` block alone:
-//! the record lies in the issued folder as it was, and every number comes from it.
+//! `issue.json`: the data stated for a report after the test. In: the particulars, the day, the issuer and, for an amendment, the reason.
+//! Out: the file, its report id, and plan and provenance with the stated data. It changes only particulars of the `plan` block: the run
+//! log in the issued folder is unchanged, and every number comes from it.
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -21,7 +21,7 @@ use crate::text::suggest::nearest;
 const SCHEMA: &str = "psd.issue/1";
 const OLDER_SCHEMA: &str = "psd.amendment/1";
 
-/// The day of the test stays as it is on record.
+/// The day of the test stays as recorded.
 const FIXED: &[&str] = &["date"];
 
 /// The file.
@@ -40,20 +40,20 @@ pub struct One {
     pub kind: OneKind,
     /// Id of the report that it is made from.
     pub replaces: String,
-    /// SHA-256 of that report's manifest, hex: which it was, to the last byte.
+    /// SHA-256 of the manifest of that report, hex: it identifies the report exactly.
     pub manifest_sha256: String,
-    /// `YYYY-MM-DD`; missing only where an older version made the amendment.
+    /// `YYYY-MM-DD`; missing only if an older version made the amendment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
     pub by: String,
-    /// Of an amendment.
+    /// The reason of an amendment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// Field and text; an empty text: not given any more.
+    /// Field and text; an empty text removes the field.
     pub particulars: Vec<(String, String)>,
 }
 
-/// What an issue is.
+/// The kind of an issue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OneKind {
@@ -80,7 +80,7 @@ struct OlderOne {
 }
 
 impl IssueFile {
-    /// The issues before, and one more.
+    /// The earlier issues, and one more.
     pub fn after(before: Option<&Self>, one: One) -> Self {
         let before = before.map_or_else(Vec::new, |file| file.issues.clone());
         Self {
@@ -89,7 +89,7 @@ impl IssueFile {
         }
     }
 
-    /// The file of a folder, where it has one.
+    /// The file of a folder, if it has one.
     pub fn of(folder: &Folder) -> Result<Option<Self>, String> {
         let Some((name, held)) = held(folder) else {
             return Ok(None);
@@ -103,7 +103,7 @@ impl IssueFile {
         read.map(Some).map_err(|fault| format!("`{name}` {fault}"))
     }
 
-    /// Reads the file. It has one way to be written.
+    /// Reads the file. Only its canonical form is accepted.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let file: Self =
             serde_json::from_slice(bytes).map_err(|error| format!("cannot be read: {error}"))?;
@@ -156,13 +156,13 @@ impl IssueFile {
             .any(|one| one.manifest_sha256 == manifest_sha256)
     }
 
-    /// The id of the report that is called `own` as it was made, with the first `count` issues.
+    /// The id of the report with the first `count` issues; `own` is its original id.
     fn id(&self, own: &str, count: usize) -> String {
         if count == 0 {
             return own.to_owned();
         }
         let issues = &self.issues[..count];
-        // What an older version amended keeps the id that it was given.
+        // An amendment of an older version keeps its id.
         let text = if issues.iter().all(|one| one.date.is_none()) {
             older_json(issues)
         } else {
@@ -176,14 +176,14 @@ impl IssueFile {
     }
 }
 
-/// The file of a folder that says what was stated after the test, and its name.
+/// The file of a folder with the data stated after the test, and its name.
 pub fn held(folder: &Folder) -> Option<(&'static str, &Held)> {
     [ISSUE, OLDER_ISSUE]
         .into_iter()
         .find_map(|name| Some((name, folder.files.get(name)?)))
 }
 
-/// As an older version wrote its amendments.
+/// The amendments in the format of an older version.
 fn older_json(issues: &[One]) -> String {
     let one = |one: &One| {
         json!({ "replaces": one.replaces, "manifest_sha256": one.manifest_sha256, "by": one.by,
@@ -194,7 +194,7 @@ fn older_json(issues: &[One]) -> String {
     sanitize::json(&serde_json::to_string_pretty(&file).unwrap_or_default()) + "\n"
 }
 
-/// The plan's own name of a particular that may be stated after the test.
+/// The plan's name of a particular that can be stated after the test.
 pub fn may_be_stated(field: &str) -> Result<&'static str, String> {
     let texts = || {
         let texts = schema::block(Kind::Plan)
@@ -215,10 +215,10 @@ pub fn may_be_stated(field: &str) -> Result<&'static str, String> {
     })
 }
 
-/// Plan and provenance with what the issues state.
+/// Applies the stated data of the issues to plan and provenance.
 pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> Result<(), String> {
     let mut all = Vec::new();
-    // Older versions called the first report as its run.
+    // Older versions identified the first report by its run.
     let by_run = file
         .issues
         .first()
@@ -261,7 +261,7 @@ pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> 
                 .iter()
                 .flat_map(|issue: &Issue| &issue.changes)
                 .any(|change| change.field == field);
-            // Of a real rig the record says who stood by, whoever the plan names; and the record is not rewritten.
+            // For a real rig the run log states the operator, whoever the plan names; and the run log is not rewritten.
             let recorded = provenance
                 .operator()
                 .filter(|_| field == "operator" && !restated);
@@ -290,8 +290,7 @@ pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> 
     Ok(())
 }
 
-/// The day of an issue is one of the calendar, stands on the report as its day of issue, and is not before the end of the
-/// test and the issue before.
+/// The day of an issue is a calendar day and the day of issue on the report. It is not before the end of the test or the issue before.
 fn in_order(one: &One, [issued, tested]: [Option<&str>; 2], before: usize) -> Result<(), String> {
     let Some(date) = &one.date else {
         let older = one.kind == OneKind::Amendment && one.reason.is_some();
@@ -315,7 +314,7 @@ fn in_order(one: &One, [issued, tested]: [Option<&str>; 2], before: usize) -> Re
             one_line(issued)
         ));
     }
-    // The record has days of UTC.
+    // The run log has UTC days.
     if let Some(tested) = tested.filter(|tested| late(tested, 1)) {
         return Err(format!(
             "a report cannot be issued on {date}: the test ended on {}",

@@ -1,5 +1,5 @@
-//! Keys in minisign's format: read, made, kept out of run folders. In: paths and passwords. Out: keys. A secret key is
-//! never told, and no password is ever shown or taken from the command line.
+//! Keys in minisign's format: reading, creating, and keeping them out of run folders. In: paths and passwords. Out: keys. A secret key is
+//! never printed, and no password is shown or read from the command line.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read as _, Write as _};
@@ -14,19 +14,19 @@ use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
 
-/// The largest key file that is read, bytes.
+/// The largest key file that is read \[bytes\].
 const KEY_BYTES: u64 = 4096;
-/// The longest password that minisign takes, bytes.
+/// The longest password that minisign accepts \[bytes\].
 const PASSWORD_BYTES: usize = 1024;
 
-/// A public key that somebody vouches for, and what it is called here.
+/// A public key that the user trusts, and its name here.
 #[derive(Clone, Debug)]
 pub struct KnownKey {
     pub name: String,
     pub key: PublicKey,
 }
 
-/// A key's number as minisign shows it.
+/// The number of a key as minisign shows it.
 pub fn number(keynum: &[u8]) -> String {
     keynum
         .iter()
@@ -34,7 +34,7 @@ pub fn number(keynum: &[u8]) -> String {
         .fold(String::new(), |text, byte| text + &format!("{byte:02X}"))
 }
 
-/// Reads a public key: a file with a comment and the key, as minisign writes them.
+/// Reads a public key: a file with a comment and the key, in the format of minisign.
 pub fn public(path: &Path) -> Result<KnownKey, Failure> {
     let text = text_of(path)?;
     let key = text
@@ -54,7 +54,7 @@ pub fn public(path: &Path) -> Result<KnownKey, Failure> {
     })
 }
 
-/// Reads a secret key, with its password if it has one. The word is told where it has none.
+/// Reads a secret key, with its password if it has one. Also returns whether it has one.
 pub fn secret(
     path: &Path,
     password_file: Option<&Path>,
@@ -77,8 +77,8 @@ pub fn secret(
         .map_err(failed)
 }
 
-/// A key without password as minisign's own program writes it: with zeros for a checksum. Whether its halves belong
-/// together is seen when it signs.
+/// A key without a password in the format of the minisign program: with zeros for a checksum. Signing detects halves that do not belong
+/// together.
 fn without_checksum(text: &str) -> Option<SecretKey> {
     let bytes = STANDARD.decode(text.lines().nth(1)?).ok()?;
     // Algorithms of the signature, of the password and of the checksum, two bytes each; 32 bytes of checksum at the end.
@@ -91,21 +91,21 @@ fn without_checksum(text: &str) -> Option<SecretKey> {
     }
 }
 
-/// How a secret key is kept.
+/// The protection of a secret key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Protection {
     Password,
-    /// Whoever reads the file can sign with it.
+    /// Any reader of the file can sign with it.
     None,
 }
 
-/// Whether others than its owner may read a key's file.
+/// Whether users other than the owner can read a key file.
 pub fn is_readable_by_others(path: &Path) -> bool {
     path.metadata()
         .is_ok_and(|metadata| metadata.is_file() && metadata.permissions().mode() & 0o077 != 0)
 }
 
-/// Makes a pair of keys: the secret one in a new file that only its owner reads, the public one beside it with `.pub`.
+/// Makes a pair of keys: the secret one in a new file that only its owner can read, the public one beside it with `.pub`.
 pub fn make(path: &Path, password: Option<String>) -> Result<(PathBuf, PublicKey), Failure> {
     let failed = |error: minisign::PError| Failure::file(path, error.to_string());
     refuse_run_folder(path)?;
@@ -123,14 +123,14 @@ pub fn make(path: &Path, password: Option<String>) -> Result<(PathBuf, PublicKey
     let public = pk.to_box().map_err(failed)?.into_string();
     let comment = format!("psd {protection} secret key {}", number(pk.keynum()));
     let secret = sk.to_box(Some(&comment)).map_err(failed)?.into_string();
-    // The public one first: a secret key without it is of no use. Nor is it without the secret one.
+    // The public key first, because a secret key without it is useless; the public key alone is useless too.
     new_file(&public_path, public.as_bytes(), 0o644)?;
     new_file(path, secret.as_bytes(), 0o600)
         .inspect_err(|_| drop(std::fs::remove_file(&public_path)))?;
     Ok((public_path, pk))
 }
 
-/// A secret key beside the evidence it signs goes wherever the evidence goes.
+/// Refuses a secret key in the folder of its evidence: it would be copied together with the evidence.
 pub fn refuse_inside(key: &Path, run: &Path) -> Result<(), Failure> {
     let place = |path: &Path| {
         path.canonicalize()
@@ -145,7 +145,7 @@ pub fn refuse_inside(key: &Path, run: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The password in a file, or asked for at the terminal without being shown.
+/// The password from a file, or from the terminal without being shown.
 pub fn password(file: Option<&Path>, prompt: &str, can_ask: bool) -> Result<String, Failure> {
     let password = match file {
         Some(path) => text_of(path)?.lines().next().unwrap_or_default().to_owned(),
@@ -166,7 +166,7 @@ pub fn password(file: Option<&Path>, prompt: &str, can_ask: bool) -> Result<Stri
     Ok(password)
 }
 
-/// A run folder is told by its record.
+/// A run folder is recognised by its run log.
 fn refuse_run_folder(path: &Path) -> Result<(), Failure> {
     let folder = path
         .parent()
@@ -186,7 +186,7 @@ fn refuse_run_folder(path: &Path) -> Result<(), Failure> {
 
 fn text_of(path: &Path) -> Result<String, Failure> {
     let failed = |error: std::io::Error| Failure::file(path, plain(&error));
-    // Also a pipe, so that another program can hand over a password.
+    // A pipe is also accepted, so that another program can supply a password.
     let mut text = String::new();
     File::open(path)
         .and_then(|file| file.take(KEY_BYTES + 1).read_to_string(&mut text))

@@ -5,7 +5,7 @@ pub const MANIFEST: &str = "manifest.sha256";
 
 /// Name of the file of issues in an issued folder.
 pub const ISSUE: &str = "issue.json";
-/// The same of a folder that an older version made: amendments without a day.
+/// The same for a folder that an older version made: amendments without a day.
 pub const OLDER_ISSUE: &str = "amendment.json";
 
 /// Ending of the file of a signature.
@@ -26,7 +26,7 @@ pub fn is_signature(name: &str) -> bool {
             .is_some_and(|role| !role.is_empty() && role.bytes().all(is_plain))
 }
 
-/// The report on paper, which may lie here a second time with a seal at its end.
+/// The PDF report. A second copy with a seal at its end can be in the same folder.
 pub const PAPER: &str = "certificate.pdf";
 /// Kinds of sidecars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,5 @@
-//! What a record gives when it is played back: record, verdict, every file of the results. In: the journal of a run
-//! folder, and what was stated after the test beside it. Out: the results, and what the playing back itself proves.
+//! The replay of a run log: record, verdict, every file of the results. In: the run log of a run folder, and the data stated after the
+//! test. Out: the results, and the findings of the replay itself.
 
 use std::borrow::Cow;
 
@@ -22,22 +22,22 @@ use crate::run::replay;
 use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
 use crate::verdict::{self, Assessment};
 
-/// Predicts a whole run from the record of its rehearsal; None of a run that is not a rehearsal.
+/// Predicts a whole run from the record of its low-level check run; None for any other run.
 pub type Predict<'a> = &'a dyn Fn(&Plan, &Record) -> Option<Prediction>;
 
-/// A run, done again from its record alone.
+/// A run, replayed from its run log alone.
 pub struct PlayedBack {
     pub plan: Plan,
     pub provenance: Provenance,
     pub record: Record,
     pub assessment: Assessment,
     pub mismatch: Option<Mismatch>,
-    /// Of a rig that a client drove.
+    /// The steps of a rig that a client drove.
     pub steps: Option<Vec<DrivenStep>>,
 }
 
 impl PlayedBack {
-    /// Plays a record back, with what was stated of its report after the test.
+    /// Replays a run log, with the data stated for its report after the test.
     pub fn of(
         read: ReadRecord,
         issues: Option<&IssueFile>,
@@ -49,7 +49,7 @@ impl PlayedBack {
             played,
             recovered,
         } = read;
-        // What is played is done with line by line: nobody else holds them.
+        // The replay no longer needs the entries: their memory is freed.
         drop(recovered);
         let Replayed {
             mut record,
@@ -78,7 +78,7 @@ impl PlayedBack {
         })
     }
 
-    /// Puts every file of the results into a sink; not the manifest.
+    /// Puts every file of the results into a sink, except the manifest.
     pub fn results(&self, sink: &mut dyn OutputSink) -> Result<Vec<FileDigest>, OutputError> {
         put_results(
             &self.plan,
@@ -91,37 +91,37 @@ impl PlayedBack {
     }
 }
 
-/// What a record proves, and what the folder must hold.
+/// The findings of a run log, and the required content of the folder.
 #[derive(Clone, Debug)]
 pub struct Rebuilt {
-    /// Of the record itself, and of its targets.
+    /// Findings on the run log itself, and on its targets.
     pub findings: Vec<Finding>,
-    /// None where the record gives nothing.
+    /// None if the run log gives no report.
     pub report: Option<Report>,
 }
 
-/// What a report says of itself, and its files.
+/// The identity of a report, and its files.
 #[derive(Clone, Debug)]
 pub struct Report {
     pub run_id: String,
     pub id: String,
-    /// Who signs it, as the plan says.
+    /// The roles that sign it, as in the plan.
     pub roles: Vec<String>,
-    /// Path and SHA-256 of every file of the results, in hex; not the manifest.
+    /// Path and SHA-256 of every file of the results, in hex, without the manifest.
     pub files: Vec<FileDigest>,
-    /// Which program made the run, where it was another.
+    /// The program that made the run, if it was a different one.
     pub other_build: Option<String>,
-    /// The record came to its end.
+    /// Whether the run log is complete.
     pub ended: bool,
 }
 
 impl Rebuilt {
-    /// Plays the record of a folder back.
+    /// Replays the run log of a folder.
     pub fn of(folder: &Folder, predict: Predict<'_>) -> Self {
         Self::read(folder.bytes(JOURNAL).map(Cow::Borrowed), folder, predict)
     }
 
-    /// The same, and the folder lets go of the bytes of its record: nobody holds them beside what they say.
+    /// The same; the folder then frees the bytes of its run log, so that they are not in memory together with their content.
     pub fn taking(folder: &mut Folder, predict: Predict<'_>) -> Self {
         let bytes = folder.take(JOURNAL);
         Self::read(bytes.map(Cow::Owned), folder, predict)
@@ -265,7 +265,7 @@ impl Rebuilt {
     }
 }
 
-/// Which report this is, and what it was made from.
+/// The identity of this report, and the report that it was made from.
 fn told(report_id: &str, last: &Issue) -> String {
     let (by, replaces) = (&last.by, &last.replaces);
     let date = last

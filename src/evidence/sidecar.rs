@@ -1,6 +1,6 @@
-//! Sidecars: what others lay beside the files of a run, and no manifest lists. Time-stamp tokens (RFC 3161), OpenTimestamps
-//! proofs, and the report in a sealed PDF. In: a folder. Out: findings, one a sidecar. A sidecar says something of a file that
-//! lies here, takes the place of none, and is wrong where it is not of that file as it is.
+//! Sidecars: files from other programs beside the files of a run, which no manifest lists. They are time-stamp tokens (RFC 3161),
+//! OpenTimestamps proofs, and the report in a sealed PDF. In: a folder. Out: findings, one per sidecar. A sidecar refers to a file of the
+//! folder and replaces none. It is wrong if it does not match that file in its present state.
 
 use sha2::{Digest as _, Sha384, Sha512};
 
@@ -9,16 +9,16 @@ use super::folder::Folder;
 use super::names::{SidecarKind, sidecar};
 use crate::text::digest::unhex;
 
-/// How the file of a proof of OpenTimestamps begins.
+/// The first bytes of an OpenTimestamps proof.
 const OPEN_TIMESTAMPS: &[u8] =
     b"\x00OpenTimestamps\x00\x00Proof\x00\xbf\x89\xe2\xe8\x84\xe8\x92\x94";
 
-/// Whether a file is a sidecar of another one that lies here.
+/// Whether a file is a sidecar of another file in this folder.
 pub fn is_one(folder: &Folder, name: &str) -> bool {
     sidecar(name).is_some_and(|(_, of)| folder.files.contains_key(of))
 }
 
-/// What one sidecar says of its file.
+/// The finding of one sidecar about its file.
 pub fn examine(folder: &Folder, name: &str) -> Option<Finding> {
     let (kind, of) = sidecar(name)?;
     let bytes = folder.bytes(name).unwrap_or_default();
@@ -50,7 +50,7 @@ pub fn examine(folder: &Folder, name: &str) -> Option<Finding> {
     })
 }
 
-/// Whether a digest of a file stands in the bytes; of a file that is not held in memory, its SHA-256 alone.
+/// Whether the bytes contain a digest of a file. For a file that is not in memory, only its SHA-256 is searched.
 fn names(folder: &Folder, bytes: &[u8], of: &str) -> bool {
     let Some(held) = folder.files.get(of) else {
         return false;

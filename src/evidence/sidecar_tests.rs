@@ -1,4 +1,4 @@
-//! Sidecars beside a run: known, listed, of the file that lies there; and a changed file is found as if there were none.
+//! Sidecars beside a run are recognised, listed, and matched with their file. A changed file is found as it is without sidecars.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::tests::{faults, folder, run, with};
 use crate::cli::commands::prediction::prediction;
 use crate::files::recorded_run::JOURNAL;
 
-/// A DER sequence that holds a digest, as a time-stamp token does.
+/// A DER sequence that contains a digest, like a time-stamp token.
 fn token(digest: &[u8]) -> Vec<u8> {
     let content = [
         &[0x04, u8::try_from(digest.len()).unwrap()],
@@ -37,7 +37,7 @@ fn sealed() -> Vec<u8> {
     [&run()["certificate.pdf"][..], b"\n12 0 obj /ByteRange"].concat()
 }
 
-/// What is said of the sidecars of a run with this one more file, and what is wrong with the folder.
+/// The findings on the sidecars of a run with this one additional file, and the errors of the folder.
 fn beside(name: &str, bytes: Vec<u8>) -> (Vec<String>, Vec<&'static str>) {
     let one_more = with(&folder(run()), name, Some(bytes));
     let found = examine(&one_more, rebuilt(), &[]);
@@ -118,7 +118,7 @@ fn what_is_of_no_file_here_or_of_another_is_wrong() {
     for (name, bytes) in wrong {
         assert_eq!(beside(name, bytes).1, ["sidecar"], "{name}");
     }
-    // Of no file that lies here: one file too many.
+    // A sidecar of a missing file is an extra file.
     assert_eq!(
         beside("more.csv.tsr", token(&other)).1,
         ["results", "manifest"]
@@ -147,7 +147,7 @@ fn a_sidecar_hides_no_changed_missing_or_smuggled_file() {
         ["results", "manifest"]
     );
     assert!(found(&with(&sound, table, None)).contains(&"manifest"));
-    // A seal in place is another file, and one beside it does not take its place.
+    // A seal inside the report changes the file. A sealed copy beside it does not replace it.
     let in_place = with(&folder(run()), "certificate.pdf", Some(sealed()));
     assert_eq!(found(&in_place), ["certificate", "manifest"]);
     let moved = with(
@@ -156,7 +156,7 @@ fn a_sidecar_hides_no_changed_missing_or_smuggled_file() {
         None,
     );
     assert!(found(&moved).contains(&"certificate"));
-    // A file of the run stays one, whatever it is called.
+    // A file of the run keeps this status, whatever its name.
     let manifest = [
         run()[MANIFEST].clone(),
         format!("{}  {table}.tsr\n", "0".repeat(64)).into_bytes(),

@@ -1,6 +1,6 @@
-//! Signatures over the manifest of a run folder, in minisign's format: Ed25519 over the BLAKE2b digest of the file, with a
-//! trusted comment that says of which run, in which role and by whom. In: bytes and keys. Out: a signature, or what is
-//! wrong with one. `minisign -Vm manifest.sha256 -p KEY.pub` proves the same.
+//! Signatures over the manifest of a run folder, in minisign's format: Ed25519 over the BLAKE2b digest of the file. A trusted comment
+//! states the run, the role and the signatory. In: bytes and keys. Out: a signature, or the error in one. `minisign -Vm manifest.sha256
+//! -p KEY.pub` verifies the same.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -16,24 +16,24 @@ use super::names::{MANIFEST, SUFFIX};
 use super::rebuilt::Report;
 use crate::text::diagnostic::excerpt::one_line;
 
-/// The line that no signature covers is one of these: so a changed one is seen too.
+/// The line that no signature covers is one of these, so that a change to it is also detected.
 const UNTRUSTED: &[&str] = &[
     "signature by psd over manifest.sha256",
     "signature from minisign secret key",
     "signature from rsign secret key",
 ];
 
-/// Characters of a role or a name that are told.
+/// Largest number of printed characters of a role or a name.
 const TOLD: usize = 200;
 
-/// What a signature says: its trusted comment, fields with tabs between.
+/// The content of a signature: its trusted comment, fields separated by tabs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Statement {
     pub run: String,
     pub report: String,
     pub role: Option<String>,
     pub name: Option<String>,
-    /// The public key, so that the signature can be held against the key that it names itself.
+    /// The public key, so that the signature can be checked against the key that it names.
     pub key: Option<String>,
 }
 
@@ -56,7 +56,7 @@ impl Statement {
         parts.collect::<Vec<_>>().join("\t")
     }
 
-    /// None where psd did not write it.
+    /// None if psd did not write it.
     fn read(comment: &str) -> Option<Self> {
         let fields: BTreeMap<&str, &str> = comment
             .split('\t')
@@ -76,8 +76,8 @@ impl Statement {
     }
 }
 
-/// The name of a signature's file: of no role `manifest.sha256.minisig`, else with the role's letters and digits in it.
-/// Roles that read the same so are told apart by their place in the plan.
+/// The name of a signature file: without a role `manifest.sha256.minisig`, otherwise with the letters and digits of the role in it. Roles
+/// that give the same name are distinguished by their index in the plan.
 pub fn file_name(role: Option<&str>, roles: &[String]) -> String {
     let Some(role) = role else {
         return format!("{MANIFEST}{SUFFIX}");
@@ -98,7 +98,7 @@ pub fn file_name(role: Option<&str>, roles: &[String]) -> String {
     format!("{MANIFEST}.{middle}{SUFFIX}")
 }
 
-/// `Test engineer` → `test-engineer`, of at most 60 letters.
+/// `Test engineer` → `test-engineer`, at most 60 letters.
 fn plain(role: &str) -> String {
     let letters = role.chars().map(|c| {
         if c.is_ascii_alphanumeric() {
@@ -136,8 +136,8 @@ pub fn sign(
     Ok(signed.into_string())
 }
 
-/// Every signature of a folder, and who of those that the plan names has not signed. With keys, each of them must have signed, in
-/// every role that the plan names, and nobody else.
+/// Every signature of a folder, and the roles of the plan without a signature. With keys, each of them must have signed, in every role
+/// that the plan names, and no other key.
 pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut signed: Vec<Vec<u8>> = Vec::new();
@@ -165,7 +165,7 @@ pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> V
             ),
         ));
     }
-    // Where nobody has signed, that alone is told.
+    // Without any signature, only that is reported.
     let roles = report
         .filter(|_| !signed.is_empty())
         .map_or(&[][..], |report| &report.roles);
@@ -189,7 +189,7 @@ pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> V
     findings
 }
 
-/// What one signature says, and the number of its key.
+/// The content of one signature, and the number of its key.
 fn one(
     folder: &Folder,
     name: &str,
@@ -258,7 +258,7 @@ fn one(
     Ok((told, signature.keynum().to_vec()))
 }
 
-/// What it says must be true of this folder, and of the name of its own file.
+/// The statement must be true for this folder, and for the name of its own file.
 fn says_so(statement: &Statement, name: &str, report: Option<&Report>) -> Result<(), String> {
     let Some(report) = report else { return Ok(()) };
     if (&statement.run, &statement.report) != (&report.run_id, &report.id) {
@@ -270,7 +270,7 @@ fn says_so(statement: &Statement, name: &str, report: Option<&Report>) -> Result
     Ok(())
 }
 
-/// A signature that is written in the one way it can be. The parser of the library takes more.
+/// A signature in its canonical form. The parser of the library accepts more forms.
 fn strict(bytes: &[u8]) -> Result<SignatureBox, String> {
     let shape = || -> Option<SignatureBox> {
         let text = str::from_utf8(bytes).ok()?;

@@ -1,5 +1,4 @@
-//! Every byte of a run folder counts: flipped, cut, swapped or added to, it is found, also by a forger who writes the
-//! manifest anew.
+//! Every changed byte of a run folder is detected: flipped, cut, swapped or added. This includes a forger who regenerates the manifest.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -88,7 +87,7 @@ pub(super) fn folder(files: &Bytes) -> Folder {
     }
 }
 
-/// The same folder with one file of other bytes; None: without it.
+/// The same folder with one file of different bytes; None: without it.
 pub(super) fn with(folder: &Folder, name: &str, bytes: Option<Vec<u8>>) -> Folder {
     let mut changed = folder.clone();
     match bytes {
@@ -157,8 +156,8 @@ pub(super) fn faults(findings: &[Finding]) -> Vec<&'static str> {
         .collect()
 }
 
-/// What is wrong with a folder whose record may have been changed. A record that reads the same to its last whole line
-/// is not played back again.
+/// The errors of a folder whose run log may have been changed. A run log that is the same up to its last complete line is not replayed
+/// again.
 fn judged(folder: &Folder, signed: &Signed) -> Vec<&'static str> {
     let own = signed.folder.bytes(JOURNAL).unwrap();
     let bytes = folder.bytes(JOURNAL).unwrap_or_default();
@@ -176,7 +175,7 @@ fn judged(folder: &Folder, signed: &Signed) -> Vec<&'static str> {
     ))
 }
 
-/// Every byte of a small file, every so many of a large one, and its ends.
+/// Every byte of a small file; for a large one regularly spaced bytes and its ends.
 fn places(length: usize) -> Vec<usize> {
     let stride = if length <= 8192 { 1 } else { length / 500 };
     (0..length).step_by(stride).chain([length - 1]).collect()
@@ -254,7 +253,7 @@ fn what_has_no_place_is_found_also_where_no_manifest_lists_it() {
         let found = judged(&with(&signed.folder, reserve, Some(bytes)), &signed);
         assert_eq!(found.is_empty(), sound, "{found:?}");
     }
-    // A run that came to its end has results.
+    // A complete run has results.
     let only = folder(&BTreeMap::from([(
         JOURNAL.to_owned(),
         run()[JOURNAL].clone(),
@@ -281,7 +280,7 @@ fn a_flipped_byte_of_any_file_is_found() {
         flipped += places.len();
         let missed: Vec<(usize, u8)> = places
             .into_par_iter()
-            // Its lowest bit or its highest, by turns.
+            // Its lowest bit or its highest, alternately.
             .map(|at| (at, if at % 2 == 0 { 0x01_u8 } else { 0x80 }))
             .filter(|(at, bit)| {
                 let mut changed = own.clone();
@@ -368,7 +367,7 @@ fn cut_lengthened_swapped_missing_and_foreign_files_are_found() {
     assert_eq!(faults(&found), ["signature", "signature"], "{found:#?}");
 }
 
-/// Who can write the folder can write its manifest: then the record finds what was changed, and the signature that it was.
+/// Anyone who can write the folder can write its manifest. The run log then shows the change, and the signature shows that there was one.
 #[test]
 fn a_manifest_written_anew_hides_nothing() {
     let signed = signed();
@@ -423,13 +422,13 @@ fn another_key_is_no_key() {
         )),
         ["signature"; 3]
     );
-    // The stranger signs in another's place: sound only for who names no key.
+    // The stranger signs in the role of another: this is valid only for a reader who names no key.
     signed_as(&mut signed.folder, &signed.rebuilt, "Quality", &sk);
     assert_eq!(
         faults(&examine(&signed.folder, &signed.rebuilt, &[])),
         [""; 0]
     );
-    // By none of the keys, none by hers, and so nobody has signed for quality.
+    // No signature by the given keys, none by the key of quality, and therefore none for quality.
     assert_eq!(
         faults(&examine(&signed.folder, &signed.rebuilt, &signed.keys)),
         ["signature"; 3]

@@ -1,6 +1,6 @@
-//! The place and the people of a run on a real rig.
+//! Operator, machine and start time of a run on a real rig.
 
-/// What only a real rig's record says of the place and the people.
+/// Data about operator and machine, which only the run log of a real rig has.
 #[derive(Clone, Debug, Default)]
 pub struct Circumstances {
     pub operator: Option<String>,
@@ -12,7 +12,7 @@ pub struct Circumstances {
 }
 
 impl Circumstances {
-    /// Who, where and when: what makes a run on a real rig another than every other.
+    /// Operator, machine and start time: they distinguish a run on a real rig from every other run.
     pub const fn told(&self) -> [&Option<String>; 3] {
         [&self.operator, &self.host, &self.began]
     }

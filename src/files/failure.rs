@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::text::diagnostic::Code;
 use crate::text::source::Position;
 
-/// Why a command could not do its work. Faults in a plan are diagnostics, not these.
+/// Why a command failed. Errors in a plan are diagnostics, not these.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     #[error("{message}")]
@@ -68,7 +68,7 @@ impl Failure {
         }
     }
 
-    /// Where in a file its text could not be read.
+    /// The position in a file where its text could not be read.
     pub const fn place(&self) -> Option<Position> {
         match self {
             Self::NotAPlan { at, .. } => *at,
@@ -76,7 +76,7 @@ impl Failure {
         }
     }
 
-    /// The same failure with a way out.
+    /// The same failure with a suggested correction.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         if let Self::CommandLine { help, .. } | Self::File { help, .. } = &mut self {
@@ -85,7 +85,7 @@ impl Failure {
         self
     }
 
-    /// A rig that cannot be opened, with the place in the plan that says how.
+    /// The error of a rig that cannot be opened, with the position of its declaration in the plan.
     #[must_use]
     pub fn in_the_plan(self, place: impl FnOnce(&str) -> Option<String>) -> Self {
         match self {
@@ -98,7 +98,8 @@ impl Failure {
     }
 }
 
-/// Free space that a run needs before it begins, bytes. A disk that fills up later holds the rig, and the run can be resumed.
+/// Free space that a run needs before it begins \[bytes\]. If the disk becomes full later, the rig goes on hold, and the run can be
+/// resumed.
 pub const LEAST_FREE_BYTES: u64 = 200_000_000;
 
 /// The disk has less free space than a run needs.
@@ -106,7 +107,7 @@ pub const LEAST_FREE_BYTES: u64 = 200_000_000;
 #[error("{}: its disk has {} of free space, and a run begins with at least {}; nothing has moved", folder.display(), amount(*free), amount(LEAST_FREE_BYTES))]
 pub struct DiskSpaceFault {
     pub folder: PathBuf,
-    /// Free space, bytes.
+    /// Free space \[bytes\].
     pub free: u64,
 }
 
@@ -137,7 +138,7 @@ pub fn amount(bytes: u64) -> String {
     }
 }
 
-/// The system's word for an error, without its number.
+/// The system's text for an error, without its number.
 pub fn plain(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "no such file".to_owned(),

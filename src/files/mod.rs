@@ -1,5 +1,5 @@
 //! The files of a run folder as data: the recorded run, its provenance, its results, and the failures of reading them. In: paths and
-//! bytes. Out: plans, records and files. It asks no operator and prints nothing.
+//! bytes. Out: plans, run logs and files. It asks no operator and prints nothing.
 
 pub(crate) mod circumstances;
 pub(crate) mod failure;

@@ -43,8 +43,8 @@ pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
     }
 }
 
-/// The number of a report where the run id is not enough: records of real rigs and of incomplete runs differ from each other. It is
-/// the run id with the head of the record.
+/// The number of a report. Run logs of real rigs and of incomplete runs differ from each other, so that the run id is not enough. The
+/// number is then the run id with the head hash of the run log.
 pub fn report_number(run_id: &str, plan: &Plan, ended: bool, head: Option<&str>) -> Option<String> {
     let follows_from_the_plan = plan.rig.link.as_real().is_none() && ended;
     let head = head
@@ -78,10 +78,10 @@ pub fn of_real_run(plan: &Plan, date: Option<&str>, circumstances: &Circumstance
     }
 }
 
-/// The run id of a record, from its header and its plan.
+/// The run id of a run log, from its header and its plan.
 pub fn recorded_id(header: &Header, plan: &Plan) -> String {
     let planned = run_id(plan, &header.psd, header.date.as_deref());
-    // A run by hand or by a client on a virtual rig has an operator and no date.
+    // A manual run or a client run on a simulated rig has an operator and no date.
     let is_real = plan.rig.link.as_real().is_some() && header.began.is_some();
     if is_real {
         real_id(&planned, &[&header.operator, &header.host, &header.began])
@@ -98,8 +98,8 @@ fn real_id(planned: &str, told: &[&Option<String>; 3]) -> String {
     sha256(text.join(" ").as_bytes())[..16].to_owned()
 }
 
-/// The day on which the run began, from the record. The day of the plan or the command line is used where it is the same day in
-/// another time zone.
+/// The day on which the run began, from the run log. The day of the plan or the command line is used if it can be the same day in another
+/// time zone.
 pub fn date_of_real_run(plan: &Plan, began: Option<&str>) -> Option<String> {
     let stated = stated_date(plan);
     let began = began.and_then(|began| began.get(..10)).map(str::to_owned);
@@ -118,7 +118,7 @@ pub fn stated_date(plan: &Plan) -> Option<String> {
         .map(|(_, date)| date.clone())
 }
 
-/// A message where the test starts on a different day from the plan's; empty where it is the same.
+/// A message if the test starts on a different day from the plan's; otherwise empty.
 pub fn told_of_another_day(plan: &Plan, began: Option<&str>) -> String {
     match (stated_date(plan), began.and_then(|began| began.get(..10))) {
         (Some(stated), Some(today)) if !same_day(Some(&stated), Some(today)) => {
@@ -130,7 +130,7 @@ pub fn told_of_another_day(plan: &Plan, began: Option<&str>) -> String {
     }
 }
 
-/// Whether two days may be the same day in two time zones; false where one is not a day.
+/// Whether two days can be the same day in two time zones; false if one is not a day.
 pub fn same_day(one: Option<&str>, other: Option<&str>) -> bool {
     let day = |text: Option<&str>| text?.parse::<jiff::civil::Date>().ok();
     let apart = day(one)
@@ -139,8 +139,9 @@ pub fn same_day(one: Option<&str>, other: Option<&str>) -> bool {
     apart.is_some_and(|apart| apart.get_days().abs() <= 1)
 }
 
-/// The first 16 hex digits of SHA-256 over the plan and every file it used, the settings, the rig with its seed, the version, and the date
-/// of the command line where there is one. Every part is preceded by its length, so that no two lists of parts read the same.
+/// The first 16 hex digits of a SHA-256 digest. It covers the plan, every file it used, the settings, the rig with its seed, and the
+/// version. The date of the command line is included if there is one. Every part is preceded by its length, so that two different lists
+/// of parts never give the same bytes.
 fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
     let mut digest = Sha256::new();
     let mut part = |text: &str| {
@@ -172,7 +173,7 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
         part("date");
         part(date);
     }
-    // A rehearsal has an id different from that of its run.
+    // A low-level check run has an id different from that of its run.
     if rehearsal::rehearsed_plan(plan).is_some() {
         digest.update(rehearsal::REHEARSAL);
     }

@@ -14,10 +14,10 @@ use crate::run::replay;
 use crate::run::replay::{Header, LoggedRun};
 use crate::text::digest::sha256;
 
-/// Name of the journal in its run folder.
+/// Name of the run log in its run folder.
 pub const JOURNAL: &str = "journal.psdj";
 
-/// A record as it was read.
+/// A run log as it was read.
 pub struct ReadRecord {
     pub recovered: Recovered,
     pub played: LoggedRun,
@@ -25,14 +25,14 @@ pub struct ReadRecord {
     pub provenance: Provenance,
 }
 
-/// Reads the journal of a run folder without touching it.
+/// Reads the run log of a run folder without changing it.
 pub fn read(run: &Path) -> Result<ReadRecord, Failure> {
     let path = journal_of(run);
     let bytes = std::fs::read(&path).map_err(|error| Failure::file(&path, plain(&error)))?;
     from_bytes(&path, &bytes)
 }
 
-/// A record from the bytes of its journal.
+/// A run log from the bytes of its file.
 pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     let damaged = |reason: String| Failure::file(path, reason);
     let recovered =
@@ -63,12 +63,12 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     })
 }
 
-/// The journal of a run folder.
+/// The path of the run log in a run folder.
 pub fn journal_of(run: &Path) -> PathBuf {
     run.join(JOURNAL)
 }
 
-/// The plan of a record, checked again from the record alone.
+/// The plan of a run log, checked again from the run log alone.
 pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
     let header = &played.header;
     let files = Files {
@@ -103,7 +103,7 @@ pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
     }
 }
 
-/// What the header says of the equipment is what plan and rig say of it: nobody wrote another calibration into it.
+/// Whether the equipment in the header agrees with plan and rig. This detects a changed calibration.
 fn fits(played: &LoggedRun, plan: &Plan) -> Result<(), String> {
     let (Some(told), Some(rig)) = (&played.header.equipment, &played.rig) else {
         return Ok(());
@@ -117,7 +117,7 @@ fn fits(played: &LoggedRun, plan: &Plan) -> Result<(), String> {
     )
 }
 
-/// The provenance that the record gives; the plan's own date counts where none was given on the command line.
+/// The provenance from the run log; the plan's own date applies if the command line gave none.
 fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provenance {
     let number = super::provenance::report_number(
         &header.run_id,
@@ -151,7 +151,7 @@ fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provena
     }
 }
 
-/// What a real run's record says of people and place, and of itself.
+/// The data of a real run's log about operator and machine, and about itself.
 fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
     let wall = |line: &Line| {
         line.body()
@@ -169,7 +169,7 @@ fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
     }
 }
 
-/// Gives the recorded files by the names they were used under.
+/// Gives the recorded files by the names under which they were used.
 struct Files<'a> {
     header: &'a Header,
     texts: &'a [String],

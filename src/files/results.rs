@@ -7,8 +7,8 @@ use crate::report;
 use crate::report::{FileDigest, OutputError, OutputSink, Provenance, Run};
 use crate::verdict::Assessment;
 
-/// Puts every result of a run into a sink, without the manifest, which also lists the other files. A run that a client
-/// controlled has only the table of its steps.
+/// Puts every result of a run into a sink, without the manifest, which also lists the other files. A run that a client controlled has
+/// only the table of its steps.
 pub fn put_results(
     plan: &Plan,
     record: &Record,
@@ -18,7 +18,7 @@ pub fn put_results(
     sink: &mut dyn OutputSink,
 ) -> Result<Vec<FileDigest>, OutputError> {
     if matches!(record.outcome, Outcome::NotReleased { .. }) {
-        // Nothing moved: there is a record and no result.
+        // Nothing moved: there is a run log and no result.
         return Ok(Vec::new());
     }
     if let Some(steps) = driven {

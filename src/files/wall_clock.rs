@@ -1,12 +1,12 @@
-//! Jumps of the wall clock during a run. In: records with both clocks. Out: time and size of each jump. Durations never use the wall
-//! clock; a jump explains to a reader why the dates of a record are inconsistent.
+//! Jumps of the wall clock during a run. In: run log entries with both clocks. Out: time and size of each jump. Durations never use the
+//! wall clock. A jump explains to a reader why the dates of a run log are inconsistent.
 
 use jiff::Timestamp;
 
 use crate::record::journal::{EntryKind, Line};
 use crate::report::ClockJump;
 
-/// A smaller difference is the slow correction of a clock, or the time between the two stamps of a record \[s\].
+/// A smaller difference is the slow correction of a clock, or the time between the two time stamps of an entry \[s\].
 const SMALL: f64 = 10.0;
 
 /// Every jump between two readings of one part of the run. The time before a resumption is not a jump.

@@ -1,4 +1,4 @@
-//! A test's outcome for a person at a terminal. In: the outcome of one plan. Out: lines, aligned; plain or coloured.
+//! A test's outcome for a terminal. In: the outcome of one plan. Out: aligned lines, plain or coloured.
 
 use std::fmt::Write as _;
 
@@ -6,14 +6,14 @@ use super::finding::Finding;
 use super::tested::{Accepted, Outcome, Report, Tested};
 use super::words::Words;
 
-/// Differences shown of one part of a plan's results; the JSON report has all.
+/// Differences shown for one part of a plan's results; the JSON report has all.
 const SHOWN: usize = 7;
 
 const GREEN: &str = "32";
 const RED: &str = "31";
 const YELLOW: &str = "33";
 
-/// One plan: a line, and what differs below it.
+/// One plan: a line, and its differences below.
 #[must_use]
 pub fn told(tested: &Tested, coloured: bool) -> String {
     let (word, colour, said) = match &tested.outcome {
@@ -49,7 +49,7 @@ pub fn told(tested: &Tested, coloured: bool) -> String {
     text
 }
 
-/// Findings in columns: what, from what to what, by how much; and below each where and what was allowed.
+/// Findings in columns: name, old and new value, difference; below each its position and the tolerance.
 fn differences(found: &[Finding], coloured: bool) -> String {
     let shown = found
         .chunk_by(|a, b| a.part == b.part)

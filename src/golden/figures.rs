@@ -1,5 +1,5 @@
-//! Figures by what they plot: the curves, the words of the legend, the limits, the shaded times. Numbers that stand in the
-//! words of a legend are results, and compared there.
+//! Figures by their content: the curves, the text of the legend, the limits, the shaded times. Numbers in the text of a legend are
+//! results, and are compared there.
 
 use super::finding::{Change, Finding, Part, Place};
 use super::tolerance::{Rule, Tolerances};
@@ -45,7 +45,7 @@ pub(super) fn compare(
     }
 }
 
-/// A rule along each axis.
+/// A tolerance rule for each axis.
 #[derive(Clone, Copy)]
 struct Axis {
     dimension: Dimension,
@@ -172,7 +172,7 @@ fn lines(
     }
 }
 
-/// What a curve keeps, along one axis.
+/// The rule of a curve, along one axis.
 fn curve(
     was: &FigureCurve,
     is: &FigureCurve,
@@ -208,7 +208,7 @@ fn row(was: &[f64], is: &[f64], axis: Axis) -> Option<Change> {
     })
 }
 
-/// Words without their numbers.
+/// The text without its numbers.
 fn words(was: &str, is: &str) -> Option<Change> {
     let bare = |text: &str| {
         let is_digit = |c: char| {
@@ -271,7 +271,7 @@ mod tests {
             findings(&was, &figures(&line(10.0 + 9e-9), "force, K = 3.2 kN/m")),
             Vec::<String>::new()
         );
-        // The peak is no point that a thinned curve would keep by its place.
+        // The peak is not a point that regular thinning of a curve would keep.
         assert_eq!(
             findings(&was, &figures(&line(10.0 + 11e-9), "force, K = 3.1 kN/m")),
             ["figure hit_force, force, K = 3.1 kN/m: y"]

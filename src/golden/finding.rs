@@ -1,9 +1,9 @@
-//! What differs between a run and its accepted results, as data. Whoever tells it chooses the words.
+//! The differences between a run and its accepted results, as data. The printing modules choose the text.
 
 use super::tolerance::Rule;
 use crate::units::Dimension;
 
-/// What of the results a finding is about, what weighs most first.
+/// The part of the results that a finding is about, the most important first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
     Diagnostics,
@@ -11,13 +11,13 @@ pub enum Part {
     Requirement,
     Result,
     Table,
-    /// A parameter, an input, an event, what is said of plan and rig.
+    /// A parameter, an input, an event, or a text about plan and rig.
     Other,
     Figure,
 }
 
 impl Part {
-    /// The word of the JSON report.
+    /// The name in the JSON report.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl Part {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     pub part: Part,
-    /// `hit.max_displacement`
+    /// For example `hit.max_displacement`.
     pub name: String,
     pub change: Change,
 }
@@ -47,14 +47,14 @@ pub enum Change {
     Text {
         was: String,
         is: String,
-        /// The first of several, in a table.
+        /// The first of several differences, in a table.
         first: Option<(Place, Count)>,
     },
-    /// Accepted, and not there any more.
+    /// Accepted, but missing now.
     Gone,
-    /// There, and not accepted.
+    /// Present now, but not accepted.
     New,
-    /// So many of them were accepted, so many are there.
+    /// The accepted number of entries, and the present one.
     Length {
         of: &'static str,
         was: usize,
@@ -62,17 +62,17 @@ pub enum Change {
     },
 }
 
-/// A number that is not near enough, or the numbers of a column.
+/// A number outside its tolerance, or the numbers of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moved {
     pub dimension: Dimension,
-    /// SI; None where there is no value.
+    /// SI; None if there is no value.
     pub was: Option<f64>,
     pub is: Option<f64>,
     pub rule: Rule,
-    /// Size that a relative tolerance is of, SI.
+    /// Reference value of a relative tolerance, SI.
     pub scale: f64,
-    /// Of a column or a curve: where this number stands, the largest of the moved ones; `first` the first of them.
+    /// For a column or a curve: the position of this number, the largest of the changed ones; `first` is the position of the first.
     pub largest: Option<Place>,
     pub first: Option<Place>,
     pub count: Option<Count>,
@@ -88,7 +88,7 @@ pub struct Place {
     pub time: Option<f64>,
 }
 
-/// So many of so many.
+/// A count and its total.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Count {
     pub moved: usize,
@@ -96,13 +96,13 @@ pub struct Count {
 }
 
 impl Moved {
-    /// How far, SI.
+    /// The difference, SI.
     #[must_use]
     pub fn by(&self) -> Option<f64> {
         Some(self.is? - self.was?)
     }
 
-    /// How far, of the accepted value; None of a value that was 0.
+    /// The difference relative to the accepted value; None if that was 0.
     #[must_use]
     pub fn by_fraction(&self) -> Option<f64> {
         let was = self.was.filter(|was| *was != 0.0)?;
@@ -111,7 +111,7 @@ impl Moved {
 }
 
 impl Finding {
-    /// A difference of a part.
+    /// A difference in a part.
     #[must_use]
     pub fn new(part: Part, name: impl Into<String>, change: Change) -> Self {
         Self {
@@ -121,7 +121,7 @@ impl Finding {
         }
     }
 
-    /// A text that reads otherwise.
+    /// A text that is different.
     #[must_use]
     pub fn text(part: Part, name: impl Into<String>, was: &str, is: &str) -> Self {
         Self::new(

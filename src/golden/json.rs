@@ -7,7 +7,7 @@ use super::tested::{Outcome, Report};
 use crate::text::sanitize;
 use crate::units::display::si_unit;
 
-/// Name and version of the format; a change that breaks a reader raises the number.
+/// Name and version of the format; an incompatible change increases the number.
 pub const SCHEMA: &str = "psd.test/1";
 
 /// The document.
@@ -36,7 +36,7 @@ pub fn document(report: &Report) -> Value {
     json!({ "schema": SCHEMA, "plans": plans, "good": report.good(), "failed": failed, "unused": report.unused })
 }
 
-/// The document as it is printed: indented, and no text of a plan in it steers a terminal.
+/// The printed document: indented, and without control sequences from the text of a plan.
 #[must_use]
 pub fn text(report: &Report) -> String {
     sanitize::json(&format!("{:#}\n", document(report)))

@@ -1,5 +1,5 @@
-//! A test report as JUnit XML: a suite for each folder, a case for each plan, a failure with what differs. It holds no
-//! time and no host, so that the same results give the same file.
+//! A test report as JUnit XML: a suite for each folder, a case for each plan, a failure with the differences. It contains no time and no
+//! host name, so that the same results give the same file.
 
 use quick_junit::{NonSuccessKind, Report as Junit, TestCase, TestCaseStatus, TestSuite};
 
@@ -12,7 +12,7 @@ use crate::text::sanitize::one_line;
 /// # Errors
 /// Never in practice: the report is written to memory.
 pub fn junit(report: &Report) -> Result<String, quick_junit::SerializeError> {
-    // A suite is counted when it is added: it is whole by then.
+    // A suite is counted when it is added: it is complete by then.
     let mut suites: Vec<TestSuite> = Vec::new();
     for tested in &report.tested {
         let plain = one_line(&tested.name);

@@ -1,5 +1,5 @@
-//! Comparison of a run with accepted results. In: the result files of both as text, and the
-//! tolerances of the plan. Out: [`Finding`]s. It knows no file, no terminal and no picture.
+//! Comparison of a run with accepted results. In: the result files of both as text, and the tolerances of the plan. Out: [`Finding`]s. It
+//! uses no file, no terminal and no picture.
 
 pub mod comparison;
 pub mod console;
@@ -28,25 +28,25 @@ pub use thinning::thinned;
 pub use tolerance::{FLOOR, Rule, Tolerances};
 pub use words::Words;
 
-/// The text of a plan's diagnostics, where the plan is meant to fail to check.
+/// The text of the diagnostics of a plan that is intended to fail its check.
 pub const DIAGNOSTICS: &str = "diagnostics.txt";
 pub const SUMMARY: &str = "summary.json";
 pub const FIGURES: &str = crate::report::FIGURE_DATA;
 const TABLES: &str = "tables/";
 
-/// What of a folder of results is compared: texts by path. Pictures and certificates are made from the same numbers, and
-/// are not here.
+/// The compared part of a folder of results: texts by path. Pictures and test reports are made from the same numbers, and are not
+/// included.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Truth(BTreeMap<String, String>);
 
 impl Truth {
-    /// Whether a file belongs to what is compared.
+    /// Whether a file is compared.
     #[must_use]
     pub fn holds(path: &str) -> bool {
         matches!(path, DIAGNOSTICS | SUMMARY | FIGURES) || table_name(path).is_some()
     }
 
-    /// The texts of those files that are compared. Of a long table only some rows are compared: see [`thinned`].
+    /// The texts of the compared files. Only some rows of a long table are compared: see [`thinned`].
     #[must_use]
     pub fn of(files: impl IntoIterator<Item = (String, String)>) -> Self {
         let compared = |(path, text): (String, String)| {
@@ -73,7 +73,7 @@ impl Truth {
         self.0.is_empty()
     }
 
-    /// Whether it is of a plan that fails to check.
+    /// Whether it belongs to a plan that fails its check.
     #[must_use]
     pub fn is_of_faults(&self) -> bool {
         self.0.contains_key(DIAGNOSTICS)
@@ -91,7 +91,7 @@ impl Truth {
             .filter_map(|(path, text)| Some((table_name(path)?, Table::read(text))))
     }
 
-    /// The figures; none where there are none, or no reader knows them.
+    /// The figures; None if there are none, or if their format is unknown.
     #[must_use]
     pub fn figures(&self) -> Option<crate::report::Figures> {
         self.text(FIGURES)
@@ -99,12 +99,12 @@ impl Truth {
     }
 }
 
-/// `tables/hit.csv` is of `hit`.
+/// `tables/hit.csv` belongs to `hit`.
 fn table_name(path: &str) -> Option<&str> {
     path.strip_prefix(TABLES)?.strip_suffix(".csv")
 }
 
-/// Everything that differs, what weighs most first.
+/// All differences, the most important first.
 #[must_use]
 pub fn compare(blessed: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Finding> {
     let mut found = Vec::new();

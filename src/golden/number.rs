@@ -1,10 +1,10 @@
-//! A row of numbers against a row of numbers. In: both, a rule and a scale. Out: one finding for all that moved.
+//! Comparison of two rows of numbers. In: both, a rule and a scale. Out: one finding for all numbers that changed.
 
 use super::finding::{Change, Count, Moved, Place};
 use super::tolerance::Rule;
 use crate::units::Dimension;
 
-/// One number; None where they are near.
+/// One number; None if both are within the tolerance.
 pub(super) fn single(
     was: Option<f64>,
     is: Option<f64>,
@@ -29,7 +29,7 @@ pub(super) fn single(
     }))
 }
 
-/// Many, pair by pair; the largest of them that moved stands for all. A number that came or went is the largest of all.
+/// Many numbers, pair by pair; the finding shows the largest change. A number that appeared or disappeared counts as the largest.
 pub(super) fn many(
     pairs: &[(Option<f64>, Option<f64>)],
     dimension: Dimension,
@@ -72,7 +72,7 @@ pub(super) fn many(
     }))
 }
 
-/// The largest size of some numbers.
+/// The largest absolute value of some numbers.
 pub(super) fn scale(values: impl Iterator<Item = f64>) -> f64 {
     values
         .filter(|value| value.is_finite())

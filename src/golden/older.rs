@@ -1,14 +1,14 @@
-//! Summaries of older versions. In: the text of a `summary.json`. Out: the same, with the names of today.
+//! Summaries of older versions. In: the text of a `summary.json`. Out: the same with the present names.
 
 use serde_json::{Map, Value};
 
-/// Results of runs that do not unload, as they were called and as they are.
+/// Results of runs without unloading: old and present names.
 const RENAMED: [(&str, &str); 2] = [
     ("residual_displacement", "final_displacement"),
     ("residual_drift", "final_drift"),
 ];
 
-/// Reads a summary. What it says of a run at its last step is called final, whatever wrote it.
+/// Reads a summary. Its results at the last step of a run are called final, whichever version wrote them.
 ///
 /// # Errors
 /// If the text is not JSON.
@@ -23,7 +23,7 @@ pub fn summary(text: &str) -> Result<Value, serde_json::Error> {
     Ok(summary)
 }
 
-/// Versions before the verdict `completed` wrote `pass` where nothing was required.
+/// Versions before the verdict `completed` wrote `pass` if there were no requirements.
 pub(super) fn completed(mut was: Value) -> Value {
     let nothing_required = was["requirements"].as_array().is_some_and(Vec::is_empty);
     if nothing_required && was["verdict"] == "pass" {

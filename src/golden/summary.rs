@@ -1,5 +1,5 @@
-//! `summary.json` against `summary.json`. Whatever stands in an object with a `unit` is a number of that unit; every other
-//! number is held by the general tolerance, every text to the letter. What names the run and not its results is left out.
+//! Comparison of two `summary.json`. Every value in an object with a `unit` is a number of that unit. The general tolerance applies to
+//! every other number, and texts must be identical. Data that identify the run and not its results are left out.
 
 use serde_json::{Map, Value};
 
@@ -8,7 +8,7 @@ use super::tolerance::{Rule, Tolerances};
 use super::{number, older};
 use crate::units::{Dimension, unit};
 
-/// What tells which run it was, by which program and on which day's machine.
+/// Fields that identify the run, the program, the day and the machine.
 const NOT_COMPARED: &[&str] = &[
     "run_id",
     "psd",
@@ -18,7 +18,7 @@ const NOT_COMPARED: &[&str] = &[
     "record",
 ];
 
-/// A requirement repeats the condition that decides it, and a margin and an uncertainty follow from what is compared.
+/// A requirement repeats the condition that decides it. Margin and uncertainty follow from compared values.
 const FOLLOWS: &[&str] = &["value", "limit", "margin", "unit", "u", "condition"];
 
 pub(super) fn compare(
@@ -150,7 +150,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Entries by their place; those of requirements by their name, so that one more does not shift all.
+    /// Entries by their index; requirements by their name, so that an additional one does not shift the others.
     fn array(&mut self, path: &mut Vec<String>, was: &[Value], is: &[Value]) {
         let named = |entries: &[Value]| {
             entries
@@ -210,7 +210,7 @@ fn measure(object: &Map<String, Value>) -> Option<Dimension> {
     Some(unit::parse(unit).map_or(Dimension::NUMBER, |unit| unit.dimension))
 }
 
-/// Whether it may be a number: one, none, or a list of such.
+/// Whether it can be a number: a number, null, or a list of them.
 fn is_numeric(value: &Value) -> bool {
     match value {
         Value::Number(_) | Value::Null => true,
@@ -241,14 +241,14 @@ fn text(was: &Value, is: &Value) -> Change {
     }
 }
 
-/// `procedures hit results stop_time value` is `hit.stop_time`.
+/// `procedures hit results stop_time value` gives `hit.stop_time`.
 fn named(path: &[String]) -> (Part, String) {
     let parts: Vec<&str> = path.iter().map(String::as_str).collect();
     match parts.as_slice() {
         ["verdict"] => (Part::Verdict, "verdict".to_owned()),
         ["outcome", ..] => (Part::Verdict, parts.join(".")),
         ["requirements", name] => (Part::Requirement, format!("require \"{name}\"")),
-        // What a requirement reads follows from results, which weigh more.
+        // The values in a requirement follow from results, which are more important.
         [
             "requirements",
             name,
@@ -337,7 +337,7 @@ mod tests {
             now["psd"] = json!("9.9.9");
             now["plan"]["sha256"] = json!("other");
             now["procedures"]["hit"]["results"]["x"]["value"] = json!(0.5 * (1.0 + 0.9e-9));
-            // Of the size of the longest entry, and of the value that it is the uncertainty of.
+            // Relative to the longest entry, and to the value that it is the uncertainty of.
             now["procedures"]["hit"]["results"]["drift"]["value"][0] = json!(1e-3 + 1.9e-12);
             now["procedures"]["hit"]["results"]["x"]["u"] = json!(1e-3 + 0.4e-9);
         });

@@ -1,4 +1,4 @@
-//! Tables: CSV read back, and column against column. Rows are held against each other by their place.
+//! Tables: reading of CSV, and comparison of columns. Rows are compared by their index.
 
 use super::finding::{Change, Count, Finding, Part, Place};
 use super::tolerance::Tolerances;
@@ -14,16 +14,16 @@ pub struct Table {
     pub columns: Vec<(String, Vec<String>)>,
 }
 
-/// What a column holds.
+/// The content of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cells {
-    /// An empty cell is no number.
+    /// An empty cell has no number.
     Numbers(Vec<Option<f64>>),
     Words(Vec<String>),
 }
 
 impl Table {
-    /// Reads CSV as psd writes it: the names, then the rows; quotes only around words.
+    /// Reads CSV as psd writes it: the names, then the rows; quotes only around texts.
     #[must_use]
     pub fn read(text: &str) -> Self {
         let mut lines = text.lines();
@@ -62,7 +62,7 @@ impl Table {
         Some(numbers.map_or_else(|| Cells::Words(cells.clone()), Cells::Numbers))
     }
 
-    /// The numbers of a column; none where it holds words.
+    /// The numbers of a column; None if it contains texts.
     #[must_use]
     pub fn numbers(&self, name: &str) -> Option<Vec<Option<f64>>> {
         match self.column(name)? {
@@ -71,7 +71,7 @@ impl Table {
         }
     }
 
-    /// What tells a row: its step, and the time of the test or of the rig.
+    /// The identification of a row: its step, and the time of the test or of the rig.
     fn place(&self, row: usize) -> Place {
         let cell = |name: &str| {
             self.numbers(name)
@@ -109,7 +109,7 @@ fn cells(line: &str) -> Vec<String> {
     cells
 }
 
-/// Every table of either.
+/// Compares all tables of both results.
 pub(super) fn compare_all(
     blessed: &Truth,
     now: &Truth,
@@ -191,7 +191,7 @@ fn compare(
     }
 }
 
-/// Words, to the letter.
+/// Texts, which must be identical.
 fn words(was: &Table, is: &Table, column: &str) -> Option<Change> {
     let of = |table: &Table| {
         table
@@ -214,7 +214,7 @@ fn words(was: &Table, is: &Table, column: &str) -> Option<Change> {
     })
 }
 
-/// What a column measures: one name means one thing in every table.
+/// The quantity of a column: one name has one meaning in every table.
 #[must_use]
 pub fn dimension(column: &str) -> Dimension {
     let kinds = schema::BLOCKS

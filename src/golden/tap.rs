@@ -1,4 +1,4 @@
-//! A test report in the Test Anything Protocol, version 13, as `prove` reads it: what differs in a YAML block.
+//! A test report in the Test Anything Protocol, version 13, as `prove` reads it: differences are in a YAML block.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use super::tested::{Outcome, Report};
 use super::words::Words;
 use crate::text::sanitize;
 
-/// The report, with a line a plan.
+/// The report, with one line per plan.
 #[must_use]
 pub fn tap(report: &Report) -> String {
     let mut text = format!("TAP version 13\n1..{}\n", report.tested.len());
@@ -50,7 +50,7 @@ pub fn tap(report: &Report) -> String {
     text
 }
 
-/// A description without what steers a reader of the protocol: `#` begins a directive.
+/// A description without control characters of the protocol: `#` begins a directive.
 fn plain(text: &str) -> String {
     sanitize::one_line(text).replace('#', "＃")
 }

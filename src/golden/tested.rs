@@ -1,44 +1,44 @@
-//! What became of the plans under test, as data: the console, TAP, JUnit and JSON are functions of it.
+//! The outcomes of the tested plans, as data: the console, TAP, JUnit and JSON are functions of it.
 
 use super::finding::Finding;
 
 /// One plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tested {
-    /// `plans/beam`
+    /// For example `plans/beam`.
     pub name: String,
     pub outcome: Outcome,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// As accepted. The verdict; None of a plan that fails to check, as it should.
+    /// As accepted. The verdict; None for a plan that fails its check, as intended.
     Same {
         verdict: Option<&'static str>,
     },
     Differs(Vec<Finding>),
-    /// There is nothing to hold it against.
+    /// There are no accepted results for a comparison.
     NotAccepted {
         folder: String,
     },
     /// It could not be run or compared.
     Failed(String),
-    /// Another failed before it, and the first failure ends the test.
+    /// An earlier plan failed, and the first failure ends the test.
     NotRun,
     Accepted(Accepted),
 }
 
-/// What blessing did.
+/// The effect of accepting results.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Accepted {
     New,
-    /// What is different from before; nothing where all was only written anew.
+    /// The differences from before; empty if the same results were written again.
     Changed(Vec<Finding>),
     Unchanged,
     Refused(&'static str),
 }
 
-/// All of them, in order.
+/// All outcomes, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     pub tested: Vec<Tested>,
@@ -56,7 +56,7 @@ impl Outcome {
         )
     }
 
-    /// The word of the JSON report.
+    /// The name in the JSON report.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -72,7 +72,7 @@ impl Outcome {
         }
     }
 
-    /// What differs from the accepted results, or differed before it was accepted.
+    /// The differences from the accepted results, or those before they were accepted.
     #[must_use]
     pub fn findings(&self) -> &[Finding] {
         match self {
@@ -81,7 +81,7 @@ impl Outcome {
         }
     }
 
-    /// Why it is not good, in one line; None where it is.
+    /// The reason of a failure, in one line; None if there is no failure.
     #[must_use]
     pub fn complaint(&self) -> Option<String> {
         match self {
@@ -104,7 +104,7 @@ impl Outcome {
 }
 
 impl Report {
-    /// How many came out well.
+    /// Number of plans without a failure.
     #[must_use]
     pub fn good(&self) -> usize {
         self.tested

@@ -1,7 +1,7 @@
 //! Rows of a long table that are accepted and compared. In: CSV. Out: CSV with fewer rows. The results and the figures of a run
 //! cover all rows, so that a change in any step shows in them.
 
-/// Rows up to which a table is kept whole.
+/// Number of rows up to which a table is kept complete.
 const WHOLE: usize = 200;
 /// Parts of a longer table, spread evenly from its first row to its last.
 const PARTS: usize = 20;

@@ -1,30 +1,30 @@
-//! How near is near enough. In: the plan's `golden` block. Out: a [`Rule`] for each result, column and figure.
+//! Tolerances of a comparison. In: the plan's `golden` block. Out: a [`Rule`] for each result, column and figure.
 
 use crate::plan::formula::ProcedureId;
 use crate::plan::{Golden, Plan, Tolerance};
 use crate::units::Dimension;
 
-/// Nothing nearer than this is told apart, SI: a picometre, a piconewton, a picosecond, and of a plain number 10⁻¹². What
-/// should be 0 is rarely 0 to the last bit. With `tolerance = 0` there is no floor.
+/// Smallest difference that is detected, SI: a picometre, a piconewton, a picosecond, and 10⁻¹² for a plain number. A value that should
+/// be 0 is rarely exactly 0. With `tolerance = 0` there is no such floor.
 pub const FLOOR: f64 = 1e-12;
 
-/// Near is what is near by either measure.
+/// A difference is within tolerance if it satisfies either bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rule {
-    /// Of the size of the number; of a column, of its largest.
+    /// Relative to the absolute value of the number; for a column, to its largest.
     pub relative: f64,
     /// SI.
     pub absolute: f64,
 }
 
 impl Rule {
-    /// How far a number of this scale may be off, SI.
+    /// The largest allowed difference of a number of this scale, SI.
     #[must_use]
     pub fn bound(self, scale: f64) -> f64 {
         self.absolute.max(self.relative * scale)
     }
 
-    /// Whether two numbers are near enough. No number is near no number only.
+    /// Whether two numbers are within the tolerance. NaN matches only NaN.
     #[must_use]
     pub fn is_near(self, was: f64, is: f64, scale: f64) -> bool {
         was == is || (was.is_nan() && is.is_nan()) || (was - is).abs() <= self.bound(scale)
@@ -54,7 +54,7 @@ impl Tolerances {
         }
     }
 
-    /// Of every number without a tolerance of its own.
+    /// The rule of every number without a separate tolerance.
     #[must_use]
     pub fn general(&self) -> Rule {
         let relative = self.golden.tolerance;
@@ -82,7 +82,7 @@ impl Tolerances {
         let Some(known) = self.procedures.get(procedure.0) else {
             return false;
         };
-        // A procedure may have a second table, `loop_cycles` beside `loop`.
+        // A procedure may have a second table, for example `loop_cycles` beside `loop`.
         let second = || {
             name.strip_prefix(known.as_str())
                 .is_some_and(|rest| rest.starts_with('_'))
@@ -100,7 +100,7 @@ impl Tolerances {
         near.map_or_else(|| self.general(), |near| self.rule(near.tolerance))
     }
 
-    /// A column of one procedure before that of all.
+    /// The rule for a column of one procedure has priority over the rule for all.
     #[must_use]
     pub fn column(&self, procedure: &str, name: &str) -> Rule {
         let named = || self.golden.columns.iter().filter(|near| near.name == name);
@@ -109,7 +109,7 @@ impl Tolerances {
         near.map_or_else(|| self.general(), |near| self.rule(near.tolerance))
     }
 
-    /// What follows from results: the widest tolerance of a result of this dimension.
+    /// The rule of values that follow from results: the widest tolerance of a result of this dimension.
     #[must_use]
     pub fn follows(&self, dimension: Dimension) -> Rule {
         let of = self
@@ -122,7 +122,7 @@ impl Tolerances {
         })
     }
 
-    /// An axis of a figure draws columns and results: the widest tolerance of those of its procedure and dimension.
+    /// An axis of a figure shows columns and results: the widest tolerance of those of its procedure and dimension.
     #[must_use]
     pub fn axis(&self, procedure: &str, dimension: Dimension) -> Rule {
         let results = self

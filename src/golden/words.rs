@@ -1,20 +1,20 @@
-//! A finding in words: what moved, from what to what, by how much, where first, of how many, and what was allowed. In: a
-//! finding, SI. Out: text for a person, in the units a person reads.
+//! A finding as text: name, old and new value, difference, first position, count, and tolerance. In: a finding, SI. Out: text in readable
+//! units.
 
 use super::finding::{Change, Count, Finding, Moved, Place};
 use crate::units::Dimension;
 use crate::units::display::{join, minus, readable, significant, trimmed, unit};
 
-/// A finding, ready to be set in columns.
+/// A finding, ready to be arranged in columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Words {
     pub part: &'static str,
     pub name: String,
-    /// `7.880 mm → 7.912 mm`
+    /// For example `7.880 mm → 7.912 mm`.
     pub change: String,
-    /// `+32.0 µm  +0.406 %`; empty of what is no number.
+    /// For example `+32.0 µm  +0.406 %`; empty if there is no number.
     pub by: String,
-    /// Where, how many, what was allowed; may be empty.
+    /// Position, count and tolerance; may be empty.
     pub detail: String,
 }
 
@@ -58,7 +58,7 @@ impl Words {
         }
     }
 
-    /// All of it in one line.
+    /// The whole text in one line.
     #[must_use]
     pub fn line(&self) -> String {
         let parts = [self.name.as_str(), &self.change, &self.by]
@@ -73,7 +73,7 @@ impl Words {
     }
 }
 
-/// Old and new with as many digits as tell them apart.
+/// Old and new value, with enough digits to distinguish them.
 fn pair(moved: &Moved) -> String {
     const FEWEST: f64 = 4.0;
     const MOST: f64 = 17.0;
@@ -163,7 +163,7 @@ fn detail(moved: &Moved) -> String {
     parts.join("; ")
 }
 
-/// What was allowed: the wider of the two measures.
+/// The tolerance: the wider of the two bounds.
 fn tolerance(moved: &Moved) -> String {
     let relative = moved.rule.relative * moved.scale;
     if moved.rule.absolute > relative {
@@ -200,7 +200,7 @@ fn place(at: Place) -> String {
     }
 }
 
-/// Two texts on one line: all of short ones, of long ones where they part.
+/// Two texts on one line: short ones in full, long ones from their first difference.
 fn texts(was: &str, is: &str) -> String {
     const LONGEST: usize = 60;
     let parting = was

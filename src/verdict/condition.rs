@@ -1,5 +1,4 @@
-//! One condition. In: its value, its bound and the rule of decision. Out: a verdict with margin, guard band and probability of
-//! conformity.
+//! One condition. In: its value, its bound and the decision rule. Out: a verdict with margin, guard band and probability of conformity.
 
 use super::{Bound, ConditionOutcome, Verdict};
 use crate::physics::statistics::student_t;
@@ -7,7 +6,7 @@ use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results};
 use crate::plan::{Comparison, Condition, DecisionRule, Test};
 use crate::uncertainty::{FEW, Known, known};
 
-/// Value and bound are evaluated each on its own, so that a report shows whichever exists.
+/// Value and bound are evaluated separately, so that a report shows the one that exists.
 pub(crate) fn assess_condition(
     condition: &Condition,
     rule: DecisionRule,
@@ -67,7 +66,7 @@ pub(crate) fn assess_condition(
     }
 }
 
-/// Why a guard band cannot be kept: a measured result that the condition reads has no expanded uncertainty.
+/// Why a guard band cannot be applied: a measured result that the condition reads has no expanded uncertainty.
 fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String> {
     let mut references = Vec::new();
     condition.collect_references(&mut references);
@@ -77,7 +76,7 @@ fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String>
         .find_map(|read| record.no_uncertainty(read))
 }
 
-/// Why a limit within the guard band decides nothing, and why the band is wide where few readings made it so.
+/// Why a limit within the guard band is not conclusive, and why the band is wide if it comes from few readings.
 fn near(margin: Option<Known>) -> String {
     let few = margin.filter(|known| known.degrees < f64::from(FEW));
     let why = few.map(|known| {
@@ -90,13 +89,13 @@ fn near(margin: Option<Known>) -> String {
     "the limit is nearer than the guard band w = U".to_owned() + &why.unwrap_or_default()
 }
 
-/// How well a formula is known, with its degrees of freedom.
+/// The uncertainty of a formula, with its degrees of freedom.
 fn how_well(formula: &Formula, record: &dyn Results) -> Option<Known> {
     known(&formula.contributions(record, None).ok()?, record)
 }
 
-/// w = U = k·u of the distance between value and bound, so that a limit which was measured itself counts too, and a result
-/// that stands on both sides counts once. None where nothing of it is uncertain.
+/// w = U = k·u of the distance between value and bound. The uncertainty of a measured limit is therefore included, and a result on both
+/// sides counts once. None if nothing in it is uncertain.
 fn margin_known(
     condition: &Condition,
     value: f64,
@@ -161,11 +160,12 @@ fn evaluate_bound(test: &Test, record: &dyn Results) -> Result<Bound, FormulaErr
     })
 }
 
-/// Numbers that differ by no more than this share of the larger are one number: 0.3 mm read in quanta of 0.1 mm, or an energy
-/// that went through a square root and back, is off by some 1e-16 of itself, and no measurement tells such a difference.
+/// Numbers that differ by no more than this fraction of the larger one are equal. For example, 0.3 mm read with a resolution of 0.1 mm
+/// has a relative rounding error of about 1e-16. The same applies to an energy after a square root and its square. No measurement
+/// resolves such a difference.
 const ROUNDING: f64 = 1e-12;
 
-/// What rounding may make of numbers such as these.
+/// The possible rounding error of these numbers.
 pub(super) fn rounding(a: f64, b: f64) -> f64 {
     ROUNDING * a.abs().max(b.abs()).min(f64::MAX)
 }
@@ -175,7 +175,7 @@ pub(super) fn equal(a: f64, b: f64) -> bool {
 }
 
 impl ConditionOutcome {
-    /// How well the value is known.
+    /// The uncertainty of the value.
     #[must_use]
     pub fn known(&self) -> Option<Known> {
         self.uncertainty.map(|standard| Known {
@@ -184,7 +184,7 @@ impl ConditionOutcome {
         })
     }
 
-    /// How well its margin is known, where a guard band is kept.
+    /// The uncertainty of its margin, if a guard band is applied.
     #[must_use]
     pub fn margin_known(&self) -> Option<Known> {
         let degrees = self.margin_degrees;
@@ -201,7 +201,7 @@ impl ConditionOutcome {
 }
 
 impl Bound {
-    /// Whether `value` (SI) meets it. What is equal but for rounding is equal.
+    /// Whether `value` (SI) satisfies it. Values that are equal except for rounding count as equal.
     #[must_use]
     pub fn holds(self, value: f64) -> bool {
         match self {
@@ -217,7 +217,7 @@ impl Bound {
         }
     }
 
-    /// Probability that what was measured as `value` (SI) meets it, `known` how well the distance between them is.
+    /// Probability that the quantity measured as `value` (SI) satisfies it; `known` is the uncertainty of the distance between them.
     #[must_use]
     pub fn conforms(self, value: f64, known: Known) -> f64 {
         let Known { standard, degrees } = known;
@@ -237,8 +237,9 @@ impl Bound {
         }
     }
 
-    /// The verdict on `value` (SI): without a guard band the value decides. With one, w (SI, above 0), it passes if it keeps
-    /// the bound by at least w, fails if it misses it by more than w, and else nothing is decided.
+    /// The verdict on `value` (SI). Without a guard band, the value alone is compared. With a guard band w (SI, above 0), a bound that is
+    /// met with a margin of at least w is a pass. A bound that is exceeded by more than w is a fail. Otherwise the verdict is
+    /// inconclusive.
     #[must_use]
     pub fn verdict(self, value: f64, guard_band: Option<f64>) -> Verdict {
         let Some(band) = guard_band else {
@@ -269,8 +270,8 @@ impl Bound {
         }
     }
 
-    /// Distance of `value` inside the bound; negative: missed by so much. Equality has nothing inside it, inequality
-    /// nothing outside.
+    /// Distance of `value` inside the bound; negative: exceeded by this amount. For equality the distance is never positive, for
+    /// inequality never negative.
     #[must_use]
     pub fn margin(self, value: f64) -> f64 {
         match self {

@@ -1,4 +1,4 @@
-//! Guard bands and probabilities of conformity, under either rule of decision.
+//! Guard bands and probabilities of conformity, under both decision rules.
 
 use super::tests::{compare, condition, outcome_of, record, result};
 use super::*;
@@ -7,7 +7,7 @@ use crate::plan::{Comparison, DecisionRule, Requirement, Test};
 use crate::record::{NamedResult, Outcome, Record};
 use crate::units::Dimension;
 
-/// Of 8.0 with u = 0.125: w = 0.25, and every number here is exact in binary.
+/// A condition on 8.0 with u = 0.125: w = 0.25, and every number here is exact in binary.
 fn guarded(test: Test) -> ConditionOutcome {
     let mut record = record(Outcome::Completed);
     record.procedures[0].results[0].value = ResultValue::Number {
@@ -26,7 +26,7 @@ fn between_pass_and_fail_lies_a_guard_band_of_two_standard_uncertainties() {
     use Comparison::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
     use Verdict::{Fail, Inconclusive, Pass};
     let cases = [
-        // At least w inside: pass, at exactly w only where the limit itself would do.
+        // At least w inside: pass. At exactly w only if the limit itself would be accepted.
         (LessEqual, 8.25, Pass),
         (Less, 8.25, Inconclusive),
         (Less, 8.375, Pass),
@@ -40,7 +40,7 @@ fn between_pass_and_fail_lies_a_guard_band_of_two_standard_uncertainties() {
         (Greater, 7.625, Pass),
         (GreaterEqual, 8.25, Inconclusive),
         (GreaterEqual, 8.375, Fail),
-        // Nothing uncertain is proven equal, and only what lies apart is proven unequal.
+        // An uncertain value cannot be shown to be equal, and only values farther apart are shown to be unequal.
         (Equal, 8.0, Inconclusive),
         (Equal, 8.375, Fail),
         (NotEqual, 8.25, Inconclusive),
@@ -85,8 +85,8 @@ fn a_tolerance_narrower_than_the_band_is_never_kept() {
     assert_eq!(within(10.0, 0.2, true), Verdict::Inconclusive);
 }
 
-/// An uncertainty that is known to be none leaves the value to decide, and so does a result that is exact by its nature. One that is not
-/// known leaves nothing to decide by, far from the limit as near it.
+/// If the uncertainty is known to be zero, or the result is exact by definition, the value alone is compared. If the uncertainty is
+/// unknown, the condition is inconclusive, far from the limit as well as near it.
 #[test]
 fn a_guard_band_needs_an_uncertainty_that_is_known() {
     let mut record = record(Outcome::Completed);
@@ -152,7 +152,7 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
     );
 }
 
-/// 8 with u = 0.125 (normal): at its limit one half, at one u inside 84.1 %; between limits ±0.125 either side 68.3 %, which U exceeds.
+/// 8 with u = 0.125 (normal): at its limit 50 %, one u inside 84.1 %; between limits of ±0.125 it is 68.3 %, and U exceeds the limits.
 #[test]
 fn a_probability_of_conformity_is_told_under_either_rule() {
     let mut record = record(Outcome::Completed);
@@ -202,7 +202,7 @@ fn a_probability_of_conformity_is_told_under_either_rule() {
     );
 }
 
-/// On a real rig no guard band follows from a budget without both calibrations; on a simulated one it does.
+/// On a real rig, a budget without both calibrations gives no guard band; on a simulated rig it gives one.
 #[test]
 fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {
     let mut plan = crate::tests::fault_table::stage::plan();

@@ -18,14 +18,14 @@ use undecided::{beyond, longer_than_critical, unless_undecided};
 /// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// The run came to its end and nothing is required of it: there is nothing to pass.
+    /// The run is complete and the plan has no requirement: there is nothing to pass.
     Completed,
     Pass,
-    /// A result that the requirement reads does not exist in this run, or is too near its limit for what is known of it; a run that
-    /// could not go on with what it found.
+    /// A result that the requirement reads does not exist in this run, or its margin is too small for its uncertainty. Also a run that
+    /// could not continue with its measured values.
     Inconclusive,
     Fail,
-    /// Stopped by a limit or by a person.
+    /// Stopped by a limit or by the operator.
     Aborted,
     /// The rig failed.
     Error,
@@ -50,7 +50,7 @@ impl Verdict {
 #[derive(Clone, Debug)]
 pub struct Assessment {
     pub verdict: Verdict,
-    /// By which every condition was decided.
+    /// The rule that decided every condition.
     pub rule: DecisionRule,
     pub requirements: Vec<RequirementOutcome>,
 }
@@ -63,27 +63,27 @@ pub struct RequirementOutcome {
     pub conditions: Vec<ConditionOutcome>,
 }
 
-/// One condition: what it was held against, and by how much it holds.
+/// One condition: its bound, and its margin.
 #[derive(Clone, Debug)]
 pub struct ConditionOutcome {
     /// As the plan wrote it.
     pub text: String,
     pub verdict: Verdict,
     pub dimension: Dimension,
-    /// SI; None where a result does not exist.
+    /// SI; None if a result does not exist.
     pub value: Option<f64>,
     pub uncertainty: Option<f64>,
     /// Effective degrees of freedom of that uncertainty.
     pub degrees: f64,
     pub bound: Option<Bound>,
-    /// Distance inside the bound, SI; negative: missed by so much.
+    /// Distance inside the bound, SI; negative: exceeded by this amount.
     pub margin: Option<f64>,
-    /// w = U = k·u of the margin under the guarded rule, SI; None under the simple one, of what is exact, and where no
-    /// uncertainty is known.
+    /// w = U = k·u of the margin under the guarded rule, SI. None under the simple rule, for exact values, and if the uncertainty is
+    /// unknown.
     pub guard_band: Option<f64>,
     /// Effective degrees of freedom of the uncertainty of the margin, under the guarded rule.
     pub margin_degrees: f64,
-    /// Probability that what was measured conforms, by the uncertainty of the margin (JCGM 106:2012, 7.1); None where none is known.
+    /// Probability of conformity, from the uncertainty of the margin (JCGM 106:2012, 7.1); None if that is unknown.
     pub conforms: Option<f64>,
     /// Whether the tolerance is narrower than U of the margin.
     pub wider_than_tolerance: bool,
@@ -91,7 +91,7 @@ pub struct ConditionOutcome {
     pub reason: Option<String>,
 }
 
-/// What the value was held against, SI.
+/// The bound that the value is compared with, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     Compare {
@@ -105,8 +105,8 @@ pub enum Bound {
     },
 }
 
-/// Holds every requirement of the plan against the record. A run that was stopped is at least Aborted, one whose rig
-/// failed an Error, whatever its requirements say of the results it has.
+/// Assesses every requirement of the plan against the record. A run that was stopped is at least `Aborted`. A run whose rig failed is an
+/// `Error`. This does not depend on the requirements that its results satisfy.
 #[must_use]
 pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     let rule = plan.decision_rule;
@@ -135,7 +135,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     }
 }
 
-/// `results` are those of the record, as far as their uncertainties are declared.
+/// `results` are those of the record, if their uncertainties are declared.
 fn assess_requirement(
     requirement: &Requirement,
     rule: DecisionRule,
@@ -158,8 +158,8 @@ fn assess_requirement(
     }
 }
 
-/// Holds a condition of a row of blows against the results of the blow that is just over, those of the procedure `own`: what a
-/// blow leaves open that was cut before its peak decides nothing.
+/// Assesses a condition of an impact series against the results of the last impact, which are those of the procedure `own`. Results that
+/// are not determined, because the impact ended before its peak, are not conclusive.
 pub(crate) fn assess_on_blow(
     condition: &Condition,
     rule: DecisionRule,

@@ -1,6 +1,6 @@
-//! Results as far as the plan declares what makes them uncertain. On a real rig a budget without the calibration of force and
-//! displacement is partial, and gives no expanded uncertainty: no guard band follows from it. In: a plan and its results. Out:
-//! the same results, and of each why it has no U.
+//! Results with the uncertainty that the plan declares. On a real rig a budget without the calibration of force and displacement is
+//! partial. It gives no expanded uncertainty, and therefore no guard band. In: a plan and its results. Out: the same results, and for
+//! each the reason why it has no U.
 
 use crate::plan::Plan;
 use crate::plan::formula::{ResultReference, ResultValue, Results};
@@ -9,7 +9,7 @@ use crate::uncertainty::{Contribution, Source};
 /// Results of a run on the rig of a plan.
 pub(crate) struct Declared<'a> {
     results: &'a dyn Results,
-    /// What the plan does not declare of a real rig.
+    /// The calibrations of a real rig that the plan does not declare.
     undeclared: Vec<&'static str>,
 }
 

@@ -1,4 +1,4 @@
-//! Verdicts at and about their limits, by both rules of decision.
+//! Verdicts at and near their limits, under both decision rules.
 
 use super::*;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
@@ -105,7 +105,7 @@ fn a_relative_tolerance_is_of_the_size_of_the_target() {
     assert_eq!(within(-10.0, 1.9, true).verdict, Verdict::Pass);
 }
 
-/// Three quanta of 0.1 mm are 0.30000000000000003 mm, and 15 J of a striker are 14.999999999999998 J after their root.
+/// Three steps of 0.1 mm are 0.30000000000000003 mm, and 15 J of a striker are 14.999999999999998 J after a square root.
 #[test]
 fn what_is_equal_but_for_rounding_is_equal() {
     use Comparison::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
@@ -236,7 +236,7 @@ fn the_whole_takes_its_worst_part_and_the_end_of_the_run() {
     );
 }
 
-/// A run whose balance is off by more than half decides nothing of its motion; the balance itself it does decide.
+/// If the energy balance error exceeds half of the input, results of the motion are not conclusive; the balance itself is.
 #[test]
 fn what_a_scheme_made_of_its_energy_decides_nothing() {
     let with = |name, error: ResultValue| {

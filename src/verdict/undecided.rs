@@ -1,5 +1,6 @@
-//! Conditions that their results do not decide: a procedure that did not end, an energy balance that is off, a time step above the
-//! critical one, a zero drift, a peak that was not reached. In: the outcome of a condition. Out: the outcome, or inconclusive and why.
+//! Conditions whose results are not conclusive. The causes: an incomplete procedure, an energy balance error, a time step above the
+//! critical one, a zero drift, or a peak that was not reached. In: the outcome of a condition. Out: the outcome, or inconclusive with the
+//! reason.
 
 use super::{ConditionOutcome, Verdict, unfinished_peaks};
 use crate::physics::impact::energy::WORTHLESS;
@@ -11,10 +12,10 @@ use crate::rig::safety::failpoint::Guarding;
 use crate::units::Dimension;
 use crate::units::display::stated;
 
-/// A result that a condition reads: of which procedure, and its name.
+/// A result that a condition reads: its procedure, and its name.
 type Read<'a> = (&'a ProcedureRecord, &'static str);
 
-/// The outcome of a condition; inconclusive, with the reason, where its results decide nothing.
+/// The outcome of a condition; inconclusive, with the reason, if its results are not conclusive.
 pub(super) fn unless_undecided(
     condition: &Condition,
     rule: DecisionRule,
@@ -57,7 +58,7 @@ pub(super) fn unless_undecided(
     }
 }
 
-/// A procedure that did not run to its end: its peaks may not have been reached.
+/// A procedure that is not complete: its peaks may not have been reached.
 fn cut_short(read: &[Read<'_>]) -> Option<String> {
     let (procedure, _) = read.iter().find(|(procedure, _)| !procedure.complete)?;
     Some(format!("{} did not run to its end", procedure.name))
@@ -74,7 +75,7 @@ const BESIDE_THE_BALANCE: [&str; 7] = [
     "levels",
 ];
 
-/// An energy balance that is off by more than half of the input: the computed motion is not that of the specimen.
+/// An energy balance error of more than half of the input: the computed motion is not that of the specimen.
 fn unbalanced(read: &[Read<'_>]) -> Option<String> {
     let told =
         |(procedure, result): &&Read<'_>| !BESIDE_THE_BALANCE.contains(result) && off(procedure);
@@ -97,7 +98,7 @@ fn above_critical(read: &[Read<'_>]) -> Option<String> {
     read.iter().find_map(of)
 }
 
-/// The remark on a time step \[s\] above the critical one \[s\].
+/// The observation on a time step \[s\] above the critical one \[s\].
 pub(super) fn longer_than_critical(name: &str, step: f64, critical: f64) -> String {
     let (step, critical) = (
         stated(step, Dimension::TIME),
@@ -106,7 +107,7 @@ pub(super) fn longer_than_critical(name: &str, step: f64, critical: f64) -> Stri
     format!("the time step of {name}, {step}, is above the critical one, {critical} (W701)")
 }
 
-/// Whether the energy balance of a procedure, or of one of its impacts, is off by more than its bound.
+/// Whether the energy balance error of a procedure, or of one of its impacts, exceeds its bound.
 fn off(procedure: &ProcedureRecord) -> bool {
     let found = |name| {
         procedure
@@ -123,7 +124,7 @@ fn off(procedure: &ProcedureRecord) -> bool {
     }
 }
 
-/// Results from readings whose zero drifted farther than the rig allows.
+/// Results from readings whose zero drift exceeds the allowed value.
 fn drifted(read: &[Read<'_>], record: &Record) -> Option<String> {
     let reason = |(procedure, result): &Read<'_>| {
         beyond(record, |beyond| {

@@ -1,6 +1,6 @@
-//! What was still growing as a blow ended: a largest value that is no peak. In: the steps of a blow, or of a row of blows, and a
-//! condition that reads what they came to. Out: why the condition is not decided by them, where it would come out otherwise had
-//! they grown on. It judges no condition by itself, and knows no plan.
+//! Results that were still growing when an impact ended: the largest value is not a peak. In: the steps of an impact, or of an impact
+//! series, and a condition that reads their results. Out: the reason why the condition is inconclusive, if further growth would change
+//! its verdict. It assesses no condition alone, and does not read the plan.
 
 use super::ConditionOutcome;
 use super::condition::assess_condition;
@@ -9,16 +9,16 @@ use crate::plan::{Condition, DecisionRule};
 use crate::record::{Blow, EscalateHistory, FloorStep, Floors, History, ImpactHistory};
 use crate::uncertainty::{Contribution, Source};
 
-/// Of one result, what of it may have grown on, and why.
+/// The part of one result that may have grown further, and the reason.
 #[derive(Clone, Debug, PartialEq)]
 struct Growth {
-    /// Of a list; the one of a number.
+    /// The entries of a list; entry 0 for a number.
     entries: Vec<usize>,
     why: String,
 }
 
-/// Why a condition is not decided: one of the results it reads was still growing, and the verdict hangs on how far it would have
-/// gone. That a largest value keeps below a bound proves nothing then; that it is past one does.
+/// The reason why a condition is inconclusive: a result that it reads was still growing, and the verdict depends on the further growth.
+/// Such a largest value cannot show that a bound is satisfied; it can show that a bound is exceeded.
 pub(super) fn undecided<'a>(
     condition: &Condition,
     rule: DecisionRule,
@@ -35,7 +35,7 @@ pub(super) fn undecided<'a>(
     })
 }
 
-/// The same of a condition on the blow of a row that is just over, which reads its results as those of the procedure `own`.
+/// The same for a condition on the last impact of a series. It reads the results of that impact as those of the procedure `own`.
 pub(super) fn undecided_by(
     condition: &Condition,
     rule: DecisionRule,
@@ -49,8 +49,8 @@ pub(super) fn undecided_by(
     })
 }
 
-/// The verdict must stay as it is whatever the results that were still growing come to: up to 10¹² times as much, half a decade
-/// at a time, so that also a condition with a window is seen to change.
+/// Whether the verdict depends on the further growth. The growing results are increased up to 10¹² times, in steps of half a decade. The
+/// steps also detect a change of a condition with a window.
 fn hangs_on(
     condition: &Condition,
     rule: DecisionRule,
@@ -89,15 +89,15 @@ fn hangs_on(
     (-12..=24).any(changes).then(|| why.clone())
 }
 
-/// Results as they would be, had what was growing grown on.
+/// The results after further growth.
 struct Grown<'a> {
     results: &'a dyn Results,
     growing: &'a [(ResultReference, Growth)],
-    /// As a share of itself.
+    /// As a fraction of the result.
     by: f64,
 }
 
-/// Less than what anything in a test is worth, SI: what is 0 may grow, too.
+/// Smaller than any relevant value of a test, SI: a result of 0 may grow, too.
 const LEAST: f64 = 1e-9;
 
 impl Results for Grown<'_> {
@@ -139,7 +139,7 @@ impl Results for Grown<'_> {
     }
 }
 
-/// The steps of a blow: of a frame with those of its floors.
+/// The steps of an impact; for a frame also the steps of its floors.
 #[derive(Clone, Copy)]
 struct Steps<'a> {
     impact: &'a ImpactHistory,
@@ -155,7 +155,7 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// Of a result of an impact. A run that goes on past a largest value has seen a peak, whatever comes later.
+/// Growth of a result of an impact. A run that continues past a largest value has reached a peak, independent of later values.
 fn of_blow(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
     let number = |growing: bool, why: String| {
         growing.then_some(Growth {
@@ -183,7 +183,7 @@ fn of_blow(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Opt
             entries,
         })
     };
-    // As long as the striker has not stood still, the largest push may be to come, also where the structure swings back meanwhile.
+    // Until the striker has stopped, the largest force may still come, even if the structure moves back meanwhile.
     let under_way = impact.steps.len() > 1
         && impact.steps[1..]
             .iter()
@@ -242,7 +242,7 @@ fn of_blow(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Opt
     }
 }
 
-/// Results that a striker under way makes larger.
+/// Results that a moving striker can still increase.
 const PUSHED: [&str; 6] = [
     "max_displacement",
     "time_of_max_displacement",
@@ -258,7 +258,7 @@ fn drift_rate(floor: &FloorStep) -> Vec<f64> {
     rate
 }
 
-/// Entries whose size was the largest at the last step, and still on its way out.
+/// Entries whose absolute value was the largest at the last step and was still increasing.
 fn growing_entries(
     floors: &[FloorStep],
     of: fn(&FloorStep) -> Vec<f64>,
@@ -278,7 +278,8 @@ fn growing_entries(
     growing
 }
 
-/// Of a result of a blow as the condition of its row reads it: where it is left after a blow that was cut is no more its own.
+/// Growth of a result of an impact, read by the condition of its series. If the impact ended before its peak, its final position is not
+/// determined either.
 fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
     match result {
         "residual_displacement" | "final_displacement" => of_blow(steps, "max_displacement", name),
@@ -294,7 +295,8 @@ fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
     }
 }
 
-/// Of a result of a row of blows: what one of its blows left open, and, of a row that one of them ended undecided, how far it goes.
+/// Growth of a result of an impact series: results that one impact leaves undetermined. If an inconclusive impact ended the series, this
+/// includes the last energy that passed.
 fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth> {
     let blows = || history.blows.iter().enumerate();
     let of = |(index, blow): (usize, &Blow), own: &str| {
@@ -308,7 +310,7 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
         entries: vec![0],
         ..growth
     };
-    // A list with an entry a blow.
+    // A list with one entry per impact.
     let by_blow = |own: &str| {
         let found: Vec<(usize, Growth)> = blows()
             .filter_map(|(index, blow)| Some((index, of((index, blow), own)?)))

@@ -1,5 +1,5 @@
-//! `psd compare RUN RUN…`: runs side by side. In: run folders, read from their records, or folders of accepted results. Out:
-//! tables on standard output, and with `--out` a page, a CSV and the figures. It opens no rig and changes no run.
+//! `psd compare RUN RUN…`: comparison of runs. In: run folders, read from their run logs, or folders of accepted results. Out: tables on
+//! standard output; with `--out` also a page, a CSV and the figures. It opens no rig and changes no run.
 
 use std::path::Path;
 
@@ -69,7 +69,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {
     Ok(Exit::Met)
 }
 
-/// One run, from its record where it has one.
+/// One run, from its run log where it has one.
 fn side(run: &Path) -> Result<Side, Failure> {
     let name = run.display().to_string();
     if journal_of(run).exists() {

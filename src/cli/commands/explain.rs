@@ -33,7 +33,7 @@ fn unknown(written: &str, wanted: &str) -> Failure {
     Failure::command_line(format!("no diagnostic has the code `{written}`")).help(help)
 }
 
-/// A page with its heading and code blocks coloured where colour is on.
+/// A page with its heading and code blocks, coloured if colour is on.
 fn page(code: Code, settings: Settings) -> String {
     let mut text = String::new();
     for line in code.page().trim_end().lines() {

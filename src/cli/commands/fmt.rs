@@ -18,7 +18,7 @@ use crate::text::diagnostic::excerpt::one_line;
 use crate::text::diagnostic::render::render_all;
 use crate::text::source::Sources;
 
-/// Formats every file named and every plan under every folder named.
+/// Formats every named file and every plan under every named folder.
 pub fn fmt(arguments: &FmtArguments, settings: Settings) -> Result<Exit, Failure> {
     let mut exit = Exit::Met;
     for path in plans(&arguments.paths)? {
@@ -66,7 +66,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     Ok(Exit::Met)
 }
 
-/// The canonical text. None where the file has syntax errors, which are printed.
+/// The canonical text. None if the file has syntax errors, which are printed.
 fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
     let mut sources = Sources::default();
     let file = sources.add(name_of(path), text);
@@ -101,8 +101,7 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     })
 }
 
-/// The files named, and every `.psd` file under the folders named, in order of name. Links to folders and hidden
-/// folders are not entered.
+/// The named files, and every `.psd` file under the named folders, sorted by name. Links to folders and hidden folders are not entered.
 fn plans(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for path in paths {

@@ -1,6 +1,6 @@
-//! `psd issue RUN` and `psd report RUN --amend`: a report that states particulars known only after the test, or that replaces
-//! another report. In: a run folder that verifies, the particulars, the day, the issuer and the reason. Out: a new folder beside
-//! it with the same record; the original folder is not changed. No measured number changes.
+//! `psd issue RUN` and `psd report RUN --amend`: a report that states particulars known only after the test, or that replaces another
+//! report. In: a run folder that verifies, the particulars, the day, the issuer and the reason. Out: a new folder beside it with the same
+//! run log. The original folder and all measured numbers are not changed.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ use crate::files::recorded_run::JOURNAL;
 use crate::report::OutputFile;
 use crate::text::diagnostic::excerpt::one_line;
 
-/// The largest file of particulars, bytes.
+/// The largest file of particulars \[bytes\].
 const PARTICULARS_BYTES: u64 = 1 << 20;
 
 /// The issue of a report.
@@ -158,7 +158,7 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     Ok(Exit::Met)
 }
 
-/// A report is replaced only once: of two replacements beside each other none would be the valid one.
+/// A report can be replaced only once. With two replacements, neither would be the valid one.
 fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), Failure> {
     let run = run
         .canonicalize()

@@ -1,4 +1,4 @@
-//! A run on the rig that the plan names, with its run log. In: a checked plan. Out: the run as it was recorded.
+//! A run on the rig that the plan names, with its run log. In: a checked plan. Out: the recorded run.
 
 use super::resume;
 use crate::cli::args::RunArguments;
@@ -17,17 +17,17 @@ use crate::rig::{StopRequest, virtual_rig};
 use crate::run::replay;
 use crate::run::replay::Recorded;
 
-/// A run that came to an end, one way or another.
+/// A run that has ended, with any outcome.
 pub(crate) struct Ran {
     pub(crate) folder: RunFolder,
     pub(crate) provenance: Provenance,
     pub(crate) recorded: Recorded,
-    /// Why the person at the held rig wants the run to go on.
+    /// The operator's reason to resume the held run.
     pub(crate) resume: Option<String>,
 }
 
 impl Ran {
-    /// Goes on with a run that was held, where the person at it wants that; None: it ends here.
+    /// Resumes a held run if the operator wants it; None: the run ends here.
     pub(crate) fn goes_on(
         &self,
         plan: &Plan,
@@ -48,7 +48,7 @@ impl Ran {
     }
 }
 
-/// Runs the plan on the rig that it names, and keeps the record.
+/// Runs the plan on the rig that it names, and keeps the run log.
 pub(crate) fn on_its_rig(
     plan: &Plan,
     arguments: &RunArguments,
@@ -61,7 +61,7 @@ pub(crate) fn on_its_rig(
     }
 }
 
-/// Nothing is read of the machine, and no time passes.
+/// No data of the machine are read, and no real time passes.
 fn on_a_virtual_rig(
     plan: &Plan,
     arguments: &RunArguments,
@@ -96,7 +96,7 @@ fn on_a_virtual_rig(
     })
 }
 
-/// The rig is asked who it is before there is a folder: a rig that does not answer leaves nothing behind.
+/// The rig identifies itself before the folder is created. A rig that does not answer leaves no folder.
 fn on_a_real_rig(
     plan: &Plan,
     arguments: &RunArguments,

@@ -1,5 +1,5 @@
-//! The prediction of a whole run from the record of its rehearsal. In: the rehearsed part of a plan and its record. Out: the prediction,
-//! from a dry run on a virtual specimen as it was measured.
+//! The prediction of a whole run from the run log of its low-level check run. In: the checked part of a plan and its record. Out: the
+//! prediction, from a dry run on a simulated specimen with the measured properties.
 
 use super::explain_plan::DryRun;
 use crate::plan::{Behaviour, Frame, Plan};
@@ -11,8 +11,8 @@ use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// What the record of a rehearsal foretells of the whole run, by no more than it: None where it is none, or did not come to its
-/// end.
+/// The prediction of the whole run from the record of its low-level check run alone. None if the record is of a different kind, or if the
+/// check run is not complete.
 pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
     let plan = part
         .rehearses
@@ -22,7 +22,7 @@ pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
     Some(DryRun::on(plan, &stand_in, told(plan, &stand_in)).prediction())
 }
 
-/// On what it is predicted.
+/// Description of the rig and specimen of the prediction.
 pub fn told(plan: &Plan, stand_in: &Plan) -> String {
     let specimen = VirtualRig::specimen_of(stand_in);
     let storeys = specimen

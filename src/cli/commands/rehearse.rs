@@ -1,6 +1,6 @@
-//! `psd run --rehearse`: pre-test check and leading stiffness ramps on the rig, recorded; then the rest on a virtual specimen
-//! with the measured stiffness. In: a checked plan. Out: a run folder marked as a rehearsal, and the predicted margin of the
-//! whole run to each limit.
+//! `psd run --rehearse`: the low-level check run. It makes the pre-test check and the leading stiffness ramps on the rig, with a run log.
+//! The rest runs on a simulated specimen with the measured stiffness. In: a checked plan. Out: a run folder marked as a rehearsal, and
+//! the predicted margin of the whole run to each limit.
 
 use super::explain_plan::DryRun;
 use super::on_rig::{Ran, on_its_rig};
@@ -14,7 +14,7 @@ use crate::cli::settings::Settings;
 use crate::plan::Plan;
 use crate::run::rehearsal;
 
-/// Measures and predicts; the exit code states whether every limit would be kept.
+/// Measures and predicts; the exit code states whether every limit is predicted to be satisfied.
 pub fn rehearse(
     plan: &Plan,
     arguments: &RunArguments,

@@ -12,7 +12,7 @@ use crate::evidence::PlayedBack;
 use crate::report;
 use crate::report::Run;
 
-/// Tells the verdict of a record played back, and writes its results.
+/// Prints the verdict of a replayed run, and writes its results.
 pub fn finish_replayed(
     folder: &Path,
     played: &PlayedBack,

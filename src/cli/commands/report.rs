@@ -1,7 +1,7 @@
-//! `psd report RUN`: the results again, from the record alone. In: the folder of a run. Out: every file the run wrote, byte
-//! for byte, into a folder that has none, or not all of them, with a copy of the record where that is another folder; with an amendment, a report
-//! of its own beside the one it takes the place of. It opens no rig, changes no record and overwrites nothing; of a run that is
-//! still going on it makes nothing.
+//! `psd report RUN`: regenerates the results from the run log alone. In: the folder of a run. Out: every file of the run, bit-identical,
+//! in a folder that has no results or incomplete ones. A different folder also gets a copy of the run log. An amendment gives a separate
+//! report beside the one it replaces. It opens no rig, changes no run log and overwrites nothing. It makes no results of a run that is
+//! still in progress.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, check_consistency
 use crate::files::failure::plain;
 use crate::record::journal::FileStorage;
 
-/// Makes the results of one run.
+/// Regenerates the results of one run.
 pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
     if arguments.amend {
         return amend(arguments, settings);
@@ -65,7 +65,7 @@ fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
     std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
 }
 
-/// The run folder itself, if its results did not come to their end: the manifest is written last.
+/// The run folder itself, if its results are incomplete: the manifest is written last.
 fn without_results(run: &Path) -> Result<PathBuf, Failure> {
     if run.join(MANIFEST).exists() {
         return Err(

@@ -1,6 +1,6 @@
-//! `psd resume RUN`: goes on with a run on a real rig. In: the folder of a run that was stopped or cut off, and who takes
-//! it upon them. Out: the same run, to its end. The record is played before a port is opened. Nothing moves before record, plan,
-//! program and rig are known to be those of the run, and the target in doubt is settled by asking the rig.
+//! `psd resume RUN`: resumes a run on a real rig. In: the folder of a run that was stopped or interrupted, and the operator who is
+//! responsible. Out: the same run, complete. The run log is replayed before a port is opened. Nothing moves until run log, plan, program
+//! and rig are confirmed as those of the run. The rig must also have reported whether it reached the last target.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ use crate::run::replay::{
     ResumeBody, RigBody,
 };
 
-/// Goes on with one run.
+/// Resumes one run.
 pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
     for (what, text) in [
         ("operator", &arguments.operator),
@@ -93,7 +93,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         operator: Some(arguments.operator.clone()),
     };
     let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
-    // Its zero is where it was when the run began, wherever the rig stands now.
+    // The zero is that of the start of the run; the present position of the rig does not change it.
     let datum = read
         .played
         .rig
@@ -135,7 +135,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
             &mut watcher.borrow_mut(),
         )?;
 
-        // From here on the run goes on: until now the record has not changed.
+        // The run resumes here: until now the run log has not changed.
         *put_aside = storage.truncate_to(read.recovered.whole)?;
         let mut journal = Journal::reopen(
             Box::new(storage),
@@ -194,7 +194,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         _ => None,
     };
     watcher.finish();
-    // Nobody speaks with the rig while the results are written: it is left as it stands.
+    // psd does not communicate with the rig while it writes the results: the rig keeps its state.
     drop((connected, watcher));
     let recorded = recorded?;
     if let Some(torn) = torn {
@@ -219,7 +219,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     Ok(exit)
 }
 
-/// The plan and the program that hold from here on; another than the record's needs an amendment.
+/// The plan and the program that apply from here on. If they differ from those of the run log, an amendment is required.
 type Held = (Plan, Provenance, Option<(AmendBody, Vec<String>)>);
 
 fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Failure> {
@@ -315,7 +315,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
     ))
 }
 
-/// What the record says it was measured with; of version 1, what its plan and its rig say.
+/// The equipment that the run log states; for version 1, the equipment that plan and rig state.
 fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
     if let Some(told) = &read.played.header.equipment {
         return Ok(told.clone());
@@ -363,7 +363,7 @@ fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {
         .collect()
 }
 
-/// Asks the rig, without moving it, what became of the last target; and a person, whether it may move.
+/// Reads from the rig, without a move, whether it reached the last target. Then asks the operator whether it may move.
 fn settle(
     arguments: &ResumeArguments,
     plan: &Plan,
@@ -400,7 +400,7 @@ fn settle(
     })
 }
 
-/// What the person who resumes the run takes upon themselves.
+/// The statements for which the operator who resumes the run is responsible.
 fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
     let said = [
         (arguments.same_power_up, Assurance::SamePowerUp),
@@ -414,7 +414,7 @@ fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
         .collect()
 }
 
-/// The results of the interrupted run are kept, beside those to come.
+/// Keeps the results of the interrupted run, beside the future ones.
 fn put_results_aside(run: &Path) -> Result<(), Failure> {
     let failed = |path: PathBuf| move |error: std::io::Error| Failure::file(path, plain(&error));
     let entries = std::fs::read_dir(run).map_err(failed(run.to_owned()))?;
@@ -437,8 +437,8 @@ fn put_results_aside(run: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Goes on with the run, as `psd resume` does, for the person who has looked at the rig all the time. None: it was refused, and the
-/// record is what it was.
+/// Resumes the run as `psd resume` does, for the operator who observed the rig without a break. None: the operator refused, and the run
+/// log is unchanged.
 pub fn go_on(
     folder: &Path,
     operator: &str,

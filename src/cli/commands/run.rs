@@ -1,5 +1,4 @@
-//! `psd run`: check → run → verdict → files. Nothing moves while the plan has an error, and nothing moves before the record
-//! is open.
+//! `psd run`: check → run → verdict → files. Nothing moves while the plan has an error, and nothing moves before the run log is open.
 
 use super::on_rig::{Ran, on_its_rig};
 use super::rehearse::rehearse;

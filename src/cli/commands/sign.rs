@@ -1,5 +1,5 @@
-//! `psd sign RUN --key FILE` and `psd keygen FILE`: the signature of a run folder. In: a folder that verifies, and a key
-//! outside of it. Out: one signature file over its manifest. Overwrites nothing.
+//! `psd sign RUN --key FILE` and `psd keygen FILE`: the signature of a run folder. In: a folder that verifies, and a key outside it. Out:
+//! one signature file over its manifest. It overwrites nothing.
 
 use std::path::Path;
 

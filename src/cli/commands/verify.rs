@@ -1,6 +1,5 @@
-//! `psd verify RUN`: the record is whole and in order; the run, done again from the recorded readings, asks for the very
-//! same targets and gives the very same results; every file of the folder is the one its manifest names; and who has
-//! signed it. Moves nothing, writes nothing.
+//! `psd verify RUN`. The checks: the run log is complete and in order; its replay gives the same targets and the same results; every file
+//! of the folder matches the manifest; and the signatures. It moves nothing and writes nothing.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -19,7 +18,7 @@ use crate::text::diagnostic::excerpt::one_line;
 pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, Failure> {
     let _still = match FileStorage::keep_still(&journal_of(&arguments.run)) {
         Err(fault @ FileFault::InUse { .. }) => return Err(fault.into()),
-        // Other errors are reported below; a file system may have no locks.
+        // Other errors are reported below; some file systems have no locks.
         still => still.ok(),
     };
     let mut folder = Folder::read(&arguments.run)?;
@@ -56,7 +55,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
     })
 }
 
-/// An error where the run does not verify: it can be neither signed nor amended.
+/// An error if the run does not verify: it can be neither signed nor amended.
 pub fn refuse_unproven(run: &Path, findings: &[Finding]) -> Result<(), Failure> {
     match findings.iter().find(|finding| !finding.sound) {
         Some(finding) => Err(Failure::file(

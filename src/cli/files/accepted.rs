@@ -1,5 +1,5 @@
-//! The results that a plan is held against. In: the plan's place, and the files of a run. Out: the folder
-//! `reports/NAME`, beside the folder of `plans/NAME.psd`, read or replaced as a whole; no other folder is touched.
+//! The accepted results of a plan. In: the path of the plan, and the files of a run. Out: the folder `reports/NAME`, beside the folder of
+//! `plans/NAME.psd`, read or replaced as a whole. No other folder is changed.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use crate::files::failure::plain;
 use crate::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
 use crate::report::OutputFile;
 
-/// Where a plan's blessed results are kept.
+/// The folder of the accepted results of a plan.
 #[derive(Clone, Debug)]
 pub struct AcceptedFolder {
     reports: PathBuf,
@@ -24,7 +24,7 @@ impl AcceptedFolder {
             .map_err(|error| Failure::file(plan, plain(&error)))?;
         match place.parent().and_then(Path::parent) {
             Some(above) => {
-                // As the person would write it, where that is the same place.
+                // As the operator would write it, if that is the same path.
                 let typed = plan
                     .parent()
                     .and_then(Path::parent)
@@ -71,13 +71,13 @@ impl AcceptedFolder {
         self.reports.join(&self.name)
     }
 
-    /// What is compared of the blessed results; empty where there are none.
+    /// The compared part of the accepted results; empty if there are none.
     pub fn truth(&self) -> Result<Truth, Failure> {
         truth_in(&self.path())
     }
 
-    /// Accepts the files of a run. If every number is within tolerance and no file came or went, nothing is written, unless
-    /// `anew` asks for it. Rendered pages are written with `pages`, or where the folder already has some.
+    /// Accepts the files of a run. If every number is within tolerance and the list of files is the same, nothing is written, unless
+    /// `anew` requests it. Rendered pages are written with `pages`, or if the folder already has some.
     pub fn accept(
         &self,
         files: &[OutputFile],
@@ -115,7 +115,7 @@ impl AcceptedFolder {
         Ok(Accepted::Changed(found))
     }
 
-    /// Replaces the files of the folder. The old ones go only when the new ones are written.
+    /// Replaces the files of the folder. The old files are removed only after the new ones are written.
     fn replace(&self, files: &[OutputFile]) -> Result<(), Failure> {
         let failed = |path: &Path, error: &std::io::Error| Failure::file(path, plain(error));
         std::fs::create_dir_all(&self.reports).map_err(|error| failed(&self.reports, &error))?;
@@ -140,7 +140,7 @@ impl AcceptedFolder {
     }
 }
 
-/// What is compared of a folder of results; empty where there is none.
+/// The compared part of a folder of results; empty if there is none.
 pub fn truth_in(folder: &Path) -> Result<Truth, Failure> {
     let mut files = Vec::new();
     for name in names(folder)?.into_iter().filter(|name| Truth::holds(name)) {
@@ -152,7 +152,7 @@ pub fn truth_in(folder: &Path) -> Result<Truth, Failure> {
     Ok(Truth::of(files))
 }
 
-/// What is compared of the files of a run.
+/// The compared part of the files of a run.
 pub fn truth_of(files: &[OutputFile]) -> Truth {
     let text = |file: &OutputFile| {
         (
@@ -168,7 +168,7 @@ pub fn truth_of(files: &[OutputFile]) -> Truth {
     )
 }
 
-/// Every file of a folder and of the folders in it, by its path, in order; none of a folder that is not there.
+/// The paths of all files of a folder and of its subfolders, sorted; empty if the folder does not exist.
 fn names(folder: &Path) -> Result<Vec<String>, Failure> {
     let mut found = Vec::new();
     let mut open = vec![(folder.to_owned(), String::new())];
@@ -194,7 +194,7 @@ fn names(folder: &Path) -> Result<Vec<String>, Failure> {
     Ok(found)
 }
 
-/// Removes a folder, or the link or file in its place.
+/// Removes a folder, or the link or file of that name.
 pub fn remove(path: &Path) -> std::io::Result<()> {
     match path.symlink_metadata() {
         Ok(metadata) if metadata.is_dir() => std::fs::remove_dir_all(path),

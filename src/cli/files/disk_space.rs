@@ -9,7 +9,7 @@ use crate::rig::safety::failpoint::{Guarding, on};
 /// Compares the free space of a disk \[bytes\] with [`LEAST_FREE_BYTES`].
 ///
 /// # Errors
-/// It is less.
+/// If `free` is less.
 pub fn compare(folder: &Path, free: u64) -> Result<(), DiskSpaceFault> {
     if free >= LEAST_FREE_BYTES || !on(Guarding::DiskSpace) {
         Ok(())
@@ -33,7 +33,7 @@ mod tests {
     use crate::tests::testing::{elastic_plan, ramp};
     use std::io;
 
-    /// A disk with this free space, bytes.
+    /// A disk with this free space \[bytes\].
     struct Small(usize);
 
     impl Storage for Small {

@@ -1,5 +1,5 @@
-//! The end of a run: verdict, results, manifest. In: the recorded run. Out: the files of the run folder. The record is complete
-//! there before any result is written.
+//! The end of a run: verdict, results, manifest. In: the recorded run. Out: the files of the run folder. The run log is complete before
+//! any result is written.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -112,8 +112,8 @@ fn rig_state(folder: &Path, plan: &Plan, record: &Record, settings: Settings) ->
     text
 }
 
-/// Writes the results that `make` makes, and a manifest of them and of what lies beside them, by path and digest. The manifest is the
-/// last: results without one are none that came to their end.
+/// Writes the results of `make`, and a manifest of them and of the other files there, by path and digest. The manifest is written last:
+/// results without a manifest are incomplete.
 pub fn write_made(
     mut sink: FolderSink<'_>,
     beside: &[FileDigest],
@@ -140,9 +140,9 @@ pub fn summary(folder: &Path, record: &Record) -> Result<String, Failure> {
     std::fs::read_to_string(&path).map_err(|error| Failure::file(&path, plain(&error)))
 }
 
-/// The provenance as read back from the record of a real rig, so that a report made later states the same. Where the record could not
-/// be kept and cannot be read, it is the provenance at the start, without the head of the record. A record that was kept but differs
-/// from the written one was changed by another program: it is an error, and no results are made.
+/// The provenance as read back from the run log of a real rig, so that a later report states the same. If the run log could not be kept
+/// and cannot be read, it is the provenance at the start, without the head hash. A run log that was kept but differs from the written one
+/// was changed by another program: this is an error, and no results are made.
 fn as_recorded(
     folder: &Path,
     plan: &Plan,
@@ -174,7 +174,7 @@ fn as_recorded(
     Ok(read.provenance)
 }
 
-/// With the number of the report, where the record gives one.
+/// Adds the number of the report, if the run log gives one.
 pub fn numbered(provenance: Provenance, plan: &Plan, recorded: &Recorded) -> Provenance {
     let head = recorded.sealed.as_ref().map(|(_, head)| head.as_str());
     let ended = recorded.record.outcome == Outcome::Completed;

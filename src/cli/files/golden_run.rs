@@ -1,6 +1,6 @@
-//! The run of a plan for a comparison with its accepted results, or to accept them. In: the plan's file. Out: every file of
-//! the run, or the diagnostics where the plan has errors. The rig is simulated, every question is answered as by `--yes`,
-//! and nothing is kept: the same plan gives the same files everywhere.
+//! The run of a plan for a comparison with its accepted results, or to accept them. In: the plan's file. Out: every file of the run, or
+//! the diagnostics if the plan has errors. The rig is simulated, every question is answered as by `--yes`, and no run log is kept: the
+//! same plan gives the same files everywhere.
 
 use std::path::Path;
 
@@ -25,9 +25,9 @@ pub struct Trial {
     /// All files, or only those that are compared.
     pub files: Vec<OutputFile>,
     pub tolerances: Tolerances,
-    /// Verdict such as `pass`; None where the plan has errors.
+    /// Verdict such as `pass`; None if the plan has errors.
     pub verdict: Option<&'static str>,
-    /// Outcome of the run; None where the plan has errors.
+    /// Outcome of the run; None if the plan has errors.
     pub ended: Option<Outcome>,
 }
 
@@ -109,7 +109,7 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     })
 }
 
-/// Whether the results of this run can be accepted: only those of an unchanged plan on its virtual rig.
+/// Whether the results of this run can be accepted: only those of an unchanged plan on its simulated rig.
 pub fn is_as_written(plan: &Plan, settings: &PlanSettings) -> bool {
     plan.rig.link.as_virtual().is_some()
         && settings.set.is_empty()

@@ -72,7 +72,7 @@ pub fn read_plan(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// The reason why a file is not a text, and the position of the byte where there is one.
+/// The reason why a file is not a text, and the position of the invalid byte if there is one.
 struct Unread {
     reason: String,
     at: Option<Position>,
@@ -110,7 +110,7 @@ fn read(path: &Path) -> Result<String, Unread> {
     })
 }
 
-/// Line and column, from 1, of the byte after these.
+/// Line and column, from 1, of the byte after `before`.
 fn place(before: &[u8]) -> (usize, usize) {
     let line = before
         .rsplit(|byte| *byte == b'\n')

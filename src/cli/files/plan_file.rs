@@ -18,7 +18,7 @@ pub fn open(path: &Path, settings: &PlanSettings) -> Result<Checked, Failure> {
     open_to_run(path, settings, false)
 }
 
-/// [`open`] before a run; `unattended` where no operator is named and none can be asked.
+/// [`open`] before a run; `unattended` if no operator is named and none can be asked.
 pub fn open_to_run(
     path: &Path,
     settings: &PlanSettings,

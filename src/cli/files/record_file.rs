@@ -1,4 +1,4 @@
-//! The run log of a run that is about to begin. In: a plan, the rig that answered. Out: an open run log.
+//! The run log of a run that is about to begin. In: a plan, the connected rig. Out: an open run log.
 
 use std::path::Path;
 
@@ -86,7 +86,7 @@ pub fn begin(folder: &Path, plan: &Plan, header: &Header) -> Result<Journal, Fai
     begin_in(Box::new(storage), plan, header)
 }
 
-/// A record that is not kept. The run is bit-identical with a recorded one.
+/// A run log that is not kept. The run is bit-identical with a recorded one.
 pub fn begin_nowhere(plan: &Plan, header: &Header) -> Result<Journal, Failure> {
     begin_in(Box::new(Nowhere), plan, header)
 }

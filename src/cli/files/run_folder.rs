@@ -84,13 +84,13 @@ impl RunFolder {
     }
 }
 
-/// Creates one file under `folder`, which must not have it.
+/// Creates one file under `folder`, in which it must not exist.
 pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
     let path = inside(folder, &file.path)?;
     written(&path, &mut |out| out.write_all(&file.bytes)).map_err(|error| unwritten(&path, &error))
 }
 
-/// The error of a file that was not written; with advice where one exists already.
+/// The error of a file that was not written; with advice if one exists already.
 fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
     match error.kind() {
         ErrorKind::AlreadyExists => Failure::file(path, "is there already: somebody else wrote it")
@@ -131,7 +131,7 @@ fn written(
         .sync_all()
 }
 
-/// Results are readable by their owner only, as the record is.
+/// Results are readable by their owner only, as the run log is.
 const MODE: u32 = 0o600;
 
 /// Bytes that are written to the disk together.
@@ -170,8 +170,8 @@ impl<'a> FolderSink<'a> {
         self.folder
     }
 
-    /// The error of an incomplete run folder. Where a file could not be made, the files before it are deleted: the results can be
-    /// made again.
+    /// The error of an incomplete run folder. If a file could not be made, the files before it are deleted: the results can be made
+    /// again.
     pub fn failed(self, error: OutputError) -> Failure {
         self.failure.unwrap_or_else(|| {
             for path in &self.created {

@@ -60,7 +60,7 @@ impl Lines {
     }
 
     fn begin_piece(&self, piece: &OutputPiece) {
-        // Fails only where the thread has ended.
+        // Fails only if the thread has ended.
         let _ = self.pieces.as_ref().map(|pieces| pieces.send(*piece));
     }
 }
@@ -133,7 +133,7 @@ impl OutputSink for ProgressSink<'_> {
     }
 }
 
-/// The line in a pipe, with the time since the first piece where it is a second or more.
+/// The line in a pipe, with the time since the first piece if it is a second or more.
 fn line(piece: &OutputPiece, since: Duration) -> String {
     let OutputPiece {
         part,
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
     use crate::report::OutputPart;
 
-    /// The first piece takes long, the second follows immediately, the third is of another part.
+    /// The first piece takes a long time, the second follows immediately, the third is of a different part.
     #[test]
     fn a_long_piece_is_printed_repeatedly() {
         let (send, pieces) = channel();

@@ -1,5 +1,5 @@
-//! The release of a rig that a run is to go on with. In: what was found, and what would be sent first. Out: who lets it move, or that
-//! nobody does. Nothing has moved by then, and the record has not changed.
+//! The operator's permission to move the rig when a run is resumed. In: the reading of the rig, and the first command. Out: who permits
+//! the motion, or no permission. Nothing has moved yet, and the run log has not changed.
 
 use super::watch::Watcher;
 use crate::cli::exit::Failure;
@@ -10,10 +10,10 @@ use crate::run::{Inspection, Motion, Observer as _};
 use crate::units::Dimension;
 use crate::units::display::{plain, readable};
 
-/// How long the rig is left alone between two looks at whether the person has decided, s.
+/// Time between two checks for the operator's decision \[s\]. The rig is not polled in between.
 const BREATH: f64 = 0.05;
 
-/// Asks whether the rig may move again; gives who said so, with which words.
+/// Asks whether the rig may move again; returns who permitted it, and the text of the answer.
 pub fn ask(
     plan: &Plan,
     link: &RealLink,
@@ -27,7 +27,7 @@ pub fn ask(
     loop {
         match watcher.release(&question, &motion) {
             Inspection::Stop { reason, .. } => return Err(refused(watcher, reason)),
-            // A request to stop outranks an answer.
+            // A stop request has priority over an answer.
             _ if watcher.stop_requested() => {
                 return Err(refused(watcher, "stopped on request".to_owned()));
             }
@@ -36,7 +36,7 @@ pub fn ask(
                 return Ok(note.map_or_else(|| by.clone(), |note| format!("{by}: {note}")));
             }
             Inspection::Wait => match rig.pause(BREATH) {
-                // The request to hold stays: the next look refuses.
+                // The hold request remains set: the next check refuses.
                 Ok(()) | Err(RigFault::Interrupted) => {}
                 Err(fault) => {
                     watcher.finish();
@@ -52,7 +52,7 @@ fn refused(watcher: &mut Watcher, reason: String) -> Failure {
     Failure::NotReleased { reason }
 }
 
-/// What was found, what would move, and how.
+/// The present reading, the next motion, and how the rig moves.
 fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
     format!(
         "resume on rig {}: {}",

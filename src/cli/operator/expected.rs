@@ -1,11 +1,11 @@
-//! What a run is expected to do to its rig, for who releases it: how far, how hard, how fast, how long. In: a plan. Out: the extent of a
-//! dry run on an ideal copy of the specimen, and its steps. It moves nothing.
+//! The expected demand of a run on its rig, for the operator who permits the motion: displacement, force, speed, duration. In: a plan.
+//! Out: the extent of a dry run on an ideal copy of the specimen, and its steps. It moves nothing.
 
 use crate::cli::commands::explain_plan::dry_rig::{Reach, Watched};
 use crate::plan::{Interval, Link, Plan, VirtualLink};
 use crate::run::Extent;
 
-/// The extent of the whole plan, and its number of steps. Where only the rig knows how the specimen bends, nothing is known.
+/// The extent of the whole plan, and its number of steps. Both are unknown if only the real rig has the specimen.
 pub fn of(plan: &Plan) -> (Extent, u64) {
     let unknown = plan
         .specimen_on_the_rig()
@@ -22,7 +22,7 @@ pub fn of(plan: &Plan) -> (Extent, u64) {
     )
 }
 
-/// What is left of it where so many of its steps are done.
+/// The remaining extent after `done` steps.
 pub fn rest((extent, steps): (Extent, u64), done: u64) -> Extent {
     #[expect(clippy::cast_precision_loss, reason = "a share of steps")]
     let share = if steps > 0 {

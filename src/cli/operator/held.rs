@@ -1,5 +1,5 @@
-//! A rig that holds after the early end of its run, and the person who still looks at it. In: an open rig, who watches it, what was
-//! recorded. Out: whether the run is to go on. It moves nothing, and the record is closed: the rig is only heard from.
+//! A rig on hold after the early end of its run, while the operator still observes it. In: an open rig, its observer, the record. Out:
+//! whether the run is to resume. It moves nothing, and the run log is closed: the rig is only polled.
 
 use super::hold_status::{can_go_on, is_held};
 use super::watch::{Stay, Watcher};
@@ -7,10 +7,10 @@ use crate::record::{Event, EventKind, Outcome, Record};
 use crate::rig::Rig;
 use crate::run::Observer as _;
 
-/// How long the rig is left alone between two looks at what the person wants, s.
+/// Time between two checks for the operator's choice \[s\]. The rig is not polled in between.
 const BREATH: f64 = 0.05;
 
-/// Stays as long as somebody looks at the rig. Gives the reason for which the run is to go on, where it is to.
+/// Returns when the operator stops observing the rig. Gives the reason to resume the run, if the operator wants that.
 pub fn stay(rig: &mut dyn Rig, watcher: &mut Watcher, record: &Record) -> Option<String> {
     let mut held = is_held(record);
     let unmoved = matches!(record.outcome, Outcome::NotReleased { .. }) && held;

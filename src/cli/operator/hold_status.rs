@@ -3,7 +3,7 @@
 use crate::record::{EventKind, Record};
 use crate::run::UNLOADING;
 
-/// Whether the rig was seen at rest in the end.
+/// Whether the rig was at rest in its last reading.
 pub fn is_held(record: &Record) -> bool {
     let last = record
         .events
@@ -13,7 +13,7 @@ pub fn is_held(record: &Record) -> bool {
     last.is_none_or(|event| event.kind == EventKind::Held)
 }
 
-/// Whether the run had begun, and its specimen is still where it was.
+/// Whether the run had begun, and the specimen has not moved since.
 pub fn can_go_on(record: &Record) -> bool {
     let unloaded = record
         .events

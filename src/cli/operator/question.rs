@@ -1,6 +1,6 @@
-//! What a person is asked, and which words answer it: the same on the live screen and on a terminal of lines. In: what is to be looked
-//! at or moved, a rig that holds. Out: a title, lines, the word that agrees, the keys of a choice. No single key lets a rig move, and
-//! nothing typed ahead counts.
+//! Questions to the operator and their answers, the same on the live screen and in a line terminal. In: the object of an inspection, a
+//! motion, or a rig on hold. Out: a title, lines, the confirmation text, the keys of a choice. No single key permits a motion, and input
+//! typed before the question does not count.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// So long after a question was shown what is typed does not count: nobody has read it yet.
+/// Input within this time after a question appears does not count: the operator cannot have read it yet.
 pub const DEAF: Duration = Duration::from_secs(1);
 
 /// A question of the run.
@@ -19,31 +19,31 @@ pub struct Question {
     pub lines: Vec<String>,
 }
 
-/// What agreeing does.
+/// The effect of a confirmation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A look at a specimen that nothing real moves.
+    /// An inspection; no real rig moves.
     Look,
-    /// A look, after which the rig moves on.
+    /// An inspection, after which the rig moves on.
     GoOn,
-    /// The first move of a run, of a resumed run, of a served rig.
+    /// The first move of a run, of a resumed run, or of a served rig.
     Release,
-    /// The load is taken off after a stop.
+    /// Unloading after a stop.
     Unload,
-    /// One move by hand.
+    /// One manual move.
     Jog,
 }
 
-/// The early end of a run, as a person stands before it.
+/// The state of the rig after the early end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum After {
-    /// The rig holds, and these may be chosen.
+    /// The rig is on hold, and these choices are available.
     Held { resume: bool, unload: bool },
-    /// Nobody knows whether it holds.
+    /// It is not confirmed that the rig is on hold.
     NotHeld,
 }
 
-/// What a person does with a rig whose run has ended early. None of it moves anything yet.
+/// The operator's choice for a rig whose run has ended early. No choice moves the rig yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
     Resume,
@@ -51,11 +51,11 @@ pub enum Choice {
     Leave,
 }
 
-/// Asked of who resumes a held run.
+/// The question to the operator who resumes a held run.
 pub const WHY_RESUME: &str = "Why was the run held, and why may it go on? With the reason you say that the rig was not switched off. \
                               Both are recorded.";
 
-/// Where a rig stands, and what it feels there.
+/// Position of a rig and its measured force there.
 pub fn felt(displacement: f64, force: f64) -> String {
     format!(
         "X {}   R {}",
@@ -65,7 +65,7 @@ pub fn felt(displacement: f64, force: f64) -> String {
 }
 
 impl After {
-    /// What may be chosen: its key, and what it does.
+    /// The available choices: key and effect.
     pub fn choices(self) -> Vec<(char, Choice, &'static str)> {
         let Self::Held { resume, unload } = self else {
             return vec![('a', Choice::Leave, "I have seen this")];
@@ -83,7 +83,7 @@ impl After {
             .collect()
     }
 
-    /// What this key chooses.
+    /// The choice of this key.
     pub fn choice(self, key: char) -> Option<Choice> {
         let chosen = |(own, ..): &(char, Choice, &str)| own.eq_ignore_ascii_case(&key);
         self.choices()
@@ -94,7 +94,7 @@ impl After {
 }
 
 impl Question {
-    /// A look, behind which a motion waits where a real rig was released before.
+    /// An inspection. If a real rig was released before, a motion follows it.
     pub fn look(note: &str, released: Option<&Motion>) -> Self {
         let note = format!("inspect: {}", escape(note));
         let Some(motion) = released else {
@@ -113,7 +113,7 @@ impl Question {
         }
     }
 
-    /// A motion that waits for a person's word.
+    /// A motion that requires the operator's confirmation.
     pub fn of(kind: Kind, motion: &Motion) -> Self {
         Self {
             kind,
@@ -133,7 +133,7 @@ impl Kind {
         }
     }
 
-    /// The word that agrees.
+    /// The confirmation text.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Look => "yes",
@@ -143,7 +143,7 @@ impl Kind {
         }
     }
 
-    /// What `n` does.
+    /// The effect of `n`.
     pub const fn declined(self) -> &'static str {
         match self {
             Self::Look | Self::GoOn => "the run ends here and the rig holds",
@@ -152,7 +152,7 @@ impl Kind {
         }
     }
 
-    /// What an entered line says; None: nothing. A word that lets something move is typed as it is shown.
+    /// The meaning of an entered line; None: no meaning. A confirmation that permits a motion must be typed exactly as shown.
     pub fn answer(self, line: &str) -> Option<bool> {
         let line = line.trim();
         if line == self.word() || self == Self::Look && line.eq_ignore_ascii_case("y") {
@@ -164,7 +164,7 @@ impl Kind {
             .then_some(false)
     }
 
-    /// An answer for the record, with the remark and the name.
+    /// An answer for the run log, with the remark and the name.
     pub fn said(self, yes: bool, remark: Option<String>, by: String) -> Inspection {
         let by = Some(by);
         if yes {
@@ -180,7 +180,7 @@ impl Kind {
         Inspection::Stop { reason, by }
     }
 
-    /// Nobody answers.
+    /// No operator answers.
     pub fn unanswered(self) -> Inspection {
         let reason = match self {
             Self::Look | Self::GoOn => "no answer at an inspection",

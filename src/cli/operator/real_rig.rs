@@ -1,4 +1,4 @@
-//! A real rig for a command. In: a checked plan that names one. Out: the rig, open, with who watches it.
+//! A real rig for a command. In: a checked plan that names one. Out: the open rig, with its observer.
 
 use super::watch::{Attendance, Signals, Watcher, throw_away};
 use crate::cli::args::{PlanSettings, name};
@@ -10,12 +10,12 @@ use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, StopRequest, connect};
 use crate::run::replay::Wall;
 
-/// Whether nobody is named on the command line, and nobody can be asked.
+/// Whether the command line names no operator, and no operator can be asked.
 pub fn unattended(attendance: &Attendance, settings: Settings) -> bool {
     attendance.operator.is_none() && (attendance.yes || !settings.can_ask)
 }
 
-/// The name of who runs the test on a real rig, asked for at the terminal where neither command line nor plan gives it. Nothing
+/// The name of the operator of a test on a real rig. It is asked for at the terminal if neither command line nor plan gives it. Nothing
 /// is open yet, and Ctrl-C ends the program.
 pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure> {
     if plan.rig.link.as_real().is_none() || operator(plan, &attendance).is_some() {
@@ -25,7 +25,7 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
         Failure::command_line("nobody is named who runs the test: nothing was opened")
             .help("--operator \"A. Tester\"")
     };
-    // What was typed before the question is no name.
+    // Input typed before the question is not a name.
     throw_away();
     loop {
         print_message("  who runs the test? [your name] ");
@@ -49,7 +49,7 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
     }
 }
 
-/// Who is named, by the command line or by the plan.
+/// The operator that the command line or the plan names.
 pub fn operator(plan: &Plan, attendance: &Attendance) -> Option<String> {
     let of_plan = plan
         .particulars
@@ -63,14 +63,14 @@ pub fn operator(plan: &Plan, attendance: &Attendance) -> Option<String> {
         .filter(|name| !name.trim().is_empty())
 }
 
-/// A rig that is open, and who watches it.
+/// An open rig, and its observer.
 pub struct Opened {
     pub connected: Connected,
     pub watcher: Watcher,
 }
 
-/// Opens the plan's real rig: asks who it is, moves nothing. Signals are caught from here on, and become `stop_request`: to be killed in
-/// the middle of a word is no way to leave a rig.
+/// Opens the plan's real rig: reads its identity, moves nothing. Signals are caught from here on, and become `stop_request`. A program
+/// that is killed in the middle of a command would leave the rig in an unknown state.
 pub fn open(
     plan: &Plan,
     attendance: &Attendance,
@@ -85,7 +85,7 @@ pub fn open(
     Ok(Opened { connected, watcher })
 }
 
-/// [`open`] for a client that drives: watched in lines, and `stop_request` is what signals become.
+/// [`open`] for a client that drives: observed in lines; signals set `stop_request`.
 pub fn open_for_client(
     plan: &Plan,
     attendance: &Attendance,
@@ -99,7 +99,7 @@ pub fn open_for_client(
     Ok(Opened { connected, watcher })
 }
 
-/// Who stands by, on which machine, and when it began.
+/// The operator, the machine and the start time.
 pub fn circumstances(plan: &Plan, attendance: &Attendance) -> Circumstances {
     let host = rustix::system::uname()
         .nodename()
@@ -124,7 +124,7 @@ pub fn wall_clock() -> Wall {
     })
 }
 
-/// What `--rig`, `--set` and `--date` said when a record began.
+/// The values of `--rig`, `--set` and `--date` at the start of a run log.
 pub fn settings_of(header: &crate::run::replay::Header) -> PlanSettings {
     PlanSettings {
         rig: header.rig.clone(),

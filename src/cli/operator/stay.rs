@@ -1,12 +1,12 @@
-//! What the operator wants after the early end of a run.
+//! The operator's choice after the early end of a run.
 
-/// What a person wants of a run that has ended early.
+/// The operator's choice for a run that has ended early.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stay {
-    /// Nothing yet: the rig is watched on.
+    /// No choice yet: the observation continues.
     Wait,
-    /// Nothing more.
+    /// The operator leaves.
     Leave,
-    /// That it goes on, for this reason.
+    /// The run resumes, for this reason.
     Resume(String),
 }

@@ -1,10 +1,10 @@
-//! A comparison for a person at a terminal. Out: tables, aligned; runs by number, so that long names fit.
+//! A comparison for a terminal. Out: aligned tables; runs are listed by number, so that long names fit.
 
 use std::fmt::Write as _;
 
 use super::{Comparison, Row, table};
 
-/// Runs shown with a column of their own.
+/// Largest number of runs that have separate columns.
 const COLUMNS: usize = 6;
 
 /// The whole comparison.
@@ -94,7 +94,7 @@ fn results(text: &mut String, title: &str, rows: &[Row], runs: usize) {
             .map(|row| [vec![row.name.clone()], table::cells(row)].concat()),
     );
     if runs > COLUMNS {
-        // Their values are in the CSV; here their spread is what can be read.
+        // The CSV has their values; this table shows their spread.
         for line in &mut lines {
             line.drain(1..=runs);
         }
@@ -102,7 +102,7 @@ fn results(text: &mut String, title: &str, rows: &[Row], runs: usize) {
     let _ = writeln!(text, "{title}\n{}", columns(&lines));
 }
 
-/// Aligned rows, two blanks between columns and two before.
+/// Aligned rows, two spaces between columns and two before.
 fn columns(rows: &[Vec<String>]) -> String {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
     let length = |cell: &String| cell.chars().count();

@@ -1,11 +1,11 @@
-//! What is not the same about the runs: program, plan, parameters, rig, requirements.
+//! Differences between the runs: program, plan, parameters, rig, requirements.
 
 use serde_json::Value;
 use similar::{ChangeTag, TextDiff};
 
 use super::{Side, text};
 
-/// Lines of a plan shown that differ, at most.
+/// Largest number of different plan lines shown.
 const LINES: usize = 40;
 
 /// Verdicts of every requirement in each run.
@@ -29,7 +29,7 @@ pub(super) fn requirements(sides: &[Side]) -> Vec<(String, Vec<Option<String>>)>
     found
 }
 
-/// What differs: its name, and its text in each run.
+/// The differences: name, and text in each run.
 pub(super) fn facts(sides: &[Side]) -> Vec<(String, Vec<String>)> {
     let mut names: Vec<Vec<String>> = ["psd", "date", "standing"]
         .map(|name| vec![name.to_owned()])
@@ -65,7 +65,7 @@ pub(super) fn facts(sides: &[Side]) -> Vec<(String, Vec<String>)> {
         .collect()
 }
 
-/// `1.5 m/s` of a parameter.
+/// A parameter such as `1.5 m/s`.
 fn quantity(value: &Value) -> Option<String> {
     let unit = value.get("unit")?.as_str()?;
     Some(
@@ -75,7 +75,7 @@ fn quantity(value: &Value) -> Option<String> {
     )
 }
 
-/// Lines of the plans that differ, each run against the first.
+/// The plan lines that differ, each run against the first.
 pub(super) fn plans(sides: &[Side]) -> Vec<(String, Vec<String>)> {
     let Some((first, others)) = sides.split_first() else {
         return Vec::new();

@@ -1,5 +1,5 @@
-//! The figures of several runs on common axes: a sheet for each curve that at least two of them draw. Up to six runs are
-//! told apart by colour and dash; more are drawn pale, with their mean where they were read at the same places.
+//! The figures of several runs on common axes: a sheet for each curve that at least two of them have. Up to six runs have different
+//! colours and dashes. More runs are drawn pale, with their mean if they have the same points on the first axis.
 
 use super::{Side, Spread};
 use crate::report::{Curve, Curves, FigureAxis, FigureCurve, PlainAxis};
@@ -8,7 +8,7 @@ use crate::units::{Dimension, unit};
 /// One sheet.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// `hit_displacement_1`
+    /// For example `hit_displacement_1`.
     pub name: String,
     pub caption: String,
     pub curves: Curves,
@@ -24,7 +24,7 @@ pub fn sheets(sides: &[Side]) -> Vec<Sheet> {
             continue;
         }
         known.push(&figure.figure);
-        // A curve of two points is a fit, and of one an error bar: both stand in the results.
+        // A curve of two points is a fit, and one of a single point is an error bar: both are in the results.
         let drawn = figure
             .curves
             .iter()
@@ -104,7 +104,7 @@ fn curves(sides: &[Side], drawn: &[(usize, FigureCurve)]) -> Vec<Curve> {
     each.chain(mean(drawn)).collect()
 }
 
-/// The mean of curves that were read at the same places.
+/// The mean of curves that have the same points on the first axis.
 fn mean(drawn: &[(usize, FigureCurve)]) -> Option<Curve> {
     let (_, first) = drawn.first()?;
     let same = drawn.iter().all(|(_, curve)| {

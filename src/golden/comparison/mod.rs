@@ -1,6 +1,5 @@
-//! Comparison of runs. In: the summary of each run and the data of its figures. Out: a
-//! [`Comparison`]: differences or spread of results, verdicts, and what differs in plan, settings
-//! and rig. It reads no prose.
+//! Comparison of runs. In: the summary of each run and the data of its figures. Out: a [`Comparison`]: differences or spread of results,
+//! verdicts, and differences in plan, settings and rig. It does not read the report text.
 
 mod console;
 mod facts;
@@ -19,25 +18,25 @@ pub use table::{TITLES, cells, csv, heads};
 use crate::report::Figures;
 use crate::units::{Dimension, unit};
 
-/// One run, as it is compared.
+/// One run in a comparison.
 #[derive(Clone, Debug)]
 pub struct Side {
-    /// As the person named it: `runs/beam-1`.
+    /// As the operator named it: `runs/beam-1`.
     pub name: String,
     /// `psd.summary/1`
     pub summary: Value,
     pub figures: Figures,
-    /// The plan as it was run; None of accepted results, which do not hold it.
+    /// The plan as it was run; None for accepted results, which do not contain it.
     pub plan: Option<String>,
 }
 
 /// One result over all runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// `hit.max_displacement`, `quake.max_drift[0]`
+    /// For example `hit.max_displacement`, `quake.max_drift[0]`.
     pub name: String,
     pub dimension: Dimension,
-    /// For each run: Some(None) where the result exists and has no value.
+    /// For each run: `Some(None)` if the result exists and has no value.
     pub cells: Vec<Option<Cell>>,
 }
 
@@ -49,20 +48,20 @@ pub struct Cell {
     pub u: Option<f64>,
 }
 
-/// Everything of the runs side by side.
+/// All data of the compared runs.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     pub names: Vec<String>,
     pub verdicts: Vec<String>,
     /// Results that all runs have.
     pub shared: Vec<Row>,
-    /// Results that only some have.
+    /// Results that only some runs have.
     pub partial: Vec<Row>,
-    /// By requirement: its verdict in each run.
+    /// For each requirement: its verdict in each run.
     pub requirements: Vec<(String, Vec<Option<String>>)>,
-    /// What is not the same in plan, settings and rig: what, and its text in each run.
+    /// Differences in plan, settings and rig: name, and text in each run.
     pub facts: Vec<(String, Vec<String>)>,
-    /// Lines of the plans that differ, each run against the first: the run, and the lines.
+    /// The plan lines that differ, each run against the first: the run, and the lines.
     pub plans: Vec<(String, Vec<String>)>,
 }
 
@@ -72,7 +71,7 @@ impl Comparison {
         let (mut shared, partial): (Vec<Row>, Vec<Row>) = rows(sides)
             .into_iter()
             .partition(|row| row.cells.iter().all(Option::is_some));
-        // What no run has says nothing of any.
+        // A result without a value in any run is not informative.
         shared.retain(|row| row.cells.iter().flatten().any(|cell| cell.value.is_some()));
         Self {
             names: sides.iter().map(|side| side.name.clone()).collect(),
@@ -89,12 +88,12 @@ impl Comparison {
     }
 }
 
-/// Every result of every run, in the order in which the runs first name them.
+/// Every result of every run, in the order of the first occurrence.
 fn rows(sides: &[Side]) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     for (place, side) in sides.iter().enumerate() {
         for (name, dimension, cell) in results(&side.summary) {
-            // One name may measure different things in different plans.
+            // One name may be of different quantities in different plans.
             let known = rows
                 .iter_mut()
                 .find(|row| row.name == name && row.dimension == dimension);
@@ -146,7 +145,7 @@ fn results(summary: &Value) -> Vec<(String, Dimension, Cell)> {
     found
 }
 
-/// A value of a summary as a word.
+/// A value of a summary as a string.
 fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),

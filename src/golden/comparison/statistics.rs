@@ -1,20 +1,20 @@
-//! What two runs differ by, and how several scatter.
+//! The difference of two runs, and the spread of several.
 
 use super::Row;
 
-/// The second of two runs less the first.
+/// The second of two runs minus the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// SI.
     pub absolute: f64,
-    /// Of the first; None where that is 0.
+    /// Relative to the first; None if that is 0.
     pub relative: Option<f64>,
-    /// Over the combined standard uncertainty, √(u₁² + u₂²), where both are known and not both 0.
+    /// Relative to the combined standard uncertainty √(u₁² + u₂²), if both are known and not both 0.
     pub in_uncertainties: Option<f64>,
 }
 
 impl Difference {
-    /// Of a row of two runs that both have a value.
+    /// The difference of a row of two runs that both have a value.
     #[must_use]
     pub fn of(row: &Row) -> Option<Self> {
         let [Some(first), Some(second)] = row.cells.as_slice() else {
@@ -42,12 +42,12 @@ pub struct Spread {
     /// Runs with a value.
     pub count: usize,
     pub mean: f64,
-    /// Of the sample, over n − 1; None of one value.
+    /// Sample standard deviation, divisor n − 1; None for one value.
     pub deviation: Option<f64>,
 }
 
 impl Spread {
-    /// Of the values that there are; None where there are none.
+    /// The spread of the existing values; None if there are none.
     #[must_use]
     pub fn of(row: &Row) -> Option<Self> {
         Self::of_values(
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn the_spread_is_that_of_a_sample() {
-        // 2, 4, 4, 4, 5, 5, 7, 9: mean 5, squares 32, over 7.
+        // 2, 4, 4, 4, 5, 5, 7, 9: mean 5, sum of squares 32, divisor 7.
         let spread = Spread::of_values(&[2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]).unwrap();
         assert_eq!(
             (spread.count, spread.mean, spread.deviation),

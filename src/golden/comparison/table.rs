@@ -1,4 +1,4 @@
-//! Results as rows of text, for people and as CSV. In: a comparison. Out: cells; a person's in readable units, CSV in SI.
+//! Results as rows of text, for the terminal and as CSV. In: a comparison. Out: cells; readable units on the terminal, SI in the CSV.
 
 use super::{Cell, Comparison, Difference, Row, Spread};
 use crate::text::sanitize::cell;
@@ -8,7 +8,7 @@ use crate::units::display::{join, minus, readable, readable_beside, si_unit, sig
 /// The titles of the results that all runs have, and of those that only some have.
 pub const TITLES: [&str; 2] = ["Results, u in brackets", "Only of some runs, u in brackets"];
 
-/// The heads of the columns after the name and the runs.
+/// The headings of the columns after the name and the runs.
 #[must_use]
 pub fn heads(runs: usize) -> &'static [&'static str] {
     if runs == 2 {
@@ -18,7 +18,7 @@ pub fn heads(runs: usize) -> &'static [&'static str] {
     }
 }
 
-/// Cells of a row: the runs, then their difference or their spread. The unit is that of the largest.
+/// Cells of a row: the runs, then their difference or their spread. The unit is that of the largest value.
 #[must_use]
 pub fn cells(row: &Row) -> Vec<String> {
     let values = || row.cells.iter().flatten().filter_map(|cell| cell.value);
@@ -54,7 +54,7 @@ fn value(cell: Option<Cell>, largest: f64, dimension: Dimension) -> String {
                 return readable_beside(value, largest, dimension);
             };
             let (unit, factor) = unit(largest, dimension);
-            // Both to the uncertainty's second digit; ± is for U alone.
+            // Both have the decimals of the second digit of the uncertainty; ± is used for U only.
             let decimals = (1.0 - (u / factor).log10().floor()).clamp(0.0, 9.0);
             #[expect(
                 clippy::cast_possible_truncation,
@@ -74,7 +74,7 @@ fn value(cell: Option<Cell>, largest: f64, dimension: Dimension) -> String {
     }
 }
 
-/// In the unit of the values, and where that would be a row of zeros in its own.
+/// In the unit of the values; if that gives only zeros, in a separate unit.
 fn differs(difference: Difference, largest: f64, dimension: Dimension) -> Vec<String> {
     let absolute = if difference.absolute == 0.0 {
         "0".to_owned()
@@ -137,7 +137,7 @@ fn signed(value: f64) -> String {
     })
 }
 
-/// Every result as CSV, SI: a row a result, value and uncertainty of each run, then mean, deviation and difference.
+/// Every result as CSV, SI: one row per result, value and uncertainty of each run, then mean, deviation and difference.
 #[must_use]
 pub fn csv(comparison: &Comparison) -> String {
     let mut text = String::from("result,unit");

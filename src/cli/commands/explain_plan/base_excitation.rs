@@ -1,5 +1,5 @@
-//! What `psd check --explain` says of a frame before anything moves: its modes and its time step, and of the dry run its
-//! peaks. In: the steps of a shake, or of an impact on a storey. Out: rows of text.
+//! Rows of `psd check --explain` for a frame: its modes, its time step, and the peaks of the dry run. In: the steps of a ground-motion
+//! test, or of an impact on a storey. Out: rows of text.
 
 use crate::record::{Floors, Modes, ShakeHistory, ShakeStep, StruckFrame};
 use crate::units::Dimension;
@@ -36,8 +36,8 @@ pub fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {
     std::iter::once(head).chain(rows).collect()
 }
 
-/// The shapes of the first modes, drawn: one column a mode, the highest floor on top, the ground below. The largest entry
-/// of a shape stands at an end of its column.
+/// The shapes of the first modes, drawn: one column per mode, the highest floor on top, the ground below. The largest entry of a shape
+/// reaches an end of its column.
 pub fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
     const SHOWN: usize = 4;
     /// Letters on either side of the middle.

@@ -39,7 +39,7 @@ pub(super) fn margin(
         rests(allowed.high, reached.high),
     );
     match (low, high) {
-        // Without a lower command the rig moves at its largest speed.
+        // Without a lower command the rig moves at its maximum speed.
         _ if name == "speed" && above == 0.0 => "none: as fast as allowed".to_owned(),
         (true, true) => "none, and it rests there".to_owned(),
         (true, false) => format!("{}; it begins at 0", readable(above, dimension)),

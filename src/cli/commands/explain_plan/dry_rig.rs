@@ -1,5 +1,5 @@
-//! A virtual rig that records the range of displacement, force and speed, procedure by procedure. In: a plan. Out: the record of
-//! a run on it, and the ranges.
+//! A simulated rig that records the range of displacement, force and speed of each procedure. In: a plan. Out: the record of a run on it,
+//! and the ranges.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -26,23 +26,23 @@ pub struct Reach {
     pub speed: f64,
     pub increment: f64,
     pub tracking_error: f64,
-    /// Rig time.
+    /// Rig time \[s\].
     pub started: f64,
     pub ended: f64,
 }
 
-/// The rig. It shares what it notes with the observer that hears which procedure runs.
+/// The rig. It shares its data with the observer that receives the name of the running procedure.
 pub struct Watched {
     inner: Box<dyn Rig>,
     /// Speed of the rig that it represents \[m/s\].
     own_speed: Option<f64>,
     reaches: Rc<RefCell<Vec<Reach>>>,
-    /// The last targets \[m\]; before the first every axis is at 0.
+    /// The last targets \[m\]; before the first target every axis is at 0.
     target: Vec<f64>,
 }
 
 impl Watched {
-    /// Runs `plan` on its own virtual rig. `own_speed` is that of the rig that it stands for, m/s.
+    /// Runs `plan` on its own simulated rig. `own_speed` is the speed of the rig that it represents \[m/s\].
     pub fn run(plan: &Plan, own_speed: Option<f64>) -> (Record, Vec<Reach>) {
         let reaches = Rc::new(RefCell::new(Vec::new()));
         let mut rig = Self {
@@ -210,7 +210,7 @@ impl Rig for Watched {
     }
 }
 
-/// Hears which procedure runs; goes on at every inspection, where nobody stands before a specimen.
+/// Receives the name of the running procedure. It continues at every inspection, because there is no specimen to inspect.
 struct Listener {
     reaches: Rc<RefCell<Vec<Reach>>>,
 }

@@ -1,4 +1,4 @@
-//! The rows of an impact in `check --explain`: time step, duration and predicted peaks. In: its history. Out: rows.
+//! Rows of an impact in `check --explain`: time step, duration and predicted peaks. In: its history. Out: rows.
 
 use super::cells::row;
 use crate::record::{ImpactHistory, ImpactStep};

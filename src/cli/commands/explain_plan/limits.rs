@@ -15,7 +15,7 @@ struct LimitRange {
     name: &'static str,
     allowed: Interval,
     dimension: Dimension,
-    /// None where nothing moved.
+    /// None if nothing moved.
     reached: Option<Interval>,
 }
 

@@ -1,6 +1,5 @@
-//! `psd check --explain`: a prediction of a run. In: a checked plan. Out: text, from a dry run of
-//! the same code on an ideal virtual rig: same procedures and limits, no noise, lag or drift. It
-//! moves no real rig.
+//! `psd check --explain`: the prediction of a run. In: a checked plan. Out: text, from a dry run of the same code on an ideal simulated
+//! rig: same procedures and limits, no noise, lag or zero drift. It moves no real rig.
 
 pub(crate) mod base_excitation;
 mod cells;
@@ -32,7 +31,7 @@ use cells::{row, span};
 /// The prediction of a run.
 pub enum Explained<'a> {
     Dry(Box<DryRun<'a>>),
-    /// The specimen of this name has no behaviour: only a test on a real rig shows it.
+    /// The specimen of this name has no restoring-force model: only a test on a real rig can measure it.
     Unknown {
         specimen: &'a str,
         rig: &'a str,
@@ -40,7 +39,7 @@ pub enum Explained<'a> {
 }
 
 impl<'a> Explained<'a> {
-    /// Runs the plan dry, where the specimen that it tests has a behaviour or none is tested.
+    /// Makes a dry run of the plan if its specimen has a restoring-force model, or if no specimen is tested.
     pub fn of(plan: &'a Plan) -> Self {
         match plan.specimen_on_the_rig() {
             Some(specimen) if specimen.behaviour.is_none() && specimen.frame.is_none() => {
@@ -53,7 +52,7 @@ impl<'a> Explained<'a> {
         }
     }
 
-    /// A dry run that a limit stops ends as the run would; where there is none, nothing is wrong with the plan.
+    /// The exit of a dry run that a limit stops is that of the run. Without a dry run the plan has no error.
     pub fn exit(&self) -> Exit {
         match self {
             Self::Dry(dry) => dry.exit(),
@@ -72,10 +71,10 @@ impl<'a> Explained<'a> {
     }
 }
 
-/// A run that moved nothing but numbers.
+/// A simulated run that moves no hardware.
 pub struct DryRun<'a> {
     plan: &'a Plan,
-    /// What it ran on, in words.
+    /// Description of the simulated rig.
     model: String,
     record: Record,
     reaches: Vec<Reach>,
@@ -93,7 +92,7 @@ impl<'a> DryRun<'a> {
         Self::on(plan, &ideal, model)
     }
 
-    /// Runs the plan as `stand_in` has it, whose rig is virtual.
+    /// Runs the plan on the simulated rig of `stand_in`.
     pub fn on(plan: &'a Plan, stand_in: &Plan, model: String) -> Self {
         let (record, reaches) =
             Watched::run(stand_in, plan.rig.link.as_real().map(|link| link.own_speed));
@@ -107,7 +106,7 @@ impl<'a> DryRun<'a> {
         }
     }
 
-    /// A dry run that a limit stops ends as the run would.
+    /// The exit of a dry run that a limit stops is that of the run.
     pub fn exit(&self) -> Exit {
         match self.record.outcome {
             Outcome::Completed => Exit::Met,

@@ -1,12 +1,12 @@
-//! What `psd check --explain` tells of the start of a run on a real rig. In: the plan. Out: rows: where the plan's zero lies, where the
-//! rig must stand, which move is the first. It opens no rig.
+//! The start of a run on a real rig in `psd check --explain`. In: the plan. Out: rows: the zero of the plan, the required start position
+//! of the rig, the first move. It opens no rig.
 
 use crate::plan::{Datum, Plan};
 use crate::run::start;
 use crate::units::Dimension;
 use crate::units::display::{plain, stated};
 
-/// None of a virtual rig, which begins at 0.
+/// No rows for a simulated rig, which starts at 0.
 pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
     let Some(link) = plan.rig.link.as_real() else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Dry runs of the first example of Melo et al. 2006: its numbers, its stop at a limit, its specimen without behaviour.
+//! Dry runs of example 1 of Melo et al. 2006: its numbers, its stop at a limit, its specimen without a restoring-force model.
 
 use super::*;
 use crate::plan::{Interval, Limits, Link, VirtualLink};
@@ -69,7 +69,7 @@ fn the_papers_first_example_is_predicted_without_the_rigs_noise() {
     let plan = example(0.2);
     let dry = DryRun::of(&plan);
     let text = dry.text(Settings::PLAIN);
-    // Critical step (2π/10)√(M/K), the paper's largest displacement, and what is left to the limit.
+    // Critical step (2π/10)√(M/K), the paper's largest displacement, and the remaining margin to the limit.
     for expected in [
         "34.71 ms",
         "10.00 ms, 0.288 of it",

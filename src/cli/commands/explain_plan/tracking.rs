@@ -1,9 +1,9 @@
-//! The delay of an actuator that misses its targets and the growth of amplitudes by it, to first order, and the energy that a dry run on the
-//! lagging rig shows. In: what the rig declares, the steps of a dry run. Out: rows of text.
+//! The delay of an actuator that misses its targets, and the resulting growth of amplitudes to first order. The energy error in a dry run
+//! on the lagging rig. In: the declared errors of the rig, the steps of a dry run. Out: rows of text.
 //!
-//! A place that is late by D of virtual time is felt as the damper −K·D, and an amplitude grows by exp(πωD) a cycle. What lies inside
-//! the settling band or a quantum may be against the motion at every step: δ in all, and an amplitude A grows by 4δ a cycle, at worst, and
-//! grows on.
+//! A delay D in simulated time acts as the damper −K·D. An amplitude then grows by exp(πωD) per cycle. A position error inside the
+//! settling band or the resolution may oppose the motion at every step. The sum of these errors is δ. In the worst case an amplitude A
+//! grows by 4δ in each cycle.
 
 use crate::plan::formula::ResultValue;
 use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
@@ -16,7 +16,7 @@ use crate::run::{self, Settings, Unwatched};
 use crate::units::Dimension;
 use crate::units::display::{minus, readable, significant};
 
-/// What is foretold of one impact; nothing where the rig declares nothing that it misses.
+/// The predicted growth of one impact; empty if the rig declares no tracking error.
 pub(crate) fn rows(
     plan: &Plan,
     impact: &Impact,
@@ -66,17 +66,17 @@ pub(crate) fn rows(
     ]
 }
 
-/// How an amplitude grows.
+/// Growth of an amplitude.
 #[derive(Clone, Copy)]
 struct Growth {
-    /// ln of it, a cycle.
+    /// Natural logarithm of the growth factor per cycle.
     a_cycle: f64,
     /// δ over the amplitude.
     relative: f64,
 }
 
 impl Growth {
-    /// Of a mode of ω (rad/s) that is late by so much (s), to first order.
+    /// Growth of a mode of circular frequency `omega` \[rad/s\] with the delay `late` \[s\], to first order.
     fn of(late: f64, omega: f64, relative: f64) -> Self {
         Self {
             a_cycle: std::f64::consts::PI * omega * late,
@@ -84,7 +84,7 @@ impl Growth {
         }
     }
 
-    /// Factor over so many cycles n: A' = ln g·A + 4δ a cycle, gⁿ + 4δ(gⁿ − 1)/ln g.
+    /// Factor over n cycles, from A' = ln g·A + 4δ per cycle: gⁿ + 4δ(gⁿ − 1)/ln g.
     fn over(self, cycles: f64) -> f64 {
         let exponent = self.a_cycle * cycles;
         let each = if exponent.abs() < 1e-12 {
@@ -96,7 +96,7 @@ impl Growth {
     }
 }
 
-/// The same of a frame on moving ground.
+/// The same for a frame in a ground-motion test.
 pub(crate) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> Vec<Vec<String>> {
     let modes = (history.modes.as_ref(), history.damping_ratios.as_slice());
     frame_rows(
@@ -108,7 +108,7 @@ pub(crate) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> 
     )
 }
 
-/// The same of a frame that is struck.
+/// The same for a frame under impact.
 pub(crate) fn storey_rows(
     plan: &Plan,
     impact: &Impact,
@@ -119,8 +119,8 @@ pub(crate) fn storey_rows(
     frame_rows(plan, &impact.stepping, time_step, modes, &history.floors)
 }
 
-/// What a delay is to each mode, and how the largest displacement may grow in it. Beside it stands the damping of the mode, which
-/// works the other way.
+/// The effect of a delay on each mode, and the possible growth of its largest displacement. The damping of the mode, which reduces the
+/// amplitude, is listed beside it.
 fn frame_rows<S: Floors>(
     plan: &Plan,
     stepping: &Stepping,
@@ -164,7 +164,7 @@ fn frame_rows<S: Floors>(
     rows
 }
 
-/// A dry run on a rig that lags and falls short as the plan's does, and is ideal otherwise; None where it does neither.
+/// A dry run on a rig with the lag and undershoot of the plan's rig, and no other error; None if the rig has neither.
 pub(crate) fn lagging(plan: &Plan) -> Option<Record> {
     let Link::Virtual(VirtualLink {
         lag,
@@ -193,7 +193,7 @@ pub(crate) fn lagging(plan: &Plan) -> Option<Record> {
     ))
 }
 
-/// The energy that tracking puts into a procedure of the lagging dry run or takes out.
+/// The energy that tracking errors add to or remove from a procedure of the lagging dry run.
 pub(crate) fn energy(lagging: Option<&Record>, procedure: usize) -> Vec<Vec<String>> {
     let Some((lagging, found)) =
         lagging.and_then(|run| Some((run, run.procedures.get(procedure)?)))
@@ -239,7 +239,7 @@ fn late_by(late: f64, unsettled: f64) -> Vec<String> {
     ]
 }
 
-/// δ, m: what settling lets pass, and half a quantum.
+/// δ \[m\]: the settling band plus half a resolution.
 fn uncertain(plan: &Plan, mode: Mode) -> f64 {
     let resolution = match &plan.rig.link {
         Link::Virtual(link) => link.resolution,
@@ -254,8 +254,8 @@ fn uncertain(plan: &Plan, mode: Mode) -> f64 {
 mod tests {
     use super::*;
 
-    /// Published, of ten cycles of fifty steps: behind by δ = 2 % of A an amplitude is ×1.7856 in the last of them. 4δ a cycle is the most
-    /// that it can be, and what is missing of it falls with the step.
+    /// Published case of ten cycles of fifty steps: a lag of δ = 2 % of A gives an amplitude of ×1.7856 in the last cycle. The bound is
+    /// 4δ per cycle. The difference from the bound decreases with the step.
     #[test]
     fn a_band_against_the_motion_is_the_most_it_can_be() {
         let told = Growth {
@@ -268,7 +268,7 @@ mod tests {
             a_cycle: 0.05,
             relative: 0.02,
         };
-        // One cycle after the other.
+        // One cycle after another.
         let mut amplitude = 1.0;
         for _ in 0..10_000 {
             amplitude += (growing.a_cycle * amplitude + 4.0 * growing.relative) * 1e-3;

@@ -1,5 +1,5 @@
-//! What `psd check --explain` tells of the zeros of a rig that watches them. In: the plan, the record of its dry run. Out: rows:
-//! when zeros are read, how long there is between them, which drift that leaves room for, and what a declared one comes to.
+//! Zero drift of a rig that checks its zeros, in `psd check --explain`. In: the plan, the record of its dry run. Out: rows: times of the
+//! zero readings, time between them, allowed zero drift, and the effect of a declared zero drift.
 
 use crate::plan::{DriftCheck, Plan, ZeroAfter};
 use crate::record::{Drift, Record};
@@ -7,7 +7,7 @@ use crate::report::PredictedZeros;
 use crate::units::Dimension;
 use crate::units::display::{readable, stated};
 
-/// None of a rig that does not say how far its zeros may drift.
+/// No rows for a rig that does not specify its allowed zero drift.
 pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
     let Some(found) = &record.drift else {
         return Vec::new();
@@ -108,12 +108,12 @@ pub fn predicted(record: &Record) -> Option<PredictedZeros> {
     })
 }
 
-/// The longest time over which a drift is judged, s.
+/// The longest time over which a zero drift is assessed \[s\].
 fn judged_over(found: &Drift) -> f64 {
     time_between(found).unwrap_or(0.0).max(found.check.over)
 }
 
-/// s between the zeros before and after; None where they are not read again.
+/// Time between the zeros before and after \[s\]; None if they are not read again.
 fn time_between(found: &Drift) -> Option<f64> {
     let axis = found.axes.first()?;
     axis.after.map(|after| after.time - axis.before.time)
@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// Ten holds of 5 s, and 8 s of zeros.
+    /// Ten dwells of 5 s, and 8 s of zero readings.
     fn told(declared: &str, check_of: &str) -> String {
         let text = format!(
             "specimen beam {{\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}}\nrig r {{\n  link = virtual({declared})\n{check_of}}}\n\

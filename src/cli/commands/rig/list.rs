@@ -1,4 +1,4 @@
-//! `psd rig list`: the serial ports of this machine, one per line, with the data that the system has of each and the persistent
+//! `psd rig list`: the serial ports of this machine, one per line, with the system's data of each port. It also lists the persistent
 //! names, which do not change when cables are exchanged. It opens no port.
 
 use std::fmt::Write as _;

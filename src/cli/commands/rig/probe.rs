@@ -1,5 +1,5 @@
-//! `psd rig probe`: who the rig is, what it reads at rest, how much its readings scatter and drift, and how far it is
-//! from each limit. Nothing moves.
+//! `psd rig probe`: the identity of the rig, its readings at rest, their scatter and zero drift, and its margin to each limit. Nothing
+//! moves.
 
 use std::fmt::Write as _;
 
@@ -12,14 +12,14 @@ use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::{plain, readable};
 
-/// Readings, and the time from one to the next, s.
+/// Number of readings; time between two readings \[s\].
 const READINGS: usize = 10;
 const APART: f64 = 0.1;
 
-/// Of a reading: what rounding may make of the mean of ten that are alike.
+/// Relative rounding error of the mean of ten equal readings.
 const DUST: f64 = 1e-12;
 
-/// Gives the report; exit 4 where the rig stands outside a limit.
+/// Prints the report; exit 4 if the rig is outside a limit.
 pub fn probe(rig: &mut dyn Rig, plan: &Plan) -> Result<Exit, Failure> {
     let identity = rig.identity();
     let mut readings = Vec::with_capacity(READINGS);
@@ -57,12 +57,12 @@ struct Axis {
     force: Channel,
 }
 
-/// What readings at rest say of one channel, SI.
+/// Statistics of the readings of one channel at rest, SI.
 struct Channel {
     mean: f64,
-    /// Standard deviation about the drift.
+    /// Standard deviation about the zero drift.
     noise: f64,
-    /// Change a second, and its standard error: noise looks like a little drift.
+    /// Change per second, and its standard error: noise alone also gives a small slope.
     drift: f64,
     drift_error: f64,
 }
@@ -99,7 +99,7 @@ impl Channel {
             .last()
             .zip(times.first())
             .map_or(0.0, |(last, first)| last - first);
-        // What adding up leaves of the last digits is neither noise nor drift.
+        // The rounding error of a sum is neither noise nor zero drift.
         let dust = DUST
             * values
                 .iter()
@@ -121,7 +121,7 @@ impl Channel {
 }
 
 impl Channel {
-    /// Two digits are all that ten readings have.
+    /// Ten readings justify two digits.
     fn noise_told(&self, dimension: Dimension) -> String {
         if self.noise > 0.0 {
             format!("noise {}", plain(self.noise, dimension, 2))
@@ -130,7 +130,7 @@ impl Channel {
         }
     }
 
-    /// A drift that noise may have made is only bounded.
+    /// A zero drift within the noise is reported as an upper bound only.
     fn drift_told(&self, rate: Dimension) -> String {
         let per_second = if rate == Dimension::VELOCITY {
             ""
@@ -151,11 +151,11 @@ impl Channel {
     }
 }
 
-/// What the rig block says too little of, to be copied into it.
+/// Values that are too small or missing in the rig block, ready to be copied into it.
 fn advice(axes: &[Axis], plan: &Plan) -> Option<String> {
     let said = plan.rig.link.as_real()?.readings.noise;
     let noise = axes.iter().map(|axis| axis.force.noise).fold(0.0, f64::max);
-    // Ten readings show a noise to a quarter of it.
+    // Ten readings give the noise to about a quarter of its value.
     let more = noise > 1.5 * said;
     more.then(|| {
         format!(
@@ -272,7 +272,7 @@ mod tests {
                 && (channel.mean - 5.9).abs() < 1e-9
         );
         assert_eq!(channel.drift_told(Dimension::FORCE), "drift 2 N/s");
-        // ±1 in turn: scatter of about 1 about its line, with two numbers fitted to ten readings.
+        // Alternating ±1: scatter of about 1 about its line, with two parameters fitted to ten readings.
         let noisy: Vec<f64> = (0..10)
             .map(|index| if index % 2 == 0 { 1.0 } else { -1.0 })
             .collect();

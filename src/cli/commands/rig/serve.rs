@@ -1,6 +1,6 @@
-//! `psd rig serve`: a coordinator or a finite-element program drives the plan's rig, inside the plan's limits. In: a plan,
-//! a port. Out: a run folder with the record, which `psd verify` plays back, and a table of targets and readings. The one
-//! file that opens the port; it speaks no protocol.
+//! `psd rig serve`: a coordinator or a finite-element program drives the plan's rig, inside the plan's limits. In: a plan, a port. Out: a
+//! run folder with the run log, which `psd verify` replays, and a table of targets and readings. Only this file opens the port; it
+//! implements no protocol.
 
 use std::net::{SocketAddr, TcpListener};
 
@@ -32,7 +32,7 @@ use crate::units::Dimension;
 use crate::units::display::readable;
 use crate::units::unit;
 
-/// Serves until a client or a person ends it.
+/// Serves until a client or the operator ends it.
 pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Failure> {
     let attendance = Attendance {
         yes: arguments.yes,
@@ -49,7 +49,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     let attendance = real_rig::named(attendance, plan)?;
     let door = Door::open(arguments)?;
     let stop_request = StopRequest::default();
-    // The connection to the rig ends with the arm: nobody speaks with it while the results are written.
+    // The connection to the rig ends with this arm: psd does not communicate with the rig while it writes the results.
     let served = match plan.rig.link {
         Link::Virtual(_) => {
             let signals = Signals::caught(&stop_request).map_err(Failure::Signals)?;
@@ -115,7 +115,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     served.conclude(arguments, settings)
 }
 
-/// A real rig moves for strangers only where the command line names it.
+/// A client on the network may move a real rig only if the command line names the rig.
 fn named(arguments: &ServeArguments, plan: &Plan) -> Result<(), Failure> {
     if plan.rig.link.as_real().is_some() && arguments.plan_settings.rig.is_none() {
         let name = &plan.rig.name;
@@ -126,7 +126,7 @@ fn named(arguments: &ServeArguments, plan: &Plan) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Where clients come in. It is open before the rig is, so that nothing moves where the port is taken.
+/// The listener for clients. It opens before the rig, so that nothing moves if the port is in use.
 struct Door {
     listener: TcpListener,
     address: SocketAddr,
@@ -148,7 +148,7 @@ fn listening(arguments: &ServeArguments, error: &std::io::Error) -> Failure {
         .help("another port: --listen 127.0.0.1:0 takes a free one")
 }
 
-/// What a record says of where it comes from.
+/// The origin of a run log.
 struct Stage<'a> {
     plan: &'a Plan,
     provenance: Provenance,
@@ -156,14 +156,14 @@ struct Stage<'a> {
     wall: Wall,
 }
 
-/// What serving came to, and what is on record of it.
+/// The outcome of a served run, and its run log.
 struct Served {
     folder: RunFolder,
     recorded: Recorded,
     steps: Vec<DrivenStep>,
-    /// That of the worst session.
+    /// The exit of the worst session.
     exit: Exit,
-    /// Whether the listener and standard output held out.
+    /// Whether the listener and standard output had no error.
     door: std::io::Result<()>,
     told: Result<(), Failure>,
 }
@@ -213,7 +213,7 @@ impl Served {
     }
 }
 
-/// Serves, with every request and every answer of the rig in a run folder.
+/// Serves. Every request and every answer of the rig is recorded in a run folder.
 #[expect(
     clippy::too_many_arguments,
     reason = "what is served, where, to whom, and who watches"
@@ -257,7 +257,7 @@ fn on_record(
             if !door.address.ip().is_loopback() {
                 print_message(&open_door(door.address, settings));
             }
-            // Who started this program waits for the line.
+            // The program that started this one waits for the line.
             told = print_result(&format!(
                 "ready: {} on {}\n",
                 arguments.protocol.name(),
@@ -292,7 +292,7 @@ fn on_record(
     })
 }
 
-/// What the client speaks, with the stiffness that it may ask for.
+/// The protocol of the client, with the stiffness that it may request.
 fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure> {
     let given = arguments.stiffness.as_deref().map(stiffness).transpose()?;
     match arguments.protocol {
@@ -394,7 +394,7 @@ fn open_door(address: SocketAddr, settings: Settings) -> String {
     )
 }
 
-/// The four lines that say what a session asked of the specimen.
+/// The four lines that summarise the requests of a session.
 fn summary(session: &Session) -> String {
     let driven = session.driven;
     let refused = if driven.refused > 0 {
@@ -411,7 +411,7 @@ fn summary(session: &Session) -> String {
     )
 }
 
-/// A refused target counts as a stop by a limit, whatever the client did then.
+/// A refused target counts as a stop by a limit, whatever the client does afterwards.
 const fn exit_of(session: &Session) -> Exit {
     match session.ended {
         Ended::Limit(_) | Ended::Stopped => Exit::Stopped,

@@ -1,5 +1,5 @@
-//! `psd rig simulate`: an emulator of the rig of a plan, at the port of the plan, until it is stopped. In: a plan, a script
-//! of faults. Out: a serial line that answers, a log, and whether every target was within the limits.
+//! `psd rig simulate`: an emulator of the rig of a plan, at the port of the plan, until it is stopped. In: a plan, a script of faults.
+//! Out: a serial line that answers, a log, and whether every target was within the limits.
 
 use std::fs::{self, OpenOptions};
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
     let stopped = stopped_by_signals().map_err(Failure::Signals)?;
     let unfit =
         |reason: String| Failure::command_line(format!("{}: {reason}", arguments.plan.display()));
-    // No file is made where there is no rig to emulate.
+    // No file is created if there is no rig to emulate.
     of_plan(plan, &script, Log::none(), arguments.seed, None).map_err(|error| {
         unfit(error.to_string())
             .help("name the real rig with --rig NAME, and give its specimen a behaviour")
@@ -113,8 +113,7 @@ fn stopped_by_signals() -> std::io::Result<Arc<AtomicBool>> {
     Ok(stopped)
 }
 
-/// A boot identifier that differs at every start: a restarted emulator has lost its position, and must not appear to be the
-/// one before.
+/// A boot identifier that differs at every start. A restarted emulator has lost its position, and must not appear to be the previous one.
 fn power_up() -> u16 {
     let now = std::time::SystemTime::now()
         .duration_since(std::time::UNIX_EPOCH)

@@ -17,7 +17,7 @@ const DEFAULT: &str = "plans";
 /// One plan to test.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// `plans/beam`
+    /// For example `plans/beam`.
     pub name: String,
     pub plan: PathBuf,
     pub golden: AcceptedFolder,
@@ -32,7 +32,7 @@ pub struct Cases {
     pub unused: Vec<PathBuf>,
 }
 
-/// The plans named, and those in the folders named; not those in folders further down, which are libraries.
+/// The named plans, and those in the named folders. Subfolders are libraries and are not searched.
 pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
     let default = [PathBuf::from(DEFAULT)];
     let paths = if arguments.paths.is_empty() {
@@ -128,7 +128,7 @@ fn plans_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(plans)
 }
 
-/// Plans of one name in several folders keep their failures apart.
+/// Plans of the same name in different folders get separate folders of failures.
 fn told_apart(cases: &mut [Case]) {
     let names: Vec<String> = cases.iter().map(|case| case.folder.clone()).collect();
     for case in cases {
@@ -150,7 +150,7 @@ fn unused(
             .canonicalize()
             .ok()
             .and_then(|folder| Some(folder.parent()?.join("reports")));
-        // As the operator would write it, where the folder of plans has a name.
+        // As the operator would write it, if the folder of plans has a name.
         let typed = folder.parent().map(|above| shown(above).join("reports"));
         let typed = typed.filter(|typed| {
             typed.canonicalize().ok() == beside.as_ref().and_then(|path| path.canonicalize().ok())

@@ -1,6 +1,6 @@
-//! The files of a failed case: `NAME/new/`, the results of this run; `NAME/*.png`, old and new on one sheet;
-//! `NAME/difference.txt`, all that differs. In: both results. Out: the folder, which no other program writes into: what an
-//! earlier test left there goes when its plan is tested again.
+//! The files of a failed case: `NAME/new/`, the results of this run; `NAME/*.png`, accepted and new results on one sheet;
+//! `NAME/difference.txt`, all differences. In: both results. Out: the folder, which no other program writes into. The files of an earlier
+//! test are removed when its plan is tested again.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,5 @@
-//! `psd test [PATH…]`: plans compared with their accepted results. In: paths. Out: the differences,
-//! in the formats asked for, and exit code 5 if there are any. It uses virtual rigs only, one plan
-//! per processor at a time; the output does not depend on their number.
+//! `psd test [PATH…]`: plans compared with their accepted results. In: paths. Out: the differences, in the formats asked for, and exit
+//! code 5 if there are any. It uses simulated rigs only, one plan per processor at a time. The output does not depend on their number.
 
 mod cases;
 mod failures;

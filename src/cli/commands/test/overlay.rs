@@ -1,5 +1,5 @@
-//! Accepted and new results on one chart: the curves of figures that differ, and columns of tables that no such figure shows.
-//! In: both results and the differences. Out: images. A column with an invisible difference has it drawn as a separate curve.
+//! Accepted and new results on one chart: the figure curves that differ, and columns of tables that are in no such figure. In: both
+//! results and the differences. Out: images. If a difference is too small to see, it is drawn as a separate curve.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use crate::units::{Dimension, unit};
 
 /// Largest number of columns drawn: those with the largest difference over their tolerance.
 const COLUMNS: usize = 6;
-/// Largest number of curves drawn of one figure.
+/// Largest number of curves drawn for one figure.
 const CURVES: usize = 3;
 
 /// All images.
@@ -90,7 +90,7 @@ fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
     sheets
 }
 
-/// The columns with the largest differences, over time where there is one.
+/// The columns with the largest differences, over time if there is a time column.
 fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> {
     let mut moved: Vec<(&str, f64)> = found
         .iter()

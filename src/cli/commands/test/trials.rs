@@ -30,7 +30,7 @@ pub struct Trials<'a> {
 const STACK: usize = 32 << 20;
 
 impl Trials<'_> {
-    /// Runs all cases. With `--fail-fast` no case after the first failure counts, even where it ran.
+    /// Runs all cases. With `--fail-fast` no case after the first failure counts, even if it ran.
     pub fn run(&self, cases: &[Case]) -> Result<Vec<Tested>, Failure> {
         let mut builder = rayon::ThreadPoolBuilder::new().stack_size(STACK);
         if let Some(jobs) = self.arguments.jobs {

@@ -1,22 +1,22 @@
-//! A curve that is drawn while it grows. In: points, as many as a run has. Out: a bounded number of them, evenly thinned,
-//! the newest among them. It knows no unit.
+//! A curve that is drawn while it grows. In: any number of points. Out: a bounded number of them, evenly thinned, with the newest one. It
+//! knows no unit.
 
-/// Points kept, at most; a terminal has fewer dots.
+/// Largest number of points kept; a terminal has fewer dots.
 pub const MOST_POINTS: usize = 1024;
 
 /// A growing curve.
 #[derive(Clone, Debug)]
 pub struct Curve {
     points: Vec<(f64, f64)>,
-    /// Every so many points one is kept.
+    /// One point is kept of every `stride` points.
     stride: u64,
     seen: u64,
     newest: Option<(f64, f64)>,
-    /// Of all the points, kept or not.
+    /// The bounds of all points, kept or not.
     bounds: Option<Bounds>,
 }
 
-/// The smallest and the largest of either coordinate.
+/// The smallest and the largest value of each coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     pub x: [f64; 2],
@@ -36,7 +36,7 @@ impl Default for Curve {
 }
 
 impl Curve {
-    /// One more point; one that is no number is no point.
+    /// Adds a point; a point that is not a number is ignored.
     pub fn push(&mut self, x: f64, y: f64) {
         if !(x.is_finite() && y.is_finite()) {
             return;

@@ -1,5 +1,5 @@
-//! What the person at the keys wants. In: keys with their time, questions of the run. Out: wishes, answers, words for the record.
-//! Only the word of a question, typed and entered after it could be read, goes on; nothing else ever counts as yes.
+//! The operator's input at the keys. In: keys with their time, questions of the run. Out: stop requests, answers, notes for the run log.
+//! Only the confirmation text, typed and entered after the question could be read, permits a motion.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -11,45 +11,45 @@ use crate::rig::StopRequest;
 use crate::run::{Inspection, Next};
 use crate::text::diagnostic::excerpt::escape;
 
-/// Characters of one typed line.
+/// Largest number of characters of one typed line.
 const LONGEST_LINE: usize = 200;
 
-/// The keys' side of the screen.
+/// The keyboard part of the screen.
 #[derive(Clone, Debug, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Dialogue {
-    /// Who answers, once it is known.
+    /// The name of the operator who answers, once it is known.
     pub operator: Option<String>,
     pub paused: bool,
-    /// The run waits, and the rig rests.
+    /// The run is paused, and the rig is at rest.
     pub waiting: bool,
     pub help: bool,
-    /// What the run asks a person.
+    /// The question of the run to the operator.
     pub question: Option<Question>,
     /// A remark to the answer, once it is typed.
     pub remark: Option<String>,
-    /// What was entered last answers nothing.
+    /// The last input was not a valid answer.
     pub unclear: bool,
     pub typing: Option<Typing>,
-    /// What may be chosen after the early end of the run.
+    /// The available choices after the early end of the run.
     pub after: Option<After>,
-    /// Only watching: nothing runs that could be paused.
+    /// Observation only: there is no run to pause.
     pub monitor: bool,
-    /// Somebody has stopped the run at these keys.
+    /// The operator has stopped the run at these keys.
     pub attended: bool,
-    /// How many questions and choices have appeared.
+    /// Number of questions and choices that have appeared.
     pub appeared: u64,
-    /// From when on keys count for the last of them; None: it has not been drawn yet.
+    /// Time from which keys count for the last of them; None: it has not been drawn yet.
     heard_from: Option<Duration>,
-    /// Steps asked for while paused.
+    /// Number of single steps requested while paused.
     single: u32,
     said: VecDeque<String>,
     answer: Option<Inspection>,
     /// The rig is to unload: its question comes next.
     unload: bool,
-    /// What the person chose at last.
+    /// The final choice of the operator.
     chosen: Option<Stay>,
-    /// The terminal is gone: nobody answers any more.
+    /// The terminal is closed: no more answers are possible.
     lost: bool,
 }
 
@@ -60,23 +60,23 @@ pub struct Typing {
     pub text: String,
 }
 
-/// What the line is for.
+/// The purpose of the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum What {
     Note,
-    /// Whose note it is.
+    /// The author of a note.
     NoteName {
         note: String,
     },
-    /// The word of the question, or `n`.
+    /// The confirmation text of the question, or `n`.
     Answer,
     /// A remark to the answer.
     Remark,
-    /// Who answers.
+    /// The name of the operator who answers.
     AnswerName {
         yes: bool,
     },
-    /// Why a held run goes on.
+    /// The reason to resume a held run.
     Reason,
 }
 
@@ -88,7 +88,7 @@ impl Dialogue {
         }
     }
 
-    /// Nothing to pause and nothing asked: only an end and the help.
+    /// Without a pause and without questions: only exit and help.
     pub fn of_monitor() -> Self {
         Self {
             monitor: true,
@@ -96,7 +96,7 @@ impl Dialogue {
         }
     }
 
-    /// A key was pressed, `now`.
+    /// Processes a key that was pressed at the time `now`.
     pub fn press(&mut self, key: Key, now: Duration, stop_request: &StopRequest) {
         self.pressed(key, now, stop_request);
         self.open_question();
@@ -109,7 +109,7 @@ impl Dialogue {
         }
         let interrupts = key == Key::Interrupt;
         if self.is_asking() && !self.hears(now) {
-            // What stands there has not been read: only a Ctrl-C that stops a run counts.
+            // The operator cannot have read the question yet: only a Ctrl-C that stops a run counts.
             if interrupts && self.after.is_none() {
                 self.interrupt(stop_request);
             }
@@ -119,12 +119,12 @@ impl Dialogue {
             Some(after) if self.typing.is_none() && self.question.is_none() => {
                 return self.choose(after, key);
             }
-            // The run has ended: it is the motion that is not wanted.
+            // The run has ended: the operator refuses the motion.
             Some(_) if interrupts => return self.back_to_the_choice(),
             None if interrupts => return self.interrupt(stop_request),
             _ => {}
         }
-        // The help closes with any key; one that it names as a way to stop also does that.
+        // Any key closes the help. A stop key that the help names also stops the run.
         if std::mem::take(&mut self.help) && !matches!(key, Key::Character('h' | 'H' | 'q' | 'Q')) {
             return;
         }
@@ -171,7 +171,7 @@ impl Dialogue {
         }
     }
 
-    /// At a question. As long as nothing is typed, single keys are what they are elsewhere.
+    /// Processes a key at a question. As long as no text is typed, single keys have their usual meaning.
     fn answer(&mut self, key: Key, stop_request: &StopRequest) {
         let nothing_typed = self
             .typing
@@ -191,7 +191,7 @@ impl Dialogue {
         }
     }
 
-    /// What is done with a rig that holds. None of it moves anything yet.
+    /// Processes a choice for a rig on hold. No choice moves the rig yet.
     fn choose(&mut self, after: After, key: Key) {
         // Its question comes next.
         if self.unload {
@@ -277,7 +277,7 @@ impl Dialogue {
                 self.remark = Some(text).filter(|text| !text.is_empty());
                 self.line(What::Answer);
             }
-            // A note, an answer and a resumption have somebody's name and reason: a blank one is asked for again.
+            // A note, an answer and a resumption require a name or a reason: an empty text is asked for again.
             What::NoteName { .. } | What::AnswerName { .. } | What::Reason if text.is_empty() => {
                 self.line(what);
             }
@@ -325,7 +325,7 @@ impl Dialogue {
         self.answer = Some(question.kind.unanswered());
     }
 
-    /// A question waits until the line that is being typed is done: no letter of a note is taken for an answer.
+    /// Opens a question after the line that is being typed is complete: no character of a note is read as an answer.
     fn open_question(&mut self) {
         if self.question.is_some() && self.typing.is_none() {
             self.line(What::Answer);
@@ -333,13 +333,13 @@ impl Dialogue {
         }
     }
 
-    /// Something stands there that waits for a person: keys count for it once it has been drawn and could be read.
+    /// A question or choice appears. Keys count for it only after it has been drawn and could be read.
     const fn appear(&mut self) {
         self.appeared += 1;
         self.heard_from = None;
     }
 
-    /// What appeared as this number has been drawn, `now`.
+    /// The question or choice of this number was drawn at the time `now`.
     pub fn drawn(&mut self, appeared: u64, now: Duration) {
         if self.appeared == appeared && self.heard_from.is_none() {
             self.heard_from = Some(now + DEAF);
@@ -351,12 +351,12 @@ impl Dialogue {
         self.is_asking() && self.heard_from.is_none()
     }
 
-    /// Whether keys count by now for what waits for an answer.
+    /// Whether keys already count for the open question or choice.
     pub fn hears(&self, now: Duration) -> bool {
         self.heard_from.is_some_and(|from| now >= from)
     }
 
-    /// Whether something stands there that waits for an answer.
+    /// Whether a question or choice waits for an answer.
     const fn is_asking(&self) -> bool {
         match &self.typing {
             Some(Typing {
@@ -373,7 +373,7 @@ impl Dialogue {
             .is_some_and(|question| question.kind == Kind::Unload)
     }
 
-    /// The run asks; asked again, the answer is given once it is known.
+    /// Asks a question of the run; a later call returns the answer once it is known.
     pub fn ask(&mut self, question: &Question) -> Inspection {
         if self.lost {
             return Inspection::Stop {
@@ -392,7 +392,7 @@ impl Dialogue {
         Inspection::Wait
     }
 
-    /// The run has ended early, and the rig holds: whether it is to take the load off. None: it stays held.
+    /// The run has ended early, and the rig is on hold: asks whether it is to unload. None: it stays on hold.
     pub fn ask_to_unload(&mut self, question: &Question) -> Option<Inspection> {
         if self.lost || self.chosen.is_some() {
             return None;
@@ -417,12 +417,12 @@ impl Dialogue {
         Some(Inspection::Wait)
     }
 
-    /// The run has ended early: what the person before it wants.
+    /// The operator's choice after the early end of the run.
     pub fn stay(&mut self, after: After) -> Stay {
         if self.lost {
             return Stay::Leave;
         }
-        // Who left a held rig has not seen that nobody knows any more whether it holds.
+        // An operator who left a rig on hold has not seen that the hold is no longer confirmed.
         let news = after == After::NotHeld && self.after != Some(after);
         if let Some(chosen) = self.chosen.clone().filter(|_| !news) {
             return chosen;
@@ -438,7 +438,7 @@ impl Dialogue {
         self.back_to_the_choice();
     }
 
-    /// What a person wants between two steps.
+    /// The operator's request between two steps.
     pub fn next(&mut self) -> Next {
         if let Some(said) = self.said.pop_front() {
             return Next::Record(said);
@@ -451,7 +451,7 @@ impl Dialogue {
         Next::GoOn
     }
 
-    /// The terminal is gone: the rig holds, and nothing is answered.
+    /// The terminal is closed: the rig goes on hold, and questions stay unanswered.
     pub fn lose(&mut self, stop_request: &StopRequest) {
         self.lost = true;
         stop_request.hold_now();

@@ -1,44 +1,43 @@
-//! Bytes as a terminal sends them → keys that mean something to the dialogue. Ctrl-C and Ctrl-\ come as bytes here, since the
-//! terminal is in raw mode, and mean what their signals mean; no sequence that was begun and not ended swallows them. It reads
-//! nothing and waits for nothing.
+//! Bytes of a terminal → keys for the dialogue. Ctrl-C and Ctrl-\ arrive as bytes here, because the terminal is in raw mode, and act as
+//! their signals do. An incomplete escape sequence does not hide them. It reads nothing and does not wait.
 
-/// A key that means something.
+/// A key with a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     Character(char),
     Enter,
     Escape,
-    /// Takes the last character back.
+    /// Deletes the last character.
     Erase,
-    /// Takes the whole line back: Ctrl-U.
+    /// Deletes the whole line: Ctrl-U.
     EraseLine,
     /// Ctrl-C
     Interrupt,
     /// Ctrl-\
     Quit,
-    /// The end of what is typed: Ctrl-D.
+    /// The end of the input: Ctrl-D.
     End,
 }
 
 const ESCAPE: u8 = 0x1b;
 
-/// What was typed, between one read and the next.
+/// The typed bytes, between one read and the next.
 #[derive(Debug, Default)]
 pub struct Keyboard {
-    /// The beginning of a key that came in two pieces.
+    /// The beginning of a key that arrived in two parts.
     begun: Vec<u8>,
 }
 
-/// What the first bytes of some are.
+/// The meaning of the first bytes.
 enum First {
-    /// A key, or nothing that means anything here, this many bytes long.
+    /// A key, or bytes without a meaning here; the number is their length.
     Whole(Option<Key>, usize),
-    /// The beginning of one.
+    /// The beginning of a key.
     Part,
 }
 
 impl Keyboard {
-    /// The keys that these bytes make, with those before.
+    /// The keys of these bytes, together with the earlier ones.
     pub fn typed(&mut self, bytes: &[u8]) -> Vec<Key> {
         let mut all = std::mem::take(&mut self.begun);
         all.extend_from_slice(bytes);
@@ -54,7 +53,7 @@ impl Keyboard {
         keys
     }
 
-    /// Nothing came for a while: what was begun is not ended any more, and the next key is one of its own.
+    /// Nothing arrived for a while: an incomplete key is dropped, and the next byte begins a new key.
     pub fn quiet(&mut self) {
         self.begun.clear();
     }
@@ -83,13 +82,13 @@ const fn control(byte: u8) -> Option<Key> {
     }
 }
 
-/// What an escape begins: the key itself where nothing follows, a letter with Alt, an arrow or the like. None but the first
-/// means anything here.
+/// The meaning of an escape: the key itself if nothing follows, a letter with Alt, or an arrow or similar key. Only the first has a
+/// function here.
 fn sequence(after: &[u8]) -> First {
     let nothing = |length: usize| First::Whole(None, 1 + length);
     match after {
         [] => First::Whole(Some(Key::Escape), 1),
-        // A control character is itself, wherever it comes.
+        // A control character keeps its meaning at any position.
         [byte, ..] if byte.is_ascii_control() => {
             First::Whole((*byte == ESCAPE).then_some(Key::Escape), 1)
         }
@@ -112,7 +111,7 @@ fn sequence(after: &[u8]) -> First {
     }
 }
 
-/// The first character and its length in bytes; a byte that can be none is passed over. None where the rest is still to come.
+/// The first character and its length in bytes; an invalid byte is skipped. None if the rest is still missing.
 fn character(bytes: &[u8]) -> Option<(Option<char>, usize)> {
     let longest = &bytes[..bytes.len().min(4)];
     let good = match std::str::from_utf8(longest) {
@@ -184,7 +183,7 @@ mod tests {
     #[test]
     fn a_key_that_comes_in_pieces_is_one_key() {
         let whole = "é\u{1b}[1;5C€q".as_bytes();
-        // A piece that ends with the escape itself is the key of that name.
+        // A part that ends with the escape byte is the Escape key.
         for cut in (1..whole.len()).filter(|cut| whole[cut - 1] != ESCAPE) {
             let mut keyboard = Keyboard::default();
             let keys = [keyboard.typed(&whole[..cut]), keyboard.typed(&whole[cut..])].concat();

@@ -1,6 +1,5 @@
-//! The live screen of a run. In: reports of the run, and keys. Out: frames, stop requests and
-//! answers. The run only stores its reports; a thread of the screen draws them, at most twenty
-//! times a second.
+//! The live screen of a run. In: reports of the run, and keys. Out: frames, stop requests and answers. The run only stores its reports; a
+//! separate thread draws them, at most twenty times per second.
 
 mod curve;
 mod dialogue;
@@ -26,16 +25,16 @@ use terminal::{Gone, Page};
 
 pub use terminal::is_large_enough;
 
-/// Time from one picture to the next, at least.
+/// Minimum time between two frames.
 const FRAME: Duration = Duration::from_millis(50);
 
-/// A virtual run shorter than this shows no screen.
+/// A simulated run shorter than this shows no screen.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How long the end of a run waits for the terminal to be given back.
+/// Time that the end of a run waits until the terminal is restored.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// The run's side of the screen.
+/// The part of the screen that the run uses.
 pub struct Screen {
     shared: Arc<Shared>,
     stop_request: StopRequest,
@@ -44,20 +43,20 @@ pub struct Screen {
 
 struct Shared {
     state: Mutex<State>,
-    /// Something is to be shown, or an answer is there.
+    /// New data are to be shown, or an answer is available.
     changed: Condvar,
 }
 
 struct State {
     model: Model,
     dialogue: Dialogue,
-    /// Where the rig shows what it reads, on the way too.
+    /// The live readings of the rig, also during a move.
     live: Option<Live>,
-    /// The screen is wanted, however short the run.
+    /// The screen is requested, however short the run.
     wanted: bool,
-    /// The run is over.
+    /// The run has ended.
     over: bool,
-    /// The terminal has been given back, or was never taken.
+    /// The terminal has been restored, or the screen never used it.
     closed: bool,
 }
 
@@ -68,7 +67,7 @@ impl Shared {
 }
 
 impl Screen {
-    /// A screen for a run of `plan`; it appears at once on a real rig, else when the run lasts.
+    /// A screen for a run of `plan`. On a real rig it appears immediately, otherwise only if the run takes long enough.
     pub fn new(
         plan: &Plan,
         simulated: bool,
@@ -85,7 +84,7 @@ impl Screen {
         )
     }
 
-    /// A screen that only watches, under this word.
+    /// A screen for observation only, with this title.
     pub fn monitor(
         plan: &Plan,
         simulated: bool,
@@ -128,12 +127,12 @@ impl Screen {
         }
     }
 
-    /// The numbers are those of this rig as it reads them.
+    /// Shows the readings of this rig.
     pub fn watch(&self, live: Live) {
         self.shared.lock().live = Some(live);
     }
 
-    /// Asks, or gives the answer once it is known.
+    /// Asks, or returns the answer once it is known.
     pub fn ask(&self, question: &Question) -> Inspection {
         self.wait_for(
             |dialogue| dialogue.ask(question),
@@ -141,7 +140,7 @@ impl Screen {
         )
     }
 
-    /// The run has ended early, and the rig holds: what may be done with it. None: it stays held.
+    /// The run has ended early, and the rig is on hold: asks whether it is to unload. None: it stays on hold.
     pub fn ask_to_unload(&self, question: &Question) -> Option<Inspection> {
         self.wait_for(
             |dialogue| dialogue.ask_to_unload(question),
@@ -149,17 +148,17 @@ impl Screen {
         )
     }
 
-    /// The run has ended early: what the person before it wants.
+    /// The operator's choice after the early end of the run.
     pub fn stay(&self, after: After) -> Stay {
         self.wait_for(|dialogue| dialogue.stay(after), |stay| *stay == Stay::Wait)
     }
 
-    /// Whether somebody has stopped the run at its keys.
+    /// Whether the operator has stopped the run at its keys.
     pub fn is_attended(&self) -> bool {
         self.shared.lock().dialogue.attended
     }
 
-    /// What the dialogue says; where that is to wait, after a moment: an answer, or the time for the rig to be heard from.
+    /// The result of the dialogue. While there is none, it waits a moment for an answer, or until the next poll of the rig.
     fn wait_for<T>(
         &self,
         ask: impl FnOnce(&mut Dialogue) -> T,
@@ -175,7 +174,7 @@ impl Screen {
         answer
     }
 
-    /// Gives the terminal back.
+    /// Restores the terminal.
     pub fn finish(&mut self) {
         if std::mem::replace(&mut self.finished, true) {
             return;
@@ -183,7 +182,7 @@ impl Screen {
         let mut state = self.shared.lock();
         state.over = true;
         self.shared.changed.notify_all();
-        // A terminal that is gone may keep its thread for ever; the run's results are not kept with it.
+        // A closed terminal may block its thread forever; it must not block the results of the run.
         let closed = self
             .shared
             .changed
@@ -239,7 +238,7 @@ impl Observer for Screen {
     }
 }
 
-/// The screen's thread.
+/// The thread of the screen.
 fn show(shared: &Shared, stop_request: &StopRequest, color: bool) {
     let began = Instant::now();
     let mut left = Left {
@@ -250,11 +249,11 @@ fn show(shared: &Shared, stop_request: &StopRequest, color: bool) {
     left.gone = is_wanted(shared) && page(shared, stop_request, color, began).is_err();
 }
 
-/// Says that the thread has left the terminal, however it did.
+/// Reports that the thread has released the terminal, on every exit path.
 struct Left<'a> {
     shared: &'a Shared,
     stop_request: &'a StopRequest,
-    /// The terminal is gone, or the drawing failed: nobody will answer.
+    /// The terminal is closed, or the drawing failed: no answer will come.
     gone: bool,
 }
 
@@ -269,7 +268,7 @@ impl Drop for Left<'_> {
     }
 }
 
-/// Waits until the run has lasted, or asks for the screen; false when it is over before.
+/// Waits until the run has lasted long enough, or requests the screen; false if the run ends earlier.
 fn is_wanted(shared: &Shared) -> bool {
     let state = shared.lock();
     let waited = shared
@@ -279,7 +278,7 @@ fn is_wanted(shared: &Shared) -> bool {
     !state.over
 }
 
-/// Draws and listens until the run is over.
+/// Draws and reads keys until the run has ended.
 fn page(
     shared: &Shared,
     stop_request: &StopRequest,
@@ -315,7 +314,7 @@ fn page(
             Page::ring();
         }
         if dialogue.is_new() {
-            // What was typed before it could be seen is none of its answers.
+            // Input typed before the screen was visible is not an answer.
             loop {
                 let pressed = page.keys(Duration::ZERO)?;
                 if pressed.is_empty() {
@@ -328,7 +327,7 @@ fn page(
                 .dialogue
                 .drawn(dialogue.appeared, began.elapsed());
         }
-        // Keys are heard at once, and the next picture is drawn when its time has come.
+        // Keys are processed immediately; the next frame is drawn at its time.
         while let Some(left) = FRAME
             .checked_sub(drawn.elapsed())
             .filter(|left| !left.is_zero())

@@ -1,5 +1,5 @@
-//! What the screen knows of a run. In: what the run tells its observer. Out: numbers in SI and words, bounded in number
-//! however long the run is. It knows no terminal and no clock.
+//! The data of the screen about a run. In: reports of the run to its observer. Out: numbers in SI and strings, bounded in number for a
+//! run of any length. It knows no terminal and no clock.
 
 use std::collections::VecDeque;
 
@@ -11,45 +11,45 @@ use crate::rig::real::commands_only;
 use crate::run::{StepReport, UNLOADING};
 use crate::units::Dimension;
 
-/// Events kept for the screen.
+/// Largest number of events kept for the screen.
 const MOST_EVENTS: usize = 32;
 
-/// The procedure that moves nothing.
+/// The procedure without motion.
 pub const INSPECT: &str = "inspect";
 
-/// Everything that is drawn but the dialogue with the person.
+/// All drawn data except the dialogue with the operator.
 #[derive(Clone, Debug)]
 pub struct Model {
     pub title: String,
     pub rig: String,
     pub simulated: bool,
     pub limits: Limits,
-    /// The procedure that runs, or ran last.
+    /// The procedure that runs, or that ran last.
     pub procedure: Option<Running>,
     pub last: Option<StepReport>,
-    /// While the uncertainty of the results is worked out: runs taken again, of how many.
+    /// While the uncertainty of the results is calculated: number of re-runs done, and their total.
     pub study: Option<(usize, usize)>,
-    /// Displacement (m) over time (s) of this procedure.
+    /// Displacement \[m\] over time \[s\] of this procedure.
     pub displacement: Curve,
-    /// Force (N) over displacement (m) of this procedure.
+    /// Force \[N\] over displacement \[m\] of this procedure.
     pub force: Curve,
-    /// Change of target by the last step, m.
+    /// Change of target in the last step \[m\].
     pub increment: Option<f64>,
-    /// The newest last.
+    /// The events; the newest is last.
     pub events: VecDeque<Event>,
-    /// What stands in place of a running procedure: `monitor`.
+    /// The title in place of a running procedure: `monitor`.
     pub by_hand: Option<&'static str>,
-    /// Nothing measures where the actuator is.
+    /// The actuator has no displacement feedback.
     pub open_loop: bool,
-    /// Its safe state is to unload.
+    /// The safe state of the rig is to unload.
     pub unloads: bool,
-    /// What was read last, also while nothing moves and on the way: m, N, one entry an axis.
+    /// The last reading, also at rest and during a move: \[m\], \[N\], one entry per axis.
     pub live: Option<Feedback>,
-    /// The run has ended early: what became of the rig.
+    /// The run has ended early: the state of the rig.
     pub ended: Option<Ended>,
 }
 
-/// What a rig does whose run has ended early.
+/// State of a rig whose run has ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
     Held,
@@ -57,31 +57,31 @@ pub enum Ended {
     Unloading,
 }
 
-/// A procedure and how far it can go.
+/// A procedure and its maximum number of steps.
 #[derive(Clone, Debug)]
 pub struct Running {
     pub name: String,
     pub keyword: String,
-    /// Upper bound of its steps, where one is known.
+    /// Upper bound of its steps, if one is known.
     pub steps: Option<u64>,
 }
 
-/// One limit and where the last step stands in it.
+/// One limit and the position of the last step in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitRow {
     pub name: &'static str,
     pub dimension: Dimension,
     pub limit: Interval,
-    /// Whether it bounds a size, to which 0 is no danger.
+    /// Whether it bounds an absolute value, for which 0 is not a danger.
     pub size: bool,
-    /// Whether psd itself keeps to it: at its bound the rig goes as it was told, and only past it something is wrong.
+    /// Whether psd itself applies the limit. At the bound the rig follows its command; only a value beyond the bound is an error.
     pub kept: bool,
-    /// None where nothing is known of it yet.
+    /// None if no value is known yet.
     pub value: Option<f64>,
 }
 
 impl LimitRow {
-    /// Distance to the nearer end; negative past it.
+    /// Distance to the nearer end; negative beyond it.
     pub fn margin(&self) -> Option<f64> {
         let value = self.value?;
         let above = if self.size && self.limit.low == 0.0 {
@@ -127,7 +127,7 @@ impl Model {
             keyword: keyword.to_owned(),
             steps,
         });
-        // While a person looks at the specimen, what came before stays to be seen.
+        // During an inspection of the specimen, the earlier data stay visible.
         if keyword == INSPECT {
             return;
         }
@@ -146,7 +146,7 @@ impl Model {
                 .map(|((to, ..), (from, ..))| (to - from).abs());
             changes.fold(0.0, f64::max)
         });
-        // Of several floors the highest one, and the base shear over the drift of the lowest storey.
+        // For several floors: the highest one, and the base shear over the storey drift of the lowest storey.
         let highest = report
             .axes()
             .last()
@@ -159,7 +159,7 @@ impl Model {
         self.last = Some(report.clone());
     }
 
-    /// Axes that the last step moved.
+    /// Number of axes in the last step.
     pub fn axes(&self) -> usize {
         self.feedback().len().max(1)
     }
@@ -177,7 +177,7 @@ impl Model {
         self.events.push_back(event.clone());
     }
 
-    /// Displacement (m) and force (N) of every axis: as read last, else at the end of the last step.
+    /// Displacement \[m\] and force \[N\] of every axis: the last reading, or else the end of the last step.
     pub fn feedback(&self) -> Vec<(f64, f64)> {
         match &self.live {
             Some(live) => live
@@ -195,7 +195,7 @@ impl Model {
         }
     }
 
-    /// |command − displacement| of the last step, m; none while the rig is read on the way.
+    /// |command − displacement| of the last step \[m\]; None while the rig is read during a move.
     pub fn tracking_error(&self) -> Option<f64> {
         let on_the_way = self
             .procedure
@@ -212,7 +212,7 @@ impl Model {
         errors.reduce(f64::max)
     }
 
-    /// The limits of the plan that a step says something of, those that bound nothing left out.
+    /// The limits of the plan for which a step gives a value; limits without a bound are left out.
     pub fn limit_rows(&self) -> Vec<LimitRow> {
         let Limits {
             displacement,
@@ -224,7 +224,7 @@ impl Model {
             tracking_energy_error,
             nrms_error,
         } = self.limits;
-        // Of several axes the one with the largest size.
+        // For several axes: the one with the largest absolute value.
         let of = |value: fn((f64, f64)) -> f64| {
             let feedback = self.feedback();
             let values = feedback.into_iter().map(value);

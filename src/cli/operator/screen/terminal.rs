@@ -1,6 +1,6 @@
-//! The terminal while the screen stands: raw mode, another page, no cursor. In: pictures. Out: keys. However the program
-//! ends, the terminal is as it was before; a terminal that is gone is told as such and never waited for. What is typed is read
-//! here, byte by byte, and not by a queue of events: one that hears of a new size of the window may miss the key beside it.
+//! The terminal while the screen is on: raw mode, alternate page, no cursor. In: frames. Out: keys. The terminal is restored on every
+//! exit. A closed terminal is reported and never waited for. Input is read here, byte by byte. An event queue is not used, because it can
+//! lose a key when the window size changes.
 
 use std::io::{BufWriter, Stderr, Write as _, stderr};
 use std::mem::ManuallyDrop;
@@ -19,14 +19,14 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use super::draw::{SMALLEST, View, draw};
 use super::keys::{Key, Keyboard};
 
-/// The terminal is gone.
+/// The terminal is closed.
 #[derive(Clone, Copy, Debug)]
 pub struct Gone;
 
 /// Drawn on standard error: standard output may be a pipe.
 pub struct Page {
-    /// Never dropped: it would print that it cannot show the cursor of a terminal that is gone, and what cannot be printed panics, which
-    /// holds the rig. [`restore`] shows the cursor.
+    /// Never dropped. The destructor prints an error if it cannot show the cursor of a closed terminal. That print panics, and a panic
+    /// puts the rig on hold. [`restore`] shows the cursor.
     terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<Stderr>>>>,
     keyboard: Keyboard,
 }
@@ -37,11 +37,11 @@ pub fn is_large_enough() -> bool {
 }
 
 impl Page {
-    /// Takes the terminal.
+    /// Sets up the terminal.
     pub fn open() -> Result<Self, Gone> {
         static HOOK: Once = Once::new();
         HOOK.call_once(|| {
-            // What a panic says must land on the page that stays.
+            // The message of a panic must appear on the normal page.
             let before = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |panic| {
                 restore();
@@ -72,12 +72,12 @@ impl Page {
             .map_err(|_| Gone)
     }
 
-    /// Makes itself heard by who does not look.
+    /// Rings the bell, for an operator who does not look at the screen.
     pub fn ring() {
         let _ = stderr().write_all(b"\x07").and_then(|()| stderr().flush());
     }
 
-    /// The keys pressed, if any within the time-out.
+    /// The keys pressed within the time-out.
     pub fn keys(&mut self, timeout: Duration) -> Result<Vec<Key>, Gone> {
         if !has_input(timeout)? {
             self.keyboard.quiet();
@@ -99,15 +99,14 @@ impl Drop for Page {
     }
 }
 
-/// Gives the terminal back. Once more does no harm.
+/// Restores the terminal. A second call has no effect.
 fn restore() {
     let _ = disable_raw_mode();
     let _ = execute!(stderr(), LeaveAlternateScreen, Show);
     let _ = stderr().flush();
 }
 
-/// Whether a key waits. A read is begun only where there is something to read: it never waits, and ends at once on a terminal
-/// that is gone.
+/// Whether a key is waiting. psd reads only if there is input: the read never blocks, and ends immediately on a closed terminal.
 fn has_input(timeout: Duration) -> Result<bool, Gone> {
     let stdin = std::io::stdin();
     let mut watched = [PollFd::new(&stdin, PollFlags::IN)];
@@ -116,7 +115,7 @@ fn has_input(timeout: Duration) -> Result<bool, Gone> {
         tv_nsec: timeout.subsec_nanos().into(),
     };
     match poll(&mut watched, Some(&wait)) {
-        // Nothing yet; or the size of the window changed, or the like.
+        // No input yet; or for example the window size changed.
         Ok(0) | Err(rustix::io::Errno::INTR) => Ok(false),
         Err(_) => Err(Gone),
         Ok(_) => {

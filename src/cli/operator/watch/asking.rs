@@ -1,5 +1,5 @@
-//! A person who answers questions by typing lines: on a terminal too small for the screen, and by hand. In: lines. Out: an answer
-//! with its remark and name, what is done with a rig that holds. The end of the input never counts as yes.
+//! An operator who answers questions by typing lines: on a terminal too small for the screen, and for manual moves. In: lines. Out: an
+//! answer with its remark and name, or the choice for a rig on hold. The end of the input never counts as yes.
 
 use super::Stay;
 use super::typed::{Heard, Typed};
@@ -9,17 +9,17 @@ use crate::rig::StopRequest;
 use crate::run::Inspection;
 use crate::text::diagnostic::excerpt::escape;
 
-/// Where the conversation is.
+/// State of the dialogue.
 #[derive(Default)]
 pub struct Person {
-    /// The lines typed, once anything has been asked.
+    /// The typed lines, after the first question.
     typed: Option<Typed>,
     state: State,
-    /// Of the question that waits.
+    /// The remark to the open question.
     remark: Option<String>,
     /// The rig is to unload: its question comes next.
     unload: bool,
-    /// What is done with a rig that holds, at last.
+    /// The final choice for a rig on hold.
     chosen: Option<Stay>,
 }
 
@@ -28,16 +28,16 @@ enum State {
     #[default]
     Silent,
     Asked(Kind),
-    /// Asked for the name to this answer.
+    /// Asks for the name to this answer.
     Naming(Kind, bool),
-    /// Before a run that ended early.
+    /// Asks for the choice after the early end of a run.
     Choosing(After),
-    /// Asked why it may go on.
+    /// Asks for the reason to resume.
     Resuming(After),
 }
 
 impl Person {
-    /// Asks, or looks for an answer to what was asked. A name once given is kept.
+    /// Asks, or checks for an answer to the open question. A name is asked for only once.
     pub fn ask(&mut self, question: &Question, operator: &mut Option<String>) -> Inspection {
         let kind = question.kind;
         if !matches!(self.state, State::Asked(asked) | State::Naming(asked, _) if asked == kind) {
@@ -59,8 +59,8 @@ impl Person {
         }
     }
 
-    /// The run has ended early, and the rig holds: whether it is to take the load off. None: it stays held. `told` is what there is to
-    /// see, at this moment.
+    /// The run has ended early, and the rig is on hold: asks whether it is to unload. None: it stays on hold. `told` is the present state
+    /// of the rig in lines.
     pub fn ask_to_unload(
         &mut self,
         question: &Question,
@@ -89,9 +89,9 @@ impl Person {
         self.chosen.is_none().then_some(Inspection::Wait)
     }
 
-    /// The run has ended early: what the person wants.
+    /// The operator's choice after the early end of the run.
     pub fn stay(&mut self, after: After, told: &[String]) -> Stay {
-        // Who left a held rig has not seen that nobody knows any more whether it holds.
+        // An operator who left a rig on hold has not seen that the hold is no longer confirmed.
         if after == After::NotHeld && self.state != State::Choosing(after) {
             self.chosen = None;
         }
@@ -101,12 +101,12 @@ impl Person {
         self.chosen.clone().unwrap_or(Stay::Wait)
     }
 
-    /// Nothing more is to be done with the rig.
+    /// Ends the dialogue: the rig keeps its state.
     pub fn leave(&mut self) {
         (self.unload, self.chosen) = (false, Some(Stay::Leave));
     }
 
-    /// Shows what may be chosen, or looks for the choice.
+    /// Shows the available choices, or checks for the choice.
     fn choose(&mut self, after: After, told: &[String]) {
         if ![State::Choosing(after), State::Resuming(after)].contains(&self.state) {
             print_message(&format!("\n  {}\n", told.join("\n  ")));
@@ -183,7 +183,7 @@ impl Person {
     }
 }
 
-/// A question as it is told in lines.
+/// The text of a question in lines.
 fn shown(question: &Question) -> String {
     format!(
         "\n  {}\n  {}\n",
@@ -192,7 +192,7 @@ fn shown(question: &Question) -> String {
     )
 }
 
-/// What may be typed.
+/// The possible input at a question.
 fn prompt(kind: Kind) -> String {
     let remark = if kind == Kind::Jog {
         ""
@@ -206,7 +206,7 @@ fn prompt(kind: Kind) -> String {
     )
 }
 
-/// What may be typed before a run that ended early; any other line shows once more where the rig stands.
+/// The possible input after the early end of a run; any other line shows the state of the rig again.
 fn choices(after: After) -> String {
     let lines: Vec<String> = after
         .choices()
@@ -216,8 +216,8 @@ fn choices(after: After) -> String {
     format!("{}  > ", lines.concat())
 }
 
-/// The next line typed. None at the end of the input, which never counts as yes, and on Ctrl-C. While nothing is typed,
-/// `meanwhile` is done again and again: a rig must hear from the program however long a person thinks.
+/// The next line typed. None at the end of the input, which never counts as yes, and on Ctrl-C. While there is no input, `meanwhile` is
+/// repeated: the rig must be polled however long the operator thinks.
 ///
 /// # Errors
 /// As `meanwhile`.
@@ -236,7 +236,7 @@ pub fn next_line<E>(
     }
 }
 
-/// Asks for one motion; only its word is a yes. As [`next_line`].
+/// Asks for one motion; only its confirmation text is a yes. As [`next_line`].
 ///
 /// # Errors
 /// As `meanwhile`.

@@ -30,22 +30,22 @@ pub struct Watcher {
     asking: Asking,
     operator: Option<String>,
     stop_request: StopRequest,
-    /// What the run is expected to do.
+    /// The expected demand of the run.
     expected: Extent,
-    /// What the rig was asked to be released for.
+    /// The motion for which the rig was released.
     released: Option<Motion>,
-    /// Why the run ended early.
+    /// The reason for the early end of the run.
     ended: Option<String>,
-    /// That nobody knows whether the rig holds.
+    /// The alarm that the hold of the rig is not confirmed.
     alarm: Option<String>,
-    /// Where a rig shows what it reads.
+    /// The live readings of a rig.
     live: Option<Live>,
-    /// How many stops had been requested when a person was first asked what to do with a rig that holds.
+    /// Number of stop requests when the operator was first asked about a rig on hold.
     stops_before: Option<u32>,
     _signals: Signals,
 }
 
-/// What the person sees.
+/// The display for the operator.
 #[expect(clippy::large_enum_variant, reason = "a run has one")]
 enum Face {
     Screen(Screen),
@@ -54,7 +54,7 @@ enum Face {
 }
 
 impl Face {
-    /// Takes a bar off the terminal.
+    /// Removes the bar from the terminal.
     fn clear(&mut self) {
         if let Self::Bar(bar) = self {
             bar.clear();
@@ -62,21 +62,21 @@ impl Face {
     }
 }
 
-/// Who answers at an inspection.
+/// The source of answers at an inspection.
 enum Asking {
     /// `--yes`
     Yes,
-    /// A person at the screen.
+    /// An operator at the screen.
     Screen,
-    /// A person who types lines.
+    /// An operator who types lines.
     Person(Person),
-    /// No terminal, and nothing real moves.
+    /// No terminal, and no real rig moves.
     NobodyNeeded,
     /// No terminal, and a real rig waits for an answer that cannot come.
     Nobody,
 }
 
-/// What the command line says of the person.
+/// The command-line options about the operator.
 #[derive(Clone, Debug, Default)]
 pub struct Attendance {
     /// `--yes`
@@ -86,8 +86,8 @@ pub struct Attendance {
 }
 
 impl Watcher {
-    /// Watches a run on a simulated or a real rig. Keys and signals become the wish of `signals`, which a rig that can hold in
-    /// the middle of a step is given too.
+    /// Observes a run on a simulated or a real rig. Keys and signals set the stop request of `signals`. A rig that can hold in the middle
+    /// of a step also receives it.
     pub fn new(
         settings: Settings,
         attendance: &Attendance,
@@ -98,7 +98,7 @@ impl Watcher {
         Self::watching(settings, attendance, plan, simulated, signals, true)
     }
 
-    /// Watches in lines, also on a terminal: a client drives, and there is no procedure to draw.
+    /// Observes in lines, also on a terminal: a client drives, and there is no procedure to draw.
     pub fn in_lines(
         settings: Settings,
         attendance: &Attendance,
@@ -166,7 +166,7 @@ impl Watcher {
         }
     }
 
-    /// Shows the numbers of this rig as it reads them.
+    /// Shows the live readings of this rig.
     pub fn watch(&mut self, live: Live) {
         if let Face::Screen(screen) = &self.face {
             screen.watch(live.clone());
@@ -174,12 +174,12 @@ impl Watcher {
         self.live = Some(live);
     }
 
-    /// What the run is expected to do, for who releases it.
+    /// Sets the expected demand of the run, for the operator who releases the rig.
     pub const fn expect(&mut self, expected: Extent) {
         self.expected = expected;
     }
 
-    /// What a person wants of a run that has ended early, as long as somebody looks at the rig. `resume`: whether the run could go on.
+    /// The operator's choice after the early end of a run, while the rig is observed. `resume`: whether the run can be resumed.
     pub fn stay(&mut self, resume: bool) -> Stay {
         if !self.stop_request.prompts_allowed() {
             return Stay::Leave;
@@ -208,13 +208,13 @@ impl Watcher {
         }
     }
 
-    /// Whether Ctrl-C came since a person was first asked what to do with a rig that holds.
+    /// Whether Ctrl-C came after the operator was first asked about a rig on hold.
     fn is_interrupted(&mut self) -> bool {
         let now = self.stop_request.requests();
         now != *self.stops_before.get_or_insert(now)
     }
 
-    /// What a person in lines sees of a rig whose run has ended early: the alarm alone, or why it holds and what it feels.
+    /// The lines about a rig whose run has ended early: the alarm alone, or the reason of the hold and the measured forces.
     fn told_of_the_rig(&self) -> Vec<String> {
         if let Some(alarm) = &self.alarm {
             return vec![alarm.clone()];
@@ -231,7 +231,7 @@ impl Watcher {
             .collect()
     }
 
-    /// Whether somebody sits at the screen.
+    /// Whether an operator is at the screen.
     fn stays(&self) -> bool {
         let Face::Screen(screen) = &self.face else {
             return false;
@@ -239,7 +239,7 @@ impl Watcher {
         matches!(self.asking, Asking::Screen) || screen.is_attended()
     }
 
-    /// Takes screen and bar off the terminal.
+    /// Removes screen and bar from the terminal.
     pub fn finish(&mut self) {
         if let Face::Screen(screen) = &mut self.face {
             screen.finish();
@@ -309,7 +309,7 @@ impl Observer for Watcher {
         }
         let answer = person.ask_to_unload(&question, &told, &mut self.operator);
         if matches!(answer, Some(Inspection::GoOn { .. })) {
-            // A Ctrl-C on the way is for that way.
+            // A Ctrl-C during a move stops that move.
             self.stops_before = None;
         }
         answer
@@ -360,7 +360,7 @@ impl Watcher {
     }
 }
 
-/// A watcher that is also asked while nothing runs: before a record that was played is gone on with.
+/// An observer that is also asked while no run is active: before a replayed run is resumed.
 pub struct Shared<'a>(pub &'a RefCell<Watcher>);
 
 impl Observer for Shared<'_> {

@@ -1,5 +1,5 @@
-//! Watching without the screen: a bar where there is a terminal, lines where there is none. In: what the run tells. Out:
-//! text on standard error, escaped. Neither asks anything.
+//! Observation without the screen: a bar on a terminal, lines otherwise. In: reports of the run. Out: text on standard error, escaped.
+//! Neither asks a question.
 
 use std::fmt::Write as _;
 
@@ -26,14 +26,14 @@ impl Bar {
         };
         let filled = if unicode { "━╸ " } else { "=> " };
         Self {
-            // How it looks where the number of steps is known before, and where it is not.
+            // The style with a known number of steps, and without one.
             counted: template("  {prefix}  {bar:28} {percent:>3} %  {msg}").progress_chars(filled),
             endless: template("  {prefix}  step {pos}  {msg}"),
             shown: None,
         }
     }
 
-    /// Takes the bar off the terminal.
+    /// Removes the bar from the terminal.
     pub fn clear(&mut self) {
         if let Some(bar) = self.shown.take() {
             bar.finish_and_clear();
@@ -59,9 +59,9 @@ impl Observer for Bar {
         let step = report.step;
         let Some(bar) = &self.shown else { return };
         bar.set_position(step);
-        // Most steps are never drawn: words are made for some only.
+        // Most steps are never drawn: the text is made for some only.
         if step.is_multiple_of(16) {
-            // Of several axes the highest floor and the base shear tell most.
+            // For several axes the highest floor and the base shear are the most useful.
             let displacement = report
                 .axes()
                 .last()
@@ -93,13 +93,13 @@ impl Observer for Bar {
     }
 }
 
-/// One line a procedure, with where it came to, and one an event that a person would want to see as it happens.
+/// One line per procedure, with its result, and one per event that the operator should see when it happens.
 #[derive(Default)]
 pub struct Lines {
     keyword: String,
     /// Number of the last step.
     last: Option<u64>,
-    /// Largest |X|, m, and |R|, N.
+    /// Largest |X| \[m\] and |R| \[N\].
     largest: (f64, f64),
 }
 
@@ -150,7 +150,7 @@ impl Observer for Lines {
     }
 
     fn event(&mut self, event: &Event) {
-        // Remarks are for the report; it has them.
+        // Observations appear in the report only.
         if event.kind != EventKind::Remark {
             print_message(&format!("  {}\n", escape(&event.text).replace('\n', " ")));
         }

@@ -1,7 +1,7 @@
-//! Signals → the wish. In: SIGINT, SIGQUIT, SIGTERM, SIGHUP. Out: one Ctrl-C stops the run at the end of its step, a second one holds the
-//! rig now; each of the others holds it now, and so does Ctrl-C by hand, where there are no steps. Where there is no screen that shows it,
-//! a line says so at once. Signals that other programs use to count or to wake, and that of a file that is too large, are caught and do
-//! nothing: nobody sends them to have a rig left alone.
+//! Signals → the stop request. In: SIGINT, SIGQUIT, SIGTERM, SIGHUP. Out: one Ctrl-C stops the run at the end of its step, a second one
+//! puts the rig on hold now. Each other signal puts it on hold now, and so does Ctrl-C in a manual move, which has no steps. Without a
+//! screen, a line reports it immediately. Signals that other programs use for counting or waking are caught and have no effect. The same
+//! applies to the signal for a file that is too large. Their senders do not intend to leave a rig uncontrolled.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -12,8 +12,8 @@ use signal_hook::iterator;
 use crate::cli::output::print_message;
 use crate::rig::StopRequest;
 
-/// Signals are caught as long as this lives. Afterwards they do nothing: what a run leaves is still being written. One for all
-/// of a run: what came while one was given up for another would be lost.
+/// Signals are caught as long as this exists. Afterwards they have no effect, because the results are still being written. There is one
+/// for the whole run: a signal between two of them would be lost.
 pub struct Signals {
     handle: iterator::Handle,
     stop_request: StopRequest,
@@ -21,7 +21,7 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Ctrl-C is a person's who waits for the end of the step; whoever sends another signal waits for nothing.
+    /// A Ctrl-C comes from an operator who waits for the end of the step. The sender of another signal does not wait.
     pub fn caught(stop_request: &StopRequest) -> std::io::Result<Self> {
         Self::become_wishes(stop_request, |stop_request, signal| {
             if signal == SIGINT {
@@ -32,12 +32,12 @@ impl Signals {
         })
     }
 
-    /// The first signal holds the rig already.
+    /// The first signal already puts the rig on hold.
     pub fn holding(stop_request: &StopRequest) -> std::io::Result<Self> {
         Self::become_wishes(stop_request, |stop_request, _| stop_request.hold_now())
     }
 
-    /// Nothing moves, and a rig that is only looked at is told nothing: the first signal ends the looking.
+    /// Nothing moves, and an observed rig receives no command: the first signal ends the observation.
     pub fn ending(stop_request: &StopRequest) -> std::io::Result<Self> {
         Self::become_wishes(stop_request, |stop_request, _| interrupt(stop_request))
     }
@@ -56,7 +56,7 @@ impl Signals {
             for signal in signals.forever() {
                 match signal {
                     SIGUSR1 | SIGUSR2 | SIGALRM => continue,
-                    // These two come from the keys.
+                    // These two come from the keyboard.
                     SIGINT | SIGQUIT => {}
                     _ => theirs.suppress_prompts(),
                 }
@@ -75,7 +75,7 @@ impl Signals {
         })
     }
 
-    /// From here on each is answered by a line: there is no screen that would show it.
+    /// From here on a line reports each signal: there is no screen that would show it.
     pub fn told_in_lines(&self, terminal: bool) {
         self.told.store(
             if terminal { ON_A_TERMINAL } else { IN_A_PIPE },
@@ -83,21 +83,21 @@ impl Signals {
         );
     }
 
-    /// What they become.
+    /// The stop request that they set.
     pub const fn stop_request(&self) -> &StopRequest {
         &self.stop_request
     }
 }
 
-/// Whether and where signals are answered by a line.
+/// Whether a line reports signals, and on which kind of output.
 const SILENT: u8 = 0;
 const IN_A_PIPE: u8 = 1;
 const ON_A_TERMINAL: u8 = 2;
 
-/// Takes what stands in the line off it: a bar, or the terminal's own `^C`.
+/// Removes the text of the present line: a bar, or the `^C` of the terminal.
 const CLEARED: &str = "\r\u{1b}[K";
 
-/// What a signal comes to, for who sent it.
+/// The effect of a signal, as a message to its sender.
 fn said(stop_request: &StopRequest) -> &'static str {
     if stop_request.hold_requested() {
         "holding now"
@@ -106,12 +106,12 @@ fn said(stop_request: &StopRequest) -> &'static str {
     }
 }
 
-/// From here on a file that may not grow any further is a write that fails, and holds the rig, not the program's end.
+/// From here on a file at its size limit gives a write error. The error puts the rig on hold and does not end the program.
 pub fn catch_full_files() -> std::io::Result<()> {
     signal_hook::flag::register(SIGXFSZ, Arc::default()).map(drop)
 }
 
-/// One Ctrl-C: the first stops the run at the end of its step, the second holds the rig now.
+/// One Ctrl-C: the first stops the run at the end of its step, the second puts the rig on hold now.
 pub fn interrupt(stop_request: &StopRequest) {
     if stop_request.end_requested() {
         stop_request.hold_now();

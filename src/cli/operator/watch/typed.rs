@@ -1,5 +1,5 @@
-//! Lines typed on a terminal, beside a run. In: lines, a clock. Out: the lines that count for the question that stands there: what was
-//! typed before it could be read is thrown away.
+//! Lines typed on a terminal during a run. In: lines, a clock. Out: the lines that count for the open question. Input typed before it
+//! could be read is discarded.
 
 use std::io::BufRead as _;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -10,11 +10,11 @@ use rustix::termios::{QueueSelector, tcflush};
 
 use crate::cli::operator::question::DEAF;
 
-/// How long one look for a line takes: Ctrl-C and the rig are heard between two.
+/// Duration of one wait for a line: Ctrl-C and the rig are checked between two waits.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Standard input, read beside the run: a read that waits must not keep Ctrl-C from being heard. One for the program: a run that is
-/// gone on with is answered by the lines after those of the run before it.
+/// Standard input, read in parallel with the run: a read that waits must not delay Ctrl-C. There is one for the program: the answers to a
+/// resumed run are the lines after those of the run before it.
 static STANDARD_INPUT: LazyLock<Arc<Mutex<Receiver<String>>>> = LazyLock::new(|| {
     let (send, lines) = channel();
     std::thread::spawn(move || {
@@ -28,11 +28,11 @@ static STANDARD_INPUT: LazyLock<Arc<Mutex<Receiver<String>>>> = LazyLock::new(||
     Arc::new(Mutex::new(lines))
 });
 
-/// What a look for a line found.
+/// The result of a wait for a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Heard {
     Nothing,
-    /// From here on lines count: the answer is to be asked for.
+    /// From here on lines count: the answer can be asked for.
     Ready,
     Line(String),
     /// The end of the input.
@@ -43,9 +43,9 @@ pub enum Heard {
 pub struct Typed {
     lines: Arc<Mutex<Receiver<String>>>,
     clock: Box<dyn Fn() -> Duration>,
-    /// What is typed until then does not count.
+    /// Input before this time does not count.
     deaf_until: Option<Duration>,
-    /// Throws away what lies in the terminal.
+    /// Discards the unread input of the terminal.
     flush: fn(),
 }
 
@@ -73,7 +73,7 @@ impl Typed {
         }
     }
 
-    /// A question has been shown: nothing typed before it counts, and nothing of its first second.
+    /// A question has been shown: input before it and in its first second does not count.
     pub fn begin(&mut self) {
         self.forget();
         self.deaf_until = Some((self.clock)() + DEAF);
@@ -111,9 +111,9 @@ impl Typed {
     }
 }
 
-/// What lies in the terminal and nobody has read.
+/// Discards the unread input of the terminal.
 pub fn throw_away() {
-    // What is no terminal has nothing typed ahead.
+    // Standard input that is not a terminal has no early input.
     let _ = tcflush(std::io::stdin(), QueueSelector::IFlush);
 }
 

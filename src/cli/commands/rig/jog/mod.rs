@@ -1,5 +1,5 @@
-//! `psd rig jog`: moves the rig by hand, inside the limits of the plan, through the guard, and only with the operator's consent.
-//! In: positions as the language writes them. Out: the readings at each end; for a real rig also a run folder with the record.
+//! `psd rig jog`: moves the rig manually, inside the limits of the plan, through the guard, and only with the operator's consent. In:
+//! positions as the language writes them. Out: the readings at each end; for a real rig also a run folder with the run log.
 
 mod session;
 
@@ -150,12 +150,12 @@ fn without_load(plan: &Plan, rig: &mut dyn Rig) -> Result<(), Failure> {
 
 /// The move of the command line, SI.
 struct Wanted {
-    /// Target position per axis; None where the operator types positions.
+    /// Target position per axis; None if the operator types positions.
     to: Option<Vec<f64>>,
     speed: Option<f64>,
 }
 
-/// On a simulated rig no record is kept.
+/// On a simulated rig no run log is kept.
 fn on_a_virtual_rig(
     arguments: &JogArguments,
     plan: &Plan,

@@ -1,5 +1,5 @@
-//! A session of moves by hand: question, moves, readings. In: the plan, the operator and a connected rig. Out: the exit, and
-//! messages to the operator. It opens no folder.
+//! A session of manual moves: question, moves, readings. In: the plan, the operator and a connected rig. Out: the exit, and messages to
+//! the operator. It opens no folder.
 
 use super::super::typed::positions;
 use super::Wanted;
@@ -16,13 +16,13 @@ use crate::run::{Disconnect, Extent, Motion};
 use crate::units::Dimension;
 use crate::units::display::{plain, readable};
 
-/// One session of moves by hand.
+/// One session of manual moves.
 pub(super) struct JogSession<'a> {
     pub wanted: &'a Wanted,
     pub plan: &'a Plan,
     /// Identity that the rig reports.
     pub identity: Identity,
-    /// Speed of the rig where none is commanded \[m/s\].
+    /// Speed of the rig if none is commanded \[m/s\].
     pub own_speed: Option<f64>,
     pub person: Person<'a>,
     pub settings: Settings,
@@ -60,7 +60,7 @@ impl JogSession<'_> {
         self.ended = Some(ended);
     }
 
-    /// The exit of the session; the reason of the rig where it did not begin.
+    /// The exit of the session; the reason of the rig if the session did not begin.
     pub fn end(self, outcome: &Outcome) -> Result<Exit, Failure> {
         self.ended.unwrap_or_else(|| {
             let (exit, reason) = match outcome {
@@ -140,7 +140,7 @@ impl JogSession<'_> {
         }
     }
 
-    /// One move, in increments where the plan limits them; Ctrl-C puts the rig on hold during the move.
+    /// One move, in increments if the plan limits them; Ctrl-C puts the rig on hold during the move.
     fn move_to(&mut self, to: &[f64], specimen: &mut Specimen<'_, '_>) -> Result<Exit, Failure> {
         let speed = self.wanted.speed;
         let at_speed = speed.map_or_else(String::new, |speed| {

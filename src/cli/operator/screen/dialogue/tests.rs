@@ -1,8 +1,8 @@
-//! Keys at a clock that the test sets.
+//! Keys at the times that the test sets.
 
 use super::*;
 
-/// Long after anything appeared.
+/// A time long after the last question appeared.
 const LATER: Duration = Duration::from_secs(100);
 
 fn look() -> Question {
@@ -16,7 +16,7 @@ fn of(kind: Kind) -> Question {
     }
 }
 
-/// What stands there has been drawn, and could be read; then these keys.
+/// Draws the open question, waits until it could be read, then types these keys.
 fn type_in(dialogue: &mut Dialogue, text: &str) {
     let stop_request = StopRequest::default();
     for character in text.chars() {
@@ -266,7 +266,7 @@ fn a_pause_is_one_when_the_step_has_ended() {
     );
 }
 
-/// A rig that a person held, and these keys.
+/// A rig that the operator put on hold, and these keys.
 fn held(typed: &str) -> (Dialogue, Option<Inspection>) {
     let mut dialogue = Dialogue::new(Some("A".to_owned()));
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Nobody knows whether the rig holds: that alone, on the whole screen, until somebody says that they have seen it.
+//! The alarm when the hold of the rig is not confirmed. It fills the whole screen until the operator acknowledges it.
 
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Flex, Layout, Rect};

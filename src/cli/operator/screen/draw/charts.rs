@@ -1,4 +1,4 @@
-//! The two curves: displacement over time and force over displacement of the procedure that runs.
+//! The two curves: displacement over time and force over displacement of the running procedure.
 
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -36,7 +36,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     chart(frame, view, right, &view.model.force, "Force", force);
 }
 
-/// One axis: where it begins and ends in SI, and how its numbers are written.
+/// One axis: its range in SI, and the format of its numbers.
 struct Scale {
     bounds: [f64; 2],
     unit: String,
@@ -44,7 +44,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// From the smallest to the largest; around a single value, some room.
+    /// From the smallest to the largest value; a single value gets a margin around it.
     fn of(data: [f64; 2], dimension: Dimension) -> Self {
         let largest = data[0].abs().max(data[1].abs());
         let (unit, factor) = readable_unit(largest, dimension);
@@ -66,7 +66,7 @@ impl Scale {
     fn labels(&self) -> [String; 2] {
         let span = self.bounds[1] - self.bounds[0];
         self.bounds.map(|bound| {
-            // The first step is not quite 0, and nobody wants to read how much.
+            // The first step is not exactly 0, and its exact value is not useful.
             let bound = if bound.abs() < 1e-3 * span {
                 0.0
             } else {

@@ -1,4 +1,4 @@
-//! The last events, the newest last, as many as there is room for.
+//! The last events, the newest last, as many as fit.
 
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -7,7 +7,7 @@ use ratatui::text::Line;
 use super::{View, fitted, shown};
 use crate::record::Event;
 
-/// Where the second line of the newest event begins.
+/// Column of the second line of the newest event.
 const INDENT: usize = 14;
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
@@ -22,7 +22,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     let newest = events
         .back()
         .map_or_else(Vec::new, |newest| over_two(&words(newest), width));
-    // The newest is read whole; those before it have what is left.
+    // The newest event is shown in full; the earlier ones get the remaining lines.
     let newest = &newest[..newest.len().min(height)];
     let older = events.len().saturating_sub(1);
     let before = events
@@ -37,7 +37,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     }
 }
 
-/// A text on one line, or broken at a blank onto a second one.
+/// A text on one line, or broken at a space onto a second one.
 fn over_two(text: &str, width: usize) -> Vec<String> {
     if text.chars().count() <= width {
         return vec![text.to_owned()];
@@ -47,7 +47,7 @@ fn over_two(text: &str, width: usize) -> Vec<String> {
         .nth(width)
         .map_or(text.len(), |(at, _)| at);
     let indent = " ".repeat(INDENT);
-    // Broken within the first words nothing would be won.
+    // A break within the first words would save no space.
     let cut = text[..fits]
         .rfind(' ')
         .filter(|cut| *cut > INDENT + 15)

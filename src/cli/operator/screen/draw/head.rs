@@ -1,4 +1,4 @@
-//! The first three lines, where the run stands, and the last one, what the keys do.
+//! The first three lines, with the state of the run, and the last line, with the effect of the keys.
 
 use ratatui::Frame;
 use ratatui::layout::{Alignment, Constraint, Layout, Rect};
@@ -87,7 +87,7 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
     Line::from(vec![Span::raw(" "), badge, Span::raw(words)])
 }
 
-/// One word for how things stand, the gravest first.
+/// One word for the state; the most severe state has priority.
 fn state(view: &View<'_>) -> (&'static str, Color) {
     if let Some(ended) = view.model.ended {
         match ended {
@@ -122,7 +122,7 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
     }
 }
 
-/// The last numbers, in words as long as there is room for.
+/// The last numbers, with full names if they fit.
 fn numbers_line(view: &View<'_>, width: usize) -> String {
     let feedback = view.model.feedback();
     if feedback.is_empty() {
@@ -142,7 +142,7 @@ fn numbers_line(view: &View<'_>, width: usize) -> String {
     }
 }
 
-/// The numbers by name; `words`: of the tracking error, the energy error, the energy error of tracking.
+/// The numbers by name. `words`: names of the tracking error, the energy error, and the energy error of tracking.
 fn numbers(
     view: &View<'_>,
     feedback: &[(f64, f64)],
@@ -164,7 +164,7 @@ fn numbers(
         format!("{force} {}", readable(sum, Dimension::FORCE)),
     ];
     if let Some(error) = view.model.tracking_error() {
-        // What the last bit of a float leaves is no error.
+        // A rounding error is not a tracking error.
         let error = if error.abs() < 1e-12 { 0.0 } else { error };
         words.push(format!("{tracking} {}", readable(error, Dimension::LENGTH)));
     } else if view.model.open_loop {
@@ -180,7 +180,7 @@ fn numbers(
     words
 }
 
-/// A fraction for people; rounding noise is nothing.
+/// A fraction in readable form; rounding noise is shown as 0.
 pub fn percent(fraction: f64) -> String {
     if fraction.abs() < 1e-8 {
         "0 %".to_owned()
@@ -198,7 +198,7 @@ fn clock(seconds: u64) -> String {
     }
 }
 
-/// The last line: the keys that do something now.
+/// The last line: the keys that have an effect now.
 pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
     let dialogue = view.dialogue;
     let answering = dialogue

@@ -1,4 +1,4 @@
-//! The limits as bars: where the last step stands between the ends, and the margin left.
+//! The limits as bars: the position of the last step between the ends, and the remaining margin.
 
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -10,12 +10,12 @@ use crate::cli::operator::screen::model::LimitRow;
 use crate::units::Dimension;
 use crate::units::display::{plain, readable, stated};
 
-/// Widths of the name, of either end, and of the margin.
+/// Widths of the name, of each end, and of the margin.
 const NAME: usize = 15;
 const END: usize = 9;
 const MARGIN: usize = 18;
 
-/// At most so many rows, in their order: those with the least left, and what psd itself keeps to only where it is past its bound.
+/// At most `most` rows, in their order: those with the smallest margin. A bound that psd itself applies is shown only when exceeded.
 pub fn nearest(rows: &[LimitRow], most: usize) -> Vec<LimitRow> {
     let left = |row: &LimitRow| {
         Bar::of(row)
@@ -30,7 +30,7 @@ pub fn nearest(rows: &[LimitRow], most: usize) -> Vec<LimitRow> {
     places.into_iter().map(|place| rows[place]).collect()
 }
 
-/// `all`: how many there are, of which these are shown.
+/// `all`: the total number of limits, of which these rows are shown.
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, rows: &[LimitRow], all: usize, area: Rect) {
     let heading = if rows.len() < all {
         format!(" Limits, the {} nearest of {all} ", rows.len())
@@ -97,7 +97,7 @@ fn number(value: f64, dimension: Dimension) -> String {
     }
 }
 
-/// What a bar spans; an end without a bound is drawn as far out as the other one.
+/// The span of a bar; an end without a bound is drawn as far out as the other one.
 struct Bar {
     low: f64,
     high: f64,
@@ -119,7 +119,7 @@ impl Bar {
         }
     }
 
-    /// The margin as a share of the distance from zero to the end that is nearer.
+    /// The margin as a fraction of the distance from zero to the nearer end.
     fn closeness(&self, row: &LimitRow) -> Option<f64> {
         let value = row.value?;
         let margin = row.margin()?;
@@ -134,7 +134,7 @@ impl Bar {
         } else {
             self.high - self.low
         };
-        // A displacement limit of 0 as the near end is where a test begins, not a danger.
+        // A displacement limit of 0 as the nearer end is the start of a test, not a danger.
         (whole > 0.0 && !(value.abs() < 1e-3 * (self.high - self.low) && margin >= 0.0))
             .then(|| margin / whole)
     }

@@ -1,5 +1,5 @@
-//! Drawing of the live screen. In: the model and the dialogue. Out: the cells of one frame. It is
-//! pure: the same view gives the same frame. Text of plans and operators is sanitised.
+//! Drawing of the live screen. In: the model and the dialogue. Out: the cells of one frame. It has no side effects: the same view gives
+//! the same frame. Text of plans and operators is sanitised.
 
 mod alarm;
 mod charts;
@@ -23,15 +23,15 @@ use super::model::{Ended, Model};
 use crate::rig::StopRequest;
 use crate::text::diagnostic::excerpt::escape;
 
-/// The smallest terminal that is drawn on: columns and rows.
+/// The smallest terminal on which the screen is drawn: columns and rows.
 pub const SMALLEST: (u16, u16) = (60, 16);
 
-/// Everything a picture is made of.
+/// All data of a frame.
 pub struct View<'a> {
     pub model: &'a Model,
     pub dialogue: &'a Dialogue,
     pub stop_request: &'a StopRequest,
-    /// Wall time since the screen was wanted.
+    /// Wall time since the screen was requested.
     pub now: Duration,
     pub color: bool,
 }
@@ -55,12 +55,12 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
         popup::draw(frame, view, area, area, area);
         return;
     }
-    // Head, curves, the heading of the limits and the keys are always there.
+    // Head, curves, the heading of the limits and the keys are always shown.
     let most = usize::from(area.height.saturating_sub(3 + 5 + 1 + 1));
     let all = view.model.limit_rows();
     let rows = limits::nearest(&all, most);
     let limit_lines = u16::try_from(rows.len().max(1)).unwrap_or(1) + 1;
-    // What is left over goes to the curves first, then to the events.
+    // The remaining lines go to the curves first, then to the events.
     let spare = area.height.saturating_sub(3 + limit_lines + 1 + 5);
     let event_lines = if area.height < 20 {
         0
@@ -84,7 +84,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>) {
 }
 
 impl View<'_> {
-    /// A colour where colours are wanted.
+    /// A colour, if colours are on.
     fn paint(&self, color: Color) -> Style {
         if self.color {
             Style::new().fg(color)
@@ -101,7 +101,7 @@ impl View<'_> {
         }
     }
 
-    /// A rule with a heading, under which a part of the screen stands.
+    /// A line with a heading above a part of the screen.
     fn part<'a>(&self, heading: &'a str) -> Block<'a> {
         Block::new()
             .borders(Borders::TOP)
@@ -110,12 +110,12 @@ impl View<'_> {
     }
 }
 
-/// Text on one line that cannot steer the terminal.
+/// Text on one line, without control sequences.
 fn shown(text: &str) -> String {
     escape(text).replace('\n', " ")
 }
 
-/// At most `width` characters; a cut text says so.
+/// At most `width` characters; a cut text is marked.
 fn fitted(text: &str, width: usize) -> String {
     if text.chars().count() <= width {
         return text.to_owned();

@@ -1,4 +1,4 @@
-//! What stands over the curves: a question of the run, a line being typed, the help.
+//! The windows over the curves: a question of the run, a line being typed, the help.
 
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Flex, Layout, Rect};
@@ -27,7 +27,7 @@ const HELP: &[&str] = &[
     "any key closes this; h, q and Ctrl-C do what they say too",
 ];
 
-/// Draws it in the middle of `charts`; where that is too low, of `whole`, else of everything.
+/// Draws it in the middle of `charts`; if that is too low, of `whole`, and otherwise of the full screen.
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, charts: Rect, whole: Rect, everything: Rect) {
     let width = whole.width.min(WIDEST).saturating_sub(2);
     let room = usize::from(width.saturating_sub(4)).max(1);
@@ -124,7 +124,7 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
     Some((question.kind.title(), lines))
 }
 
-/// What is to be typed.
+/// The request for the line that is being typed.
 fn asked(view: &View<'_>, kind: Kind) -> String {
     let (word, declined) = (kind.word(), kind.declined());
     let unclear = if view.dialogue.unclear {
@@ -140,7 +140,7 @@ fn asked(view: &View<'_>, kind: Kind) -> String {
     format!("{unclear}Type {word} and Enter, or n and Enter: {declined}.{unloads}")
 }
 
-/// A rig that holds after the early end of its run, and what may be done with it.
+/// A rig on hold after the early end of its run, and the available choices.
 fn held(view: &View<'_>, after: After) -> (&'static str, Vec<String>) {
     let last = view.model.events.iter().rev().find(|event| {
         matches!(
@@ -172,13 +172,13 @@ fn held(view: &View<'_>, after: After) -> (&'static str, Vec<String>) {
     ("HELD", lines)
 }
 
-/// The end of a long line: where it is being typed.
+/// The end of a long line, with the cursor.
 fn tail(text: &str, width: usize) -> String {
     let skipped = text.chars().count().saturating_sub(width);
     text.chars().skip(skipped).collect()
 }
 
-/// The text on lines of at most `width` characters, broken at blanks where there are any.
+/// The text on lines of at most `width` characters, broken at spaces if there are any.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     let mut length = 0;

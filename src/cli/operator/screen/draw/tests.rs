@@ -1,4 +1,4 @@
-//! The screen as it looks, cell by cell, at the sizes it must look right at.
+//! The screen cell by cell, at the sizes that must be correct.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ use crate::rig::{Feedback, Identity, StopRequest};
 use crate::run::{Extent, Motion, StepReport};
 use crate::tests::testing::empty_plan;
 
-/// A blow in the middle: a sine that dies away.
+/// An impact in progress: a decaying sine.
 fn model() -> Model {
     let mut plan = empty_plan();
     plan.title = "Pendulum against a GFRP beam\u{1b}[2J".to_owned();
@@ -138,7 +138,7 @@ fn a_run_that_has_not_begun_and_has_no_limits() {
     ));
 }
 
-/// What stands there has been drawn a while ago.
+/// The open question was drawn some time ago.
 fn read(dialogue: &mut Dialogue) {
     dialogue.drawn(dialogue.appeared, Duration::ZERO);
 }
@@ -307,7 +307,7 @@ fn every_size_is_drawn() {
     }
 }
 
-/// Whatever a plan, a person or a rig says, in every place of the screen where it is shown.
+/// Hostile text of a plan, an operator or a rig, at every position of the screen that shows it.
 #[test]
 fn hostile_labels_stand_where_they_are_shown() {
     let labels: Vec<String> =

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::*;
 
-/// A clock that a test sets, a person whose lines it types.
+/// A clock that a test sets, and an operator whose lines the test types.
 struct Bench {
     now: Rc<Cell<Duration>>,
     send: Option<Sender<String>>,
@@ -43,7 +43,7 @@ fn question(kind: Kind) -> Question {
     }
 }
 
-/// What comes of these lines, typed once the question can be answered, and then the end of the input.
+/// The result of these lines, typed after the question can be answered and followed by the end of the input.
 fn said(kind: Kind, lines: &[&str], operator: Option<&str>) -> Inspection {
     let mut bench = Bench::new();
     let mut operator = operator.map(str::to_owned);
@@ -181,7 +181,7 @@ const HELD: After = After::Held {
     unload: false,
 };
 
-/// Before a rig that holds, and what may be typed can be.
+/// A rig on hold, at the time when input counts.
 fn held(operator: Option<&str>) -> (Bench, Option<String>) {
     let (mut bench, mut operator) = (Bench::new(), operator.map(str::to_owned));
     bench.types("x");
@@ -195,7 +195,7 @@ fn held(operator: Option<&str>) -> (Bench, Option<String>) {
     (bench, operator)
 }
 
-/// What comes of these lines before it, each question of which can be answered.
+/// The result of these lines at a rig on hold; each question can be answered.
 fn typed_before_it(
     bench: &mut Bench,
     operator: &mut Option<String>,
@@ -204,7 +204,7 @@ fn typed_before_it(
     let mut answer = Some(Inspection::Wait);
     for line in lines {
         bench.types(line);
-        // The line, what it shows, the second that is not heard.
+        // The line, the text it shows, the second without input.
         for _ in 0..3 {
             answer = bench
                 .person
@@ -318,7 +318,7 @@ fn a_rig_that_may_still_move_waits_until_that_has_been_seen() {
         ],
         [Stay::Leave, Stay::Leave]
     );
-    // Left while it was held.
+    // The operator left while the rig was on hold.
     let (mut bench, mut operator) = held(None);
     assert_eq!(typed_before_it(&mut bench, &mut operator, &["x"]), None);
     assert_eq!(
