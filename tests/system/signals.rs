@@ -93,7 +93,7 @@ fn quiet(stage: &Stage) {
 /// So slow to settle that a signal comes before the probe: the two readings at rest take 2 s each, with a second between them.
 fn resting(plan: &str) -> String {
     plan.replace("for: 0.01 s", "for: 2 s")
-        .replace("0.8 mm step 0.1 mm", "0.2 mm step 0.1 mm")
+        .replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm")
         .replace("duration  = 24 ms", "duration  = 2 ms")
 }
 

@@ -169,11 +169,14 @@ impl Stage {
             .arg(self.log_path());
         command.arg("--script").arg(self.path("script"));
         let told = File::create(self.path("simulator.told")).unwrap();
-        self.simulator = Some(command.stdin(Stdio::null()).stderr(told).spawn().unwrap());
+        let mut simulator = command.stdin(Stdio::null()).stderr(told).spawn().unwrap();
         let told = self.path("simulator.told");
         until("the simulator stands in", || {
-            fs::read_to_string(&told).unwrap().contains("stands in")
+            let told = fs::read_to_string(&told).unwrap();
+            assert!(simulator.try_wait().unwrap().is_none(), "{told}");
+            told.contains("stands in")
         });
+        self.simulator = Some(simulator);
     }
 
     fn log_path(&self) -> PathBuf {
