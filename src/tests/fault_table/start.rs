@@ -237,7 +237,7 @@ fn swapped(number: ModbusNumber) -> ModbusNumber {
     }
 }
 
-/// A drive whose two registers are in the opposite order to the plan.
+/// A drive whose number has its two words in the opposite order to the plan.
 #[test]
 fn a_drive_in_the_other_word_order_is_not_moved() {
     let float = ModbusNumber::Float32 {

@@ -1,4 +1,4 @@
-//! Runs on specimens that are stiffer than α-OS assumes, and on softer ones. One spring and storeys, ramp-and-hold and continuous,
+//! Runs on specimens that are stiffer than α-OS assumes, and on others. One spring and storeys, ramp-and-hold and continuous, with
 //! dampers and friction in the readings.
 
 use crate::plan::formula::Formula::Constant;

@@ -159,8 +159,7 @@ fn a_rig_that_does_not_say_is_not_asked() {
     assert_eq!(served(&plan, false).drift, None);
 }
 
-/// A version that read no zeros of a served rig wrote the same entries. This version writes them for a rig that states no limit of zero
-/// drift.
+/// A version that read no zeros of a served rig wrote such a run log. It equals that of a rig without a stated limit of zero drift.
 #[test]
 fn a_record_without_the_zeros_that_its_plan_asks_for_is_played_back_without_them() {
     let asking = plan(5.0, ZeroAfter::Start);
