@@ -81,7 +81,7 @@ fn every_column_is_explained_and_listed() {
     }
 }
 
-/// Columns of words, and those of tables that no procedure has.
+/// Columns of each table with text cells, and of the tables that no procedure has.
 const TEXTS: [&str; 2] = ["zero_drift", "force_state"];
 
 /// The type of a property, and the definition that it refers to.

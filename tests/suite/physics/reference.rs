@@ -129,8 +129,8 @@ fn converged() {
         1.5e-6,
     );
     near("stop time", limited.stop_time(), 0.301_09, 3e-5);
-    // The first step starts with no contact force in Ẍ₀, so that the trapezoid gives the structure half of its share: it
-    // then lags by ½(F/M)Δt for the whole duration μV0/F of the contact, and the indentation is ½(μ/M)V0Δt deeper than its limit.
+    // The first step starts with no contact force in Ẍ₀, so the trapezoid gives the structure half of its share. The structure then lags
+    // by ½(F/M)Δt for the whole duration μV0/F of the contact. The indentation is ½(μ/M)V0Δt deeper than its limit.
     let reduced_mass = 10.0 / 11.0;
     let (limit, lag) = (0.5 * reduced_mass / 1500.0, 0.5 * reduced_mass * 2e-6);
     near("limit of the indentation", limit, 0.303e-3, 0.5e-6);
