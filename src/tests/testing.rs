@@ -109,7 +109,7 @@ pub(crate) fn struck_frame() -> Plan {
     plan
 }
 
-/// Ten outward steps of `step` (m), one sample each, no pause.
+/// Ten outward steps of `step` \[m\], one sample each, no pause.
 pub(crate) fn ramp(step: f64) -> StiffnessRamp {
     StiffnessRamp {
         specimen: 0,
@@ -184,7 +184,7 @@ pub(crate) fn as_of(procedure: usize, results: &[NamedResult]) -> Vec<NamedResul
     results
 }
 
-/// Steps of `time_step` (s) by the tangent form, with no pause.
+/// Steps of `time_step` \[s\] by the tangent form, with no pause.
 pub(crate) fn every(time_step: f64) -> Stepping {
     Stepping {
         integrator: Integrator::Tangent,

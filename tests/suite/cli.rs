@@ -654,8 +654,8 @@ fn a_plan_without_a_procedure_is_not_run() {
     }
 }
 
-/// A sweep about a position past yield whose first pass is not read, holds during relaxation, and cycles on a coarse cell. An impact
-/// series in which the same observation applies to every impact.
+/// A sweep past yield whose first pass is not read, holds during relaxation, cycles on a coarse cell. Also an impact series in which the
+/// same observation applies to every impact.
 const PAST_YIELD: &str = r"
 specimen bracket {
   mass      = 1 kg

@@ -99,7 +99,7 @@ impl Terminal {
         }
     }
 
-    /// Reads until this has been drawn since the last key.
+    /// Reads until this text has been drawn after the last key.
     fn wait_for(&mut self, text: &str) {
         let (mut buffer, since) = ([0; 4096], Instant::now());
         while !self.seen.contains(text) {

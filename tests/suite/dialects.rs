@@ -1,5 +1,5 @@
-//! The paper's beam over real pseudo-terminals and TCP, with the rig emulator of each protocol driver and `psd run` as two processes. In:
-//! the rigs of `rigs`. Out: the results of the virtual run, within the resolution of the rig. No time is measured.
+//! The paper's beam over real pseudo-terminals and TCP. The rig emulator of each protocol driver and `psd run` are two processes. In: the
+//! rigs of `rigs`. Out: the results of the virtual run, within the resolution of the rig. No time is measured.
 
 mod probe;
 mod rigs;

@@ -159,8 +159,7 @@ fn psd(arguments: &[&str], out: &Path) {
     );
 }
 
-/// A run, its verification and its regenerated report give the same bytes without the plan and its data, because the record contains
-/// them.
+/// A run, its verification and its regenerated report give the same bytes without the plan and its data. The record contains both.
 #[test]
 fn the_record_of_a_shake_is_enough() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -11,8 +11,8 @@ use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 
-/// Largest acceleration of the ground \[m/s²\], its angular frequency \[rad/s\], and the stiffness \[N/m\] that makes it the first of two
-/// equal storeys of 1 t.
+/// Largest acceleration of the ground \[m/s²\], its angular frequency \[rad/s\], and a stiffness \[N/m\]. With this stiffness the
+/// frequency is the first of two equal storeys of 1 t.
 const GROUND: f64 = 0.5;
 const FREQUENCY: f64 = 4.0 * std::f64::consts::PI;
 const STIFFNESS: f64 = 1000.0 * FREQUENCY * FREQUENCY * 2.618_033_988_749_895;
@@ -78,7 +78,7 @@ fn viscous() -> String {
     format!(", damping: {} N*s/m", SCALE * DAMPER)
 }
 
-/// Largest displacement of each floor, m.
+/// Largest displacement of each floor \[m\].
 fn peaks(steps: &[ShakeStep]) -> [f64; 2] {
     [0, 1].map(|floor| {
         steps
@@ -88,8 +88,8 @@ fn peaks(steps: &[ShakeStep]) -> [f64; 2] {
     })
 }
 
-/// Steady amplitude of both floors, m, by modes: φ = (1, g) and (g, −1), ω₂ = g²ω, and dampers in proportion to the
-/// storeys give them ζ and g²ζ.
+/// Steady amplitude of both floors \[m\] by modes: φ = (1, g) and (g, −1), ω₂ = g²ω. Dampers in proportion to the storeys give the modes
+/// ζ and g²ζ.
 fn closed_form() -> [f64; 2] {
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mode = |shape: [f64; 2], own: f64| {
@@ -138,7 +138,8 @@ fn dampers_of_the_storeys_give_the_steady_motion_of_the_closed_form() {
     assert!(paused[1] > 5.0 * closed_form()[1], "{paused:?}");
 }
 
-/// The reading is K·X plus C·Ẋ / `time_scale` at the velocity of the floors at the target, to the square of the step.
+/// The reading is K·X plus C·Ẋ / `time_scale`, with the velocity of the floors at the target. The error has the order of the step
+/// squared.
 #[test]
 fn the_damping_of_the_material_is_in_the_force() {
     let largest = |step: &str| {

@@ -1,5 +1,5 @@
-//! An impact on one storey of a frame, from the text of a plan. It is compared with a yielding frame integrated by a separate method, and
-//! with one degree of freedom for a single storey. The record alone is sufficient.
+//! An impact on one storey of a frame, from the text of a plan. It is compared with a yielding frame integrated by a separate method. A
+//! single storey is compared with one degree of freedom. The record alone is sufficient.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -101,9 +101,9 @@ fn yielding_by(fields: &str, blows: &[&str]) -> Record {
     record(&text)
 }
 
-/// The same frame and striker by central differences, x₂ = 2x₁ − x₀ + h²a. The storey's shear is h·kδ + (1 − h)·kz, with z the drift of
-/// an elastic–perfectly plastic spring in parallel with an elastic one. Displacements at `times` (s), in order. At `again` (s) the frame
-/// is stopped and hit once more.
+/// The same frame and striker by central differences, x₂ = 2x₁ − x₀ + h²a. The storey's shear is h·kδ + (1 − h)·kz. Here z is the drift
+/// of an elastic–perfectly plastic spring in parallel with an elastic one. The result contains the displacements at `times` \[s\], in
+/// order. At `again` \[s\] the frame is stopped and hit once more.
 fn central_differences(times: &[f64], again: f64) -> Vec<[f64; 3]> {
     const STEP: f64 = 2e-6;
     let (mut x, mut before, mut z) = ([0.0; 3], [0.0; 3], [0.0_f64; 3]);
@@ -277,7 +277,7 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
     }
 }
 
-/// The energies of the storeys sum to that of the frame, the balance closes, and a rebound that the plan assumes occurs.
+/// The energies of the storeys sum to that of the frame, and the balance closes. A rebound that the plan assumes occurs.
 #[test]
 fn results_say_of_each_storey_what_the_balance_says_of_all() {
     let record = yielding("  time_step = 0.5 ms\n  damping_ratio = 2 %");

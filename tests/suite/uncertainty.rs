@@ -65,7 +65,7 @@ fn number(value: &Value) -> f64 {
         .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// u is the root of the sum of squares of the lines of the budget, each its input's uncertainty times its sensitivity.
+/// u is the root of the sum of squares of the lines of the budget. Each line is the uncertainty of its input times its sensitivity.
 #[test]
 fn a_budget_adds_up_and_comes_out_of_the_record_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -154,7 +154,7 @@ fn a_budget_adds_up_and_comes_out_of_the_record_again() {
     }
 }
 
-/// The distance to the limit is smaller than U: the verdict is inconclusive under the guard band.
+/// A limit inside the guard band: the verdict is inconclusive.
 #[test]
 fn a_limit_within_the_uncertainty_is_inconclusive() {
     let folder = tempfile::tempdir().unwrap();

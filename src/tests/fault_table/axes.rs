@@ -62,7 +62,7 @@ fn the_gate_measures_the_stiffness_matrix_column_by_column() {
         .iter()
         .filter(|note| note.starts_with("gate passed by axis"))
         .collect();
-    // K = [500, −200; −200, 200] kN/m, whatever the sign of the upper device.
+    // K = [500, −200; −200, 200] kN/m, for either polarity of the upper device.
     assert!(
         passed[0].contains("stiffness 500.0 kN/m")
             && passed[0].contains("with −200.0 kN/m in axis 2"),

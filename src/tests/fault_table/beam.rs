@@ -265,8 +265,8 @@ fn the_papers_beam_itself_gives_the_ideal_runs_results_in_every_dialect() {
     }
 }
 
-/// Reason for refusing the sweep. With the guard of the check bypassed, the move between two readings acts as a damper many times larger
-/// than that of the beam.
+/// Reason for refusing the sweep. Without the guard of the check, the move between two readings acts as a damper. This damper is many
+/// times larger than that of the beam.
 #[test]
 fn a_sweep_whose_readings_are_apart_would_take_the_way_between_them_for_damping() {
     let case = Case {

@@ -1,5 +1,5 @@
-//! Changes to the run log of a real rig by a forger who knows the format, and the check that detects each. Times and numbers of targets
-//! are compared with the earlier ones. Readings are compared with the replay, and END with the end of the replay.
+//! Changes that a forger who knows the format makes in the run log of a real rig. Each is detected by a check. Times and numbers of
+//! targets are compared with the earlier ones. Readings are compared with the replay, and END with the end of the replay.
 
 use serde_json::{Value, json};
 

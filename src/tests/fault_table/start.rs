@@ -55,7 +55,7 @@ fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
     );
     // No motion release was requested.
     assert!(ended.events(EventKind::Inspection).is_empty());
-    // Without the question for the present position, the first target of the plan moved the rig by 2.9 mm in the opposite direction.
+    // Without this check, the first target of the plan moved the rig by 2.9 mm in the opposite direction.
     let sent = run_without(Guarding::PretestStart, &plan(), AT_3_MM);
     let least = sent
         .stand

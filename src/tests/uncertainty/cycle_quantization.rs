@@ -1,4 +1,4 @@
-//! Effect of rounding on the loops of a `cycle`, compared with replays on rigs that differ in the zero of their quantization grid.
+//! Effect of rounding on the loops of a `cycle`. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
 use crate::plan::formula::Formula;
 use crate::plan::{Behaviour, Cycle, Level, Link, Plan, ProcedureKind, Sides, VirtualLink};

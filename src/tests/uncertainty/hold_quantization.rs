@@ -1,4 +1,4 @@
-//! Effect of rounding on holds and on secants, compared with replays on rigs that differ in the zero of their quantization grid.
+//! Effect of rounding on holds and on secants. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
 use crate::physics::relaxation::law::RelaxationLaw;
 use crate::physics::relaxation::time_constant::RelaxationModel;
@@ -18,7 +18,7 @@ fn elastic(stiffness: f64) -> Box<Behaviour> {
     Box::new(Behaviour::Elastic { stiffness })
 }
 
-/// Six holds of 8 s, each of 21 readings, `begin` (m) from the zero of the grids.
+/// Six holds of 8 s, each of 21 readings, `begin` \[m\] from the zero of the grids.
 fn holds(behaviour: Behaviour, begin: f64, model: WatchedModel, link: VirtualLink) -> Plan {
     let place = |step: u32| Formula::Constant(begin + 2e-4 * f64::from(step));
     let asked = StiffnessRamp {

@@ -1,4 +1,4 @@
-//! Effect of rounding on a fit, compared with replays on rigs that differ in the zero of their quantization grid.
+//! Effect of rounding on a fit. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{
@@ -196,7 +196,7 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
     );
 }
 
-/// c and the friction of a sweep on a cell whose resolution is a third of the damper force, or three times that force.
+/// c and the friction of a sweep on a coarse cell. Its resolution is a third of the damper force, or three times that force.
 #[test]
 fn replays_of_a_sweep_on_a_coarse_load_cell_are_held() {
     for quantum in [1.3, 12.0] {

@@ -93,8 +93,8 @@ fn the_return_closes_the_loop_and_friction_is_its_energy() {
     assert_eq!(steps.len(), 2 * 20);
     assert_eq!(steps.iter().filter(|step| step.returning).count(), 20);
     assert_eq!(steps[19].command, 0.0);
-    // Trapezoids through the readings, by hand. Out and back of 1 mm with ±0.5 N is 1 mJ, minus the corners. These are half an increment
-    // at the start (from 0 N, or from −0.5 N the second time) and a whole one at the reversal.
+    // Trapezoids through the readings, by hand. Out and back of 1 mm with ±0.5 N is 1 mJ, minus the corners. At the start this is half an
+    // increment (from 0 N, or from −0.5 N the second time). At the reversal it is a whole one.
     let first: f64 = 0.5 * 1e-3 * 2.0 - 0.5 * 0.5 * 1e-4 - 0.5 * 1e-4;
     let second = first - 0.5 * 0.5 * 1e-4;
     let energy = number(&record, 0, "loop_energy").0.unwrap();

@@ -1,5 +1,5 @@
-//! `psd rig probe` and `monitor` with every protocol driver, and their messages without a reply or with replies of a different device.
-//! In: the rigs of `rigs` and their emulators. Out: nothing moved; the log of every byte verifies this.
+//! `psd rig probe` and `monitor` with every protocol driver. Further tests check their messages without a reply, or with replies of a
+//! different device. In: the rigs of `rigs` and their emulators. Out: nothing moved; the log of every byte verifies this.
 
 use std::fs;
 use std::path::Path;

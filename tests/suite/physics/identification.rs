@@ -54,7 +54,7 @@ fn stiffness_ramp() {
     });
 }
 
-/// Sweeps in both directions at 0.01 to 0.2 m/s, c = 80 N·s/m and 3 N of friction, read with 2 N of noise. The readings at rest contain a
+/// Sweeps in both directions at 0.01 to 0.2 m/s. c = 80 N·s/m and 3 N of friction, read with 2 N of noise. The readings at rest contain a
 /// force that would falsify the fit.
 #[test]
 fn damping_sweep() {

@@ -1,5 +1,5 @@
-//! Portals with plastic hinges. Each mechanism is compared with its closed form on both sides of every switch. It is also compared with
-//! the minimum over all statically admissible states (the lower bound theorem, by enumeration), and with a frame analysed hinge by hinge.
+//! Portals with plastic hinges. Each mechanism is compared with its closed form on both sides of every switch. A second test takes the
+//! minimum over all statically admissible states (the lower bound theorem, by enumeration). A third test analyses a frame hinge by hinge.
 //! The last two share no code with the product.
 
 use nalgebra::{DMatrix, DVector};
@@ -58,8 +58,8 @@ fn collapse_loads_in_closed_form() {
     assert_eq!(frame.mechanism(), Mechanism::Combined);
 }
 
-/// Beam and combined mechanisms form together at W₀L/2 = 2H₀h, sway and combined at H₀h = 2·W₀L/2·…. 4/(H h) = 6/(WL/2 + Hh) if WL/2 =
-/// Hh/2, and 4/(WL/2) = 6/(WL/2 + Hh) if Hh = WL/4.
+/// Beam and combined mechanisms form together at W₀L/2 = 2H₀h, sway and combined at H₀h = 2·W₀L/2. The reasons: 4/(H h) = 6/(WL/2 + Hh)
+/// if WL/2 = Hh/2, and 4/(WL/2) = 6/(WL/2 + Hh) if Hh = WL/4.
 #[test]
 fn the_mechanism_changes_where_two_loads_are_equal() {
     let beam_load = 10e3;
@@ -94,9 +94,9 @@ fn strengths(sections: Sections) -> [f64; 5] {
     ]
 }
 
-/// With `M_b` and `M_c`, and m the smaller one: beam W·L/2 = 2(m + M_b), sway H·h = 2(M_c + m), combined W·L/2 + H·h = 2(M_c + M_b + m).
-/// Beam and combined thus form together at H·h = 2M_c·(…). Both loads of a pair are compared on either side of the point where they are
-/// equal, for stout columns and for weak ones.
+/// With `M_b` and `M_c`, and m the smaller one: beam W·L/2 = 2(m + M_b), sway H·h = 2(M_c + m). Combined: W·L/2 + H·h = 2(M_c + M_b + m).
+/// Beam and combined thus form together at `H·h = W·L/2 · M_c/(m + M_b)`. Both loads of a pair are compared on either side of their switch,
+/// for stout columns and for weak ones.
 #[test]
 fn different_sections_in_closed_form_on_both_sides_of_each_switch() {
     let beam_load = 10e3;

@@ -57,7 +57,7 @@ fn lumped_frames_follow_any_load() {
     );
 }
 
-/// Largest moment over the section capacity, between the hinges of the member that rotates under `load` (N), by sums over points. The
+/// Largest moment over the section capacity, between the hinges of the member that rotates under `load` \[N\], by sums over points. The
 /// acceleration follows from the energies, then the moments from the inertia beyond each point.
 fn worst(frame: &Portal, load: f64) -> f64 {
     const POINTS: usize = 4000;

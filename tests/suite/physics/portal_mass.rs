@@ -1,6 +1,6 @@
-//! Mass that moves with a portal. The elastic one is compared with finite elements with lumped masses as the mesh is refined, and as a
-//! Rayleigh quotient with their first frequency. The mechanisms are compared with rigid bodies that rotate, point by point. Both are
-//! compared with published factors of beams. The finite elements and the rigid bodies share no code with the product.
+//! Mass that moves with a portal. The elastic mass is compared with finite elements with lumped masses as the mesh is refined. As a
+//! Rayleigh quotient it is compared with their first frequency. The mechanisms are compared with rigid bodies that rotate, point by
+//! point. Both are compared with published factors of beams. The finite elements and the rigid bodies share no code with the product.
 
 use nalgebra::{DMatrix, DVector};
 use psd::physics::structure::portal::mass::{EquivalentMasses, equivalent_masses};

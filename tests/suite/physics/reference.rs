@@ -155,8 +155,8 @@ fn converged() {
     );
 }
 
-/// Eq. (4) from rest: `Ẋ₁ = ½MsV0 / (M + ½Ms + ¼Δt²K)`, which tends to Ms·V0/(2M + Ms), and the force of that one step is
-/// the impulse over Δt.
+/// Eq. (4) from rest: `Ẋ₁ = ½MsV0 / (M + ½Ms + ¼Δt²K)`, which tends to Ms·V0/(2M + Ms). The force of that one step is the impulse over
+/// Δt.
 #[test]
 fn rigid_force_grows_as_the_step_shrinks() {
     for time_step in [1e-2, 1e-4, 1e-6] {

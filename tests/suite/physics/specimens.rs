@@ -1,5 +1,5 @@
-//! Properties of every specimen model on any path: finite forces, none beyond the capacity, no more energy released than absorbed, and
-//! large moves that end where small ones do.
+//! Properties of every specimen model on any path: finite forces within the capacity, and no more energy released than absorbed. A large
+//! move ends at the same force as many small ones.
 
 use proptest::prelude::*;
 use psd::physics::specimen::{RestoringForce, SpecimenModel};

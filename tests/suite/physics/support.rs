@@ -31,7 +31,7 @@ pub fn impact(mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> Imp
 pub struct Run {
     pub states: Vec<ImpactState>,
     pub summary: ImpactSummary,
-    /// Largest |integration error| of any step, J.
+    /// Largest |integration error| of any step \[J\].
     pub worst_error: f64,
 }
 

@@ -167,7 +167,7 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
     }
 }
 
-/// After a series of impacts, a zero error z of each cell changes the drift of a storey by −z/k for each floor above it. The root of the
+/// A zero error z of each cell changes the drift of a storey by −z/k for each floor above it. After a series of impacts, the root of the
 /// sum of squares is u(`residual_drift`). It applies to the rest after the last impact, as its own results state.
 #[test]
 fn the_residual_drift_of_a_series_has_the_uncertainty_of_the_zero_offsets() {
@@ -197,7 +197,7 @@ fn the_residual_drift_of_a_series_has_the_uncertainty_of_the_zero_offsets() {
     );
 }
 
-/// It ends with the first impact after which a storey drift is too large, and after the last impact of the list.
+/// It ends with the first impact after which a storey drift is too large. Otherwise it ends with the last impact of the list.
 #[test]
 fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
     let velocities = [0.2, 0.4, 0.6, 0.8];

@@ -19,7 +19,7 @@ fn steps(record: &Record) -> &[ImpactStep] {
     }
 }
 
-/// Steps by explicit Newmark, corrected to the targets where the actuator does not stop.
+/// Steps by explicit Newmark, corrected to the targets in continuous mode.
 fn explicit(mode: Mode, time_step: f64) -> Stepping {
     Stepping {
         mode,
@@ -128,8 +128,8 @@ fn without_damping_both_modes_are_the_same_run() {
     );
 }
 
-/// Besides K·d̃, the reading contains the damper force at the velocity at the target, also directly after an impact, to first order of
-/// the step. An impact is an impulse and has no lasting effect. With the acceleration of the impact kept, half its velocity jump would
+/// The reading is K·d̃ plus the damper force at the velocity at the target, to first order of the step. This also applies directly after
+/// an impact. An impact is an impulse and has no lasting effect. With the acceleration of the impact kept, half its velocity jump would
 /// also be measured, at any step. A limit force lasts, and is kept.
 #[test]
 fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
@@ -151,7 +151,7 @@ fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
             let forces = [0, 1, 2].map(|step: usize| three[step].contact_force);
             let velocity = (three[2].command - three[0].command) / (three[2].time - three[0].time);
             jump = jump.max(forces[1] * time_step);
-            // The impact at the end of a step is not smooth motion, nor are the first and last step of a lasting one.
+            // The impact at the end of a step is not smooth motion. The same applies to the first and last step of a lasting impact.
             if forces[1] == 0.0 || (forces[0] == forces[1] && forces[1] == forces[2]) {
                 let felt = three[1].restoring_force - STIFFNESS * three[1].command;
                 worst = worst.max((felt - damper / SCALE * velocity).abs());
@@ -353,9 +353,9 @@ fn a_continuous_run_is_played_back_from_its_record() {
     );
 }
 
-/// An actuator with a lag of 0.35 rad of a free vibration trails by a third of its energy twice a cycle, and reaches the target. With the
-/// correction by the spring's own K this is not an error, and the run continues as if without lag. Without the correction the rig is put
-/// on hold.
+/// A lag of 0.35 rad of a free vibration makes the actuator trail by a third of the energy twice a cycle. The actuator still reaches the
+/// target. With the correction by the spring's own K this is not an error, and the run continues as if without lag. Without the
+/// correction the rig is put on hold.
 #[test]
 fn a_lag_that_is_taken_back_holds_no_run() {
     let with = |lag: f64, i_modification: bool| {

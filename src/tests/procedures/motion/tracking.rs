@@ -152,9 +152,9 @@ fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>
     (sine.kept, followed)
 }
 
-/// Contribution of the last cycle in steady state, and the expected value if the floors follow B sin(ωt − φ), B = gain·A. Per axis:
-/// energy error, indicator, mean square error over ½A². For a sine read at N points, ∮ B sin(θ − φ) d(A sin θ) by the trapezoidal rule is
-/// −πAB sin φ · sin(2π/N)/(2π/N).
+/// Contribution of the last cycle in steady state, and its expected value. The floors follow B sin(ωt − φ), B = gain·A. Per axis: energy
+/// error, indicator, mean square error over ½A². For a sine read at N points, the trapezoidal rule gives ∮ B sin(θ − φ) d(A sin θ) = −πAB
+/// sin φ · sin(2π/N)/(2π/N).
 fn last_cycle(
     kept: &[Vec<Tracking>],
     per_cycle: u32,

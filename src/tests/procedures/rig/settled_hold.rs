@@ -80,9 +80,8 @@ fn value(record: &Record, name: &str) -> f64 {
     number(record, 0, name).0.unwrap()
 }
 
-/// A dwell of 0.5 s after a move of 0.2 s gave 102.9 instead of 120 kN/m, and 0.677 s instead of 0.4 s. The result is exact on an ideal
-/// rig. The model of a rig with lag has the first two moments of its motion. The remaining error is of third order in lag over time
-/// constant.
+/// A dwell of 0.5 s after a move of 0.2 s gave 102.9 kN/m (expected 120) and 0.677 s (expected 0.4). The result is exact on an ideal rig.
+/// The model of a rig with lag has the first two moments of its motion. The remaining error is of third order in lag over time constant.
 #[test]
 fn the_dwell_of_settling_is_time_held() {
     for (lag, within) in [(0.0, 1e-9), (0.02, 1e-4), (0.05, 1e-3)] {
@@ -161,7 +160,7 @@ fn noisy_holds_of_a_rig_that_settles_are_held() {
     }
 }
 
-/// The parts of a hold add up to the time between its readings, and the move equals the move of the rig.
+/// The parts of a hold add up to the time between its readings. The move equals the move of the rig.
 #[test]
 fn a_hold_tells_when_the_rig_moved() {
     let record = run_unwatched(&solid(0.5, VirtualLink::default()));

@@ -167,7 +167,7 @@ fn a_run_may_ask_for_no_uncertainty() {
     }
 }
 
-/// Half the difference converges with the square of the perturbation, which is halved four times from a tenth of V0 and M.
+/// Half the difference converges with the square of the perturbation. The perturbation is halved four times from a tenth of V0 and M.
 #[test]
 fn the_size_of_the_perturbation_converges() {
     let of = |share: f64| {

@@ -1,5 +1,5 @@
-//! Frames on ground that moves. A harmonic motion is compared with its exact solution, an elastic–plastic building under a record with
-//! exact arcs between yielding and unloading.
+//! Frames on ground that moves. A harmonic motion is compared with its exact solution. An elastic–plastic building under a record is
+//! compared with exact arcs between yielding and unloading.
 
 use psd::physics::integrator::input::FrameInput;
 use psd::physics::integrator::solver::FrameSolver;
