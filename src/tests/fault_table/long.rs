@@ -21,7 +21,7 @@ const STEPS: u32 = 10_000;
 const LOOK: usize = 2_000;
 /// Memory that a step may keep \[bytes\]: its entry in the run log, and its target in the emulator.
 const OF_A_STEP: usize = 400;
-/// Set where the test is the only one of its process.
+/// Set if the test runs alone in its process.
 const ALONE: &str = "PSD_TEST_ALONE";
 
 /// A disk that only counts.

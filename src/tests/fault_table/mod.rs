@@ -1,6 +1,7 @@
 //! The faults that a run on a real rig must survive, each in whole runs. The real drivers run on an emulated rig with a script of faults,
 //! in one thread and in simulated time. In: a plan, a script. Out: the record, the run log, the log of the emulator. Each guard is also
 //! switched off once, to show that its fault then gets through.
+//!
 //! | Row | Fault | Shown by |
 //! |---|---|---|
 //! | 1 | killed at every command to the rig | `words::killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_twice` |
