@@ -11,7 +11,7 @@ use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 
-/// Largest acceleration of the ground, m/s², its angular frequency, rad/s, and the damping ratio of both modes.
+/// Largest acceleration of the ground \[m/s²\], its angular frequency \[rad/s\], and the damping ratio of both modes.
 const GROUND: f64 = 0.5;
 const FREQUENCY: f64 = 4.0 * std::f64::consts::PI;
 const RATIO: f64 = 0.1;

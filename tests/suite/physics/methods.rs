@@ -174,7 +174,7 @@ fn numerical_damping_does_not_soften_the_blow() {
     }
 }
 
-/// Just inside the limit a free vibration is bounded for a thousand steps, just beyond it diverges.
+/// Just below the limit a free vibration is bounded for a thousand steps. Just above it, it diverges.
 #[test]
 fn the_stability_limits_are_where_they_are_said_to_be() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);

@@ -116,8 +116,8 @@ fn different_sections_in_closed_form_on_both_sides_of_each_switch() {
                 },
             )
         };
-        // λ of either pair: (m + M_b)/w = (M_c + M_b + m)/(w + s), s = w·M_c/(m + M_b); (M_c + m)/s = (M_c + M_b + m)/(w + s), s = w (M_c
-        // + m)/M_b.
+        // First pair: (m + M_b)/w = (M_c + M_b + m)/(w + s), s = w·M_c/(m + M_b).
+        // Second pair: (M_c + m)/s = (M_c + M_b + m)/(w + s), s = w (M_c + m)/M_b.
         let switches = [
             (
                 work * column / (corner + beam) / HEIGHT,

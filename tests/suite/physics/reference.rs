@@ -191,9 +191,9 @@ fn beam() {
     }
 }
 
-/// A linear specimen leaves no integration error: the balance is an identity of each law's step. `restitution` adds the
-/// loss of each impact at its instant, `hertz` that of each part: their sub-steps share the step's tangent stiffness,
-/// which is the specimen's, so that the trapezoid over the whole step is still exact.
+/// A linear specimen leaves no integration error: the balance is an identity of each law's step. `restitution` adds the loss of each
+/// impact at its instant, `hertz` that of each part. Their sub-steps share the step's tangent stiffness. It equals that of the specimen,
+/// so the trapezoid over the whole step is still exact.
 #[test]
 fn energy_closes_at_every_step() {
     for law in [

@@ -13,7 +13,7 @@ use crate::uncertainty::known;
 
 const BRANCH: f64 = 1.2e5;
 const SHARE: f64 = 0.015;
-/// s
+/// \[s\]
 const TIME_CONSTANT: f64 = 1.7;
 const REFERENCE_TIME: f64 = 0.4;
 
