@@ -1,4 +1,4 @@
-//! Plans built without a text, for tests of the stages after `check`.
+//! Plans built without text, for tests of the stages after `check`.
 
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
@@ -12,7 +12,7 @@ use crate::rig::virtual_rig;
 use crate::run::replay::{Header, HeaderFile, RULES};
 use crate::uncertainty::Source;
 
-/// Nothing but an ideal virtual rig.
+/// An ideal virtual rig only.
 pub(crate) fn empty_plan() -> Plan {
     Plan {
         title: "by hand".to_owned(),
@@ -70,7 +70,7 @@ pub(crate) fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Pl
     }
 }
 
-/// A frame of two storeys of 1 kg, the upper of which is struck by 10 kg at 1 m/s: steps of 10 ms.
+/// A frame of two storeys of 1 kg. A striker of 10 kg at 1 m/s hits the upper one, in steps of 10 ms.
 pub(crate) fn struck_frame() -> Plan {
     let storey = |stiffness, yield_force| {
         Storey::new(
@@ -109,7 +109,7 @@ pub(crate) fn struck_frame() -> Plan {
     plan
 }
 
-/// Ten outward steps of `step` (m), one sample each, no pause.
+/// Ten outward steps of `step` \[m\], one sample each, no pause.
 pub(crate) fn ramp(step: f64) -> StiffnessRamp {
     StiffnessRamp {
         specimen: 0,
@@ -170,7 +170,7 @@ impl Impact {
     }
 }
 
-/// Results as they are of another procedure: its time step is the source then.
+/// Results as if from a different procedure: its time step is then the source.
 pub(crate) fn as_of(procedure: usize, results: &[NamedResult]) -> Vec<NamedResult> {
     let mut results = results.to_vec();
     for part in results
@@ -184,7 +184,7 @@ pub(crate) fn as_of(procedure: usize, results: &[NamedResult]) -> Vec<NamedResul
     results
 }
 
-/// Steps of `time_step` (s) by the tangent form, with no pause.
+/// Steps of `time_step` \[s\] by the tangent form, with no pause.
 pub(crate) fn every(time_step: f64) -> Stepping {
     Stepping {
         integrator: Integrator::Tangent,
@@ -232,7 +232,7 @@ pub(crate) fn list(record: &Record, procedure: usize, name: &str) -> Vec<f64> {
     }
 }
 
-/// What a record begins with that nobody looks at.
+/// Start of a record that the test does not check.
 pub(crate) fn header() -> Header {
     Header {
         run_id: "0123456789abcdef".to_owned(),

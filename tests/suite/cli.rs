@@ -1,4 +1,4 @@
-//! The program as it is started from a shell: exit codes, what goes to which stream, what is left on disk.
+//! The program as started from a shell: exit codes, output streams, files on disk.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -41,7 +41,7 @@ report {
 }
 "#;
 
-/// The same plan, of which everything is written: all figures, in every format.
+/// The same plan with all outputs: all figures, in every format.
 fn with_every_output() -> String {
     SOUND.split("\nreport {").next().unwrap().to_owned()
 }
@@ -556,7 +556,7 @@ fn bless_writes_beside_the_plans_folder() {
 
 #[test]
 fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
-    // So many steps that the signal comes while they run, however fast the machine.
+    // The many steps ensure that the signal arrives during them, on a machine of any speed.
     let long = changed("time_step = 10 ms", "time_step = 1 us")
         .replace("duration  = 1 s", "duration  = 1 s\n  until     = duration");
     let bench = Bench::new(&[("long.psd", &long)]);
@@ -567,7 +567,7 @@ fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
         .spawn()
         .unwrap();
     let started = std::time::Instant::now();
-    // Into the run, so that there is a record of its steps.
+    // During the run, so that its run log contains steps.
     let recorded =
         || std::fs::metadata(bench.path("here/journal.psdj")).map_or(0, |record| record.len());
     while recorded() < 50_000 && started.elapsed() < Duration::from_secs(20) {
@@ -654,8 +654,8 @@ fn a_plan_without_a_procedure_is_not_run() {
     }
 }
 
-/// A sweep about a place past yield, whose first stroke is not read, holds while a force relaxes, cycles on a coarse cell, and a row
-/// of blows of which the same is to be said.
+/// A sweep past yield whose first pass is not read, holds during relaxation, cycles on a coarse cell. Also an impact series in which the
+/// same observation applies to every impact.
 const PAST_YIELD: &str = r"
 specimen bracket {
   mass      = 1 kg
@@ -753,7 +753,7 @@ fn results_made_anew_from_the_record_are_the_same_to_the_byte() {
         "it is a run folder like the first"
     );
 
-    // A record cut off after its last step but one: said before anything else.
+    // A run log cut off after its last step but one; this is reported first.
     let record = bench.read("run/journal.psdj");
     let lines: Vec<&str> = record.lines().collect();
     std::fs::create_dir(bench.path("cut")).unwrap();

@@ -1,4 +1,4 @@
-//! `psd rig probe`, `monitor` and `jog` as they are started from a shell.
+//! `psd rig probe`, `monitor` and `jog` as started from a shell.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -27,7 +27,7 @@ move there {
 }
 "#;
 
-/// Exit code, standard output and standard error of `psd rig …` with nobody at a terminal.
+/// Exit code, standard output and standard error of `psd rig …` without an operator at a terminal.
 fn rig(arguments: &[&str]) -> (Option<i32>, String, String) {
     let folder = tempfile::tempdir().unwrap();
     let plan: &Path = &folder.path().join("plan.psd");

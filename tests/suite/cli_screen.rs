@@ -1,4 +1,4 @@
-//! The live screen, on a pseudo-terminal: keys in, pictures out, and what they leave in the record.
+//! The live screen on a pseudo-terminal: keys in, screen contents out, and their entries in the run log.
 
 use std::fs::File;
 use std::io::{Read as _, Write as _};
@@ -10,10 +10,10 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, Winsize, tcgetattr, tcsetwinsize};
 use serde_json::Value;
 
-/// Longest wait for anything, far beyond what it takes: only a program that does not hear reaches it.
+/// Longest wait for any output, far longer than required: only a program that does not respond reaches it.
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// An inspection comes first, so that the screen is there however fast the machine is.
+/// An inspection comes first, so that the screen appears before the steps on a machine of any speed.
 const PLAN: &str = r#"plan "A test with a look" {
   edition = 1
 }
@@ -54,7 +54,7 @@ report {
 struct Terminal {
     folder: tempfile::TempDir,
     master: File,
-    /// Kept open, so that the terminal's modes can be looked at after the program.
+    /// Kept open, so that the terminal modes can be read after the end of the program.
     slave: File,
     child: Child,
     seen: String,
@@ -99,7 +99,7 @@ impl Terminal {
         }
     }
 
-    /// Reads until this has been drawn since the last key.
+    /// Reads until this text has been drawn after the last key.
     fn wait_for(&mut self, text: &str) {
         let (mut buffer, since) = ([0; 4096], Instant::now());
         while !self.seen.contains(text) {
@@ -123,7 +123,7 @@ impl Terminal {
         self.master.write_all(keys.as_bytes()).unwrap();
     }
 
-    /// Another size of the window, as a window manager gives it; waits until the screen is drawn for it.
+    /// Sets a different window size, like a window manager; waits until the screen is drawn for it.
     fn resize(&mut self, columns: u16) {
         self.set_size(columns);
         self.wait_for("hold now");
@@ -145,7 +145,7 @@ impl Terminal {
         kill_process(Pid::from_child(&self.child), Signal::WINCH).unwrap();
     }
 
-    /// Waits until this stands on the screen, which is drawn whole only when the window gets another size.
+    /// Waits until this text is on the screen. The whole screen is drawn only after a change of the window size.
     fn drawn(&mut self, text: &str) {
         let since = Instant::now();
         while !self.seen.contains(text) {
@@ -192,7 +192,7 @@ fn an_inspection_is_asked_on_the_screen_and_answered_by_name() {
     let mut terminal = Terminal::run(&[]);
     terminal.wait_for("INSPECTION");
     terminal.drawn("type yes");
-    // What is no answer goes on with nothing; a remark has a key of its own, and a name follows a yes.
+    // An invalid answer is ignored. A comment has a separate key, and a name follows a yes.
     terminal.press("xyz\rino crack\ryes\r");
     terminal.wait_for("name");
     terminal.press("A. Engineer\r");

@@ -1,5 +1,5 @@
-//! The paper's beam over real pseudo-terminals and TCP: each dialect's stand-in and `psd run` as two processes. In: the
-//! rigs of `rigs`. Out: the virtual run's results, within what the rig resolves. No time is measured.
+//! The paper's beam over real pseudo-terminals and TCP. The rig emulator of each protocol driver and `psd run` are two processes. In: the
+//! rigs of `rigs`. Out: the results of the virtual run, within the resolution of the rig. No time is measured.
 
 mod probe;
 mod rigs;
@@ -13,22 +13,22 @@ use std::time::{Duration, Instant};
 use rigs::{CASES, Case};
 use serde_json::Value;
 
-/// Longest wait for anything: far beyond what a machine under load takes.
+/// Longest wait for any output: far longer than a machine under load requires.
 const PATIENCE: Duration = Duration::from_mins(4);
-/// `reply_timeout` of a rig that answers, s: longer than a loaded machine keeps an emulator waiting.
+/// `reply_timeout` of a rig that answers \[s\]: longer than the reply time of an emulator on a loaded machine.
 const ANSWERS: f64 = 30.0;
-/// `reply_timeout` of a rig that stays silent, s.
+/// `reply_timeout` of a rig that stays silent \[s\].
 const SILENT: f64 = 0.2;
-/// N/m
+/// \[N/m\]
 const STIFFNESS: f64 = 3e5;
-/// Of the beam's free vibration, √(K/M) with M = 0.73038 kg, 1/s.
+/// Angular frequency of the beam's free vibration \[1/s\], √(K/M) with M = 0.73038 kg.
 const FREQUENCY: f64 = 641.0;
-/// When the striker has stopped, s, and the largest velocity of the beam until then, m/s.
+/// Stop time of the striker \[s\], and the largest velocity of the beam until then \[m/s\].
 const STOP: f64 = 0.0135;
 const VELOCITY: f64 = 2.2;
-/// Largest displacement of the paper's beam, m.
+/// Largest displacement of the paper's beam \[m\].
 const LARGEST: f64 = 7.9e-3;
-/// m: of one step of 0.5 ms.
+/// Largest increment of one step of 0.5 ms \[m\].
 const INCREMENT: f64 = 1.1e-3;
 
 #[test]
@@ -51,7 +51,7 @@ fn every_dialect_gives_the_virtual_runs_results_within_its_resolution() {
     assert!(faults.is_empty(), "{}", faults.join("\n\n"));
 }
 
-/// A process that does not outlive the test.
+/// A process that ends with the test.
 struct Process(Child);
 
 impl Drop for Process {
@@ -73,7 +73,7 @@ fn psd(folder: &Path, output: &str, arguments: &[&str]) -> Process {
     Process(command.spawn().expect("psd starts"))
 }
 
-/// The end of a process, or None where it does not come.
+/// The end of a process, or None if it does not end.
 fn end(process: &mut Process) -> Option<ExitStatus> {
     let until = Instant::now() + PATIENCE;
     while Instant::now() < until {
@@ -85,7 +85,7 @@ fn end(process: &mut Process) -> Option<ExitStatus> {
     None
 }
 
-/// Whether the stand-in says that it stands in.
+/// Whether the emulator reports that it is ready.
 fn ready(folder: &Path) -> bool {
     let until = Instant::now() + PATIENCE;
     while Instant::now() < until {
@@ -99,7 +99,7 @@ fn ready(folder: &Path) -> bool {
     false
 }
 
-/// The plan of a case and what it uses, with ports of its own.
+/// The plan of a case and its libraries, with separate ports.
 fn write_plan(case: &Case, folder: &Path, reply_timeout: f64) {
     let beam = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/lib/gfrp_beam.psd");
     fs::copy(beam, folder.join("gfrp_beam.psd")).expect("the beam");
@@ -113,7 +113,7 @@ fn write_plan(case: &Case, folder: &Path, reply_timeout: f64) {
     .expect("the plan");
 }
 
-/// Runs a case on both rigs; the error says what was wrong, with what both processes said.
+/// Runs a case on both rigs. The error contains the difference and the output of both processes.
 fn run(case: &Case) -> Result<(), String> {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
@@ -194,16 +194,16 @@ fn result(summary: &Value, procedure: &str, name: &str) -> Option<f64> {
     summary["procedures"][procedure]["results"][name]["value"].as_f64()
 }
 
-/// Holds the real run's results against the virtual run's.
+/// Compares the results of the real run with those of the virtual run.
 ///
-/// A target is rounded by at most half the resolution r, and so is the reading of where it ended: the force read lies
-/// within e = K·r/2 + q of that of the ideal rig, q being half a quantum of the force.
+/// A target is rounded by at most half the resolution r. The reading of the end position has the same error. The force read thus differs
+/// from that of the ideal rig by at most e = K·r/2 + q. Here q is half the force resolution.
 /// - K of the ramp's line: Σ|x − m|/Σ(x − m)² of 0.25, 0.5, 0.75, 1 mm is 3200/m, and the displacements err by r/2 too.
 /// - c of two velocities: each mean errs by at most e, so that the slope errs by 2e/Δv.
-/// - The impact: K foretells one increment and c adds c·v, so that e grows by what both err times these. A beam that
-///   vibrates freely answers a force error with ∫ e·sin ω(t − s)/(Mω) ds: at most (2/π)·ωt·e/K, its mean over whole
-///   half waves. The work of e is along the way, at most v·t, and the spring's is K·X times the error of X.
-/// - The striker stops one step sooner or later.
+/// - The impact: K predicts one increment and c adds c·v, so that e increases by the errors of both. A beam that vibrates freely answers
+///   a force error with ∫ e·sin ω(t − s)/(Mω) ds. This is at most (2/π)·ωt·e/K, its mean over whole half waves. The work of e is done
+///   along the path, which is at most v·t. The work of the spring is K·X times the error of X.
+/// - The striker stops one step earlier or later.
 fn compare(case: &Case, ideal: &Value, real: &Value) -> Result<(), String> {
     let mut error = STIFFNESS * case.resolution / 2.0 + case.force_error;
     let stiffness = (error + STIFFNESS * case.resolution / 2.0) * 3200.0;
@@ -235,7 +235,7 @@ fn compare(case: &Case, ideal: &Value, real: &Value) -> Result<(), String> {
     Ok(())
 }
 
-/// By how much a result of the two runs differs, if that is at most `allowed`.
+/// Difference of a result between the two runs, if it is at most `allowed`.
 fn near(
     ideal: &Value,
     real: &Value,

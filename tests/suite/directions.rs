@@ -1,11 +1,11 @@
-//! The arrows of the house: which folder of `src` may use which, and how many files still use each other in a circle.
+//! The dependency rules: which folder of `src` may use which, and how many files still form dependency cycles.
 
 use std::collections::BTreeSet;
 
 use super::import_graph::{ImportGraph, cycles, is_of_tests, without_comments_and_tests};
 use super::source_text::{none, rust_files};
 
-/// The folders of `src` from the ground up. A folder may use what stands before it, and none of its own line but itself.
+/// The folders of `src`, lowest level first. A folder may use the folders of earlier lines. In its own line it may use only itself.
 const ORDER: &[&[&str]] = &[
     &["text", "units"],
     &["physics"],
@@ -23,14 +23,14 @@ const ORDER: &[&[&str]] = &[
     &["cli"],
 ];
 
-/// The one file that knows which procedures there are.
+/// The one file that lists the procedures.
 const DISPATCH: &str = "procedures/mod.rs";
 
-/// The types of what it says of a procedure.
+/// The types of its facts about a procedure.
 const FACTS: &str = "procedures/facts.rs";
 
-/// The drivers of check, run and report: they alone ask the procedures, and only through the dispatch file. All else in their folders
-/// is an engine, which the procedures use.
+/// The drivers of check, run and report. Only they query the procedures, and only through the dispatch file. All other files in their
+/// folders are engines, which the procedures use.
 const DRIVERS: &[&str] = &[
     "language/check/declarations/golden.rs",
     "language/check/declarations/report.rs",
@@ -54,7 +54,7 @@ const DRIVERS: &[&str] = &[
 /// Files in circles of uses, at most. The number may only fall; the goal is under 20.
 const IN_CYCLES: usize = 14;
 
-/// Files beside the dispatch file that still tell procedures or histories apart. The list may only shrink.
+/// Files, besides the dispatch file, that still distinguish procedures or histories. The list may only shrink.
 const TELL_APART: &[&str] = &[
     "cli/commands/explain_plan/mod.rs",
     "run/rehearsal.rs",
@@ -119,7 +119,7 @@ fn circles_of_files_only_shrink() {
     );
 }
 
-/// Whether a code names a variant of an enum: `History::Ramp`, but no function of it.
+/// Whether code names a variant of an enum, such as `History::Ramp`, and not a function of it.
 fn names_a_variant(code: &str, of: &str) -> bool {
     code.match_indices(of).any(|(at, _)| {
         let before = code[..at].chars().next_back();
@@ -128,8 +128,8 @@ fn names_a_variant(code: &str, of: &str) -> bool {
     })
 }
 
-/// A procedure is added in its folder, in the two enums, and in the dispatch file, where the compiler asks for it: so its matches
-/// name every variant.
+/// A new procedure is added in its folder, in the two enums, and in the dispatch file. The compiler then reports the dispatch file,
+/// because its matches name every variant.
 #[test]
 fn one_file_knows_which_procedures_there_are() {
     let variants = ["ProcedureKind::", "History::"];

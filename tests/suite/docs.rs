@@ -1,4 +1,4 @@
-//! The pages at the root are true: their plans check, their links lead somewhere, and the commands they name are there.
+//! Checks of the pages at the root: their plans check, their links lead to a target, and the commands they name exist.
 
 use std::fs;
 use std::path::Path;
@@ -46,7 +46,7 @@ fn links_of_the_pages_lead_somewhere() {
     }
 }
 
-/// Paths named in code marks on the pages of the house exist.
+/// Paths in code marks on these pages exist.
 #[test]
 fn places_named_on_the_pages_exist() {
     for name in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
@@ -77,7 +77,7 @@ fn the_readmes_commands_are_there() {
     );
 }
 
-/// Every part of the code stands on the code map.
+/// Every part of the code is listed on the code map.
 #[test]
 fn every_part_of_the_code_is_on_the_map() {
     let (root, map) = (
@@ -92,7 +92,7 @@ fn every_part_of_the_code_is_on_the_map() {
     }
 }
 
-/// What `psd … --help` says.
+/// Output of `psd … --help`.
 fn help(words: &[&str]) -> Option<String> {
     let output = Command::new(env!("CARGO_BIN_EXE_psd"))
         .args(words)

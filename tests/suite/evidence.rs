@@ -1,5 +1,5 @@
-//! Evidence as it is made and checked from a shell: keys, signatures, proof of a whole folder, amendments, and a report
-//! that is the same wherever it is made.
+//! Evidence as made and checked from a shell: keys, signatures, verification of a whole folder, amendments. A report is identical on
+//! every machine.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
@@ -47,7 +47,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// A bench with a run in `run`, on a page and in tables.
+    /// A folder with a run in `run`, as a page and as tables.
     fn new() -> Self {
         static RUN: LazyLock<Files> = LazyLock::new(|| {
             Bench::made(&PLAN.replace(
@@ -58,13 +58,13 @@ impl Bench {
         Self::of(&RUN)
     }
 
-    /// The same with a paper, which takes its time.
+    /// The same with a PDF, which takes longer.
     fn with_paper() -> Self {
         static RUN: LazyLock<Files> = LazyLock::new(|| Bench::made(PLAN));
         Self::of(&RUN)
     }
 
-    /// What a run of the plan leaves, beside the plan.
+    /// Output of a run of the plan, with the plan.
     fn made(plan: &str) -> Files {
         let bench = Self {
             folder: tempfile::tempdir().unwrap(),
@@ -99,7 +99,7 @@ impl Bench {
         command
     }
 
-    /// Everything the program said.
+    /// All output of the program.
     #[track_caller]
     fn ends(&self, code: i32, arguments: &[&str]) -> String {
         let Output {
@@ -436,11 +436,11 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
             .ends(0, &["verify", "run-amended-1"])
             .contains("amends report")
     );
-    // One report is replaced by one other.
+    // Each report is replaced by exactly one other report.
     assert!(amend("run", "customer=Third Ltd", 3).contains("has been replaced already"));
     assert!(!bench.path("run-amended-2").exists());
 
-    // An amendment may be amended; the chain of reports is told.
+    // An amendment may be amended; the chain of reports is stated.
     amend("run-amended-1", "customer=", 0);
     let last = json("run-amended-2/summary.json");
     assert_eq!(
@@ -479,7 +479,7 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
     fs::write(bench.path("run/manifest.sha256.quality.minisig"), signature).unwrap();
     bench.ends(3, &["verify", "run", "--key", "key.pub"]);
 
-    // What was measured, and when, is no particular.
+    // The measured data and their dates are not particulars.
     for (particular, told) in [
         ("date=2020-01-01", "on record"),
         ("custumer=X", "did you mean `customer`?"),
@@ -561,7 +561,7 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
             .contains("issued on 2026-06-02 by Q. Head from report")
     );
 
-    // It is issued once; from then on there are amendments, and each says its day.
+    // It is issued once. After that there are amendments, and each states its date.
     assert!(
         issue("run", "2026-06-02", &["--out", "again"], 3).contains("has been replaced already")
     );

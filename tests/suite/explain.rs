@@ -1,8 +1,8 @@
-//! The pages of `psd explain`: each code has one, and its wrong and right plans do as the page says.
+//! The pages of `psd explain`: each code has one, and its wrong and right plans behave as the page states.
 //!
-//! A page's plans are its fenced blocks. The first word after `psd` says which: `wrong`, `right`, or `file="lib/a.psd"`, a
-//! file that both plans may use (`*` stands for any digits). `set="speed=2 m/s"` and `rig="name"` are options of the command line; with `unattended="yes"` a run is to begin
-//! and nobody is there to ask.
+//! A page's plans are its fenced blocks. The first word after `psd` gives the kind: `wrong`, `right`, or `file="lib/a.psd"`. Such a file
+//! can be used by both plans (`*` matches any digits). `set="speed=2 m/s"` and `rig="name"` are options of the command line. With
+//! `unattended="yes"` a run begins without an operator.
 
 use psd::language::check::{Checked, LoadError, Loader, Options, check};
 use psd::language::syntax::{format, parse};
@@ -98,7 +98,7 @@ fn said(checked: &Checked) -> Vec<String> {
         .collect()
 }
 
-/// Every code that does not do as `holds` says, with what was found instead.
+/// Every code for which `holds` fails, with the actual result.
 fn faults_of(kind: &str, holds: impl Fn(Code, &Checked) -> bool) -> Vec<String> {
     let mut faults = Vec::new();
     for &code in Code::ALL

@@ -1,4 +1,4 @@
-//! `psd test` as it is started from a shell: what is blessed, what is told of a difference, exit codes, what is left on disk.
+//! `psd test` as started from a shell: accepted results, reported differences, exit codes, files on disk.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -84,7 +84,7 @@ impl Bench {
         std::fs::write(path, text).unwrap();
     }
 
-    /// Changes a file, which must hold what is changed.
+    /// Replaces text in a file, which must contain that text.
     fn edit(&self, path: &str, from: &str, to: &str) {
         let text = self.read(path);
         assert!(text.contains(from), "{path} holds no `{from}`:\n{text}");
@@ -149,7 +149,7 @@ fn a_plan_is_blessed_then_passes_and_is_not_blessed_again() {
         .says(&["same     plans/small  within tolerance: nothing written"]);
     assert_eq!(every_file(&bench.path("reports")), blessed);
 
-    // `psd run --bless` is the same: nothing to write, and the same files where there are none.
+    // `psd run --bless` does the same: it writes nothing if nothing changed, and writes the same files if none exist.
     bench
         .psd(&["run", "plans/small.psd", "--bless", "--out", "here"])
         .with(0)
@@ -169,7 +169,7 @@ fn a_plan_is_blessed_then_passes_and_is_not_blessed_again() {
         .with(2)
         .says(&["as it is written"]);
 
-    // Another last digit, as of another machine, never reaches the repository; `--anew` writes all the same.
+    // A different last digit from a different machine is never written to the repository; `--anew` writes it anyway.
     let value = serde_json::from_str::<Value>(&bench.read("reports/small/summary.json")).unwrap()["procedures"]["hit"]["results"]
         ["max_displacement"]["value"]
         .as_f64()
@@ -228,7 +228,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
     let row = cells.join(",");
     cells[place] = (cells[place].parse::<f64>().unwrap() * 1.001).to_string();
     let moved = cells.join(",");
-    // Within what its plan allows, and the very same change where nothing is allowed.
+    // Within the tolerance of its plan, and the same change without a tolerance.
     bench.edit(&table("near"), &row, &moved);
     bench.edit(&summary("near"), displacement, "0.15789");
     bench.edit(&table("column"), &row, &moved);
@@ -331,7 +331,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
     );
     assert!((column["by_fraction"].as_f64().unwrap() + 0.001 / 1.001).abs() < 1e-6);
 
-    // What is left to look at, and only of what failed.
+    // The remaining results to inspect, only of plans that failed.
     let left = |path: &str| bench.path("runs/golden-failures").join(path).exists();
     assert!(
         left("column/hit_restoring_force_n.png")
@@ -351,7 +351,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
         "see runs/golden-failures/column",
     ]);
 
-    // Blessed, it passes, and what it left is taken away; what was not run stays as it was.
+    // After acceptance it passes, and its output is removed. Plans that did not run stay unchanged.
     bench
         .psd(&["test", "--filter", "column", "--bless"])
         .with(0)
@@ -392,7 +392,7 @@ fn a_requirement_that_changes_its_verdict_comes_first() {
         place("  verdict ") < place("stays in travel")
             && place("stays in travel") < place("hit.max_displacement")
     );
-    // The plan that fails is a result too, once it is blessed.
+    // The plan that fails is also a result, once it is accepted.
     bench.psd(&["test", "--bless"]).with(0);
     bench
         .psd(&["test"])
@@ -422,7 +422,7 @@ fn a_plan_that_must_fail_to_check_has_its_words_blessed() {
         .says(&["the plan checks, and is blessed as one that does not"]);
     bench.psd(&["test", "--bless"]).with(0);
     assert!(!bench.path("reports/wrong/diagnostics.txt").exists());
-    // The other way round a person must mean it.
+    // The opposite change requires an explicit option.
     bench.write("plans/wrong.psd", &wrong);
     bench
         .psd(&["test"])
@@ -534,7 +534,7 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
     );
     assert!(bench.path("two/figures/hit_displacement_1.png").exists());
 
-    // A folder of blessed results holds the same numbers; another plan shares what it shares.
+    // A folder of accepted results contains the same numbers; a different plan has the same common parts.
     bench.psd(&["test", "--bless"]).with(0);
     let blessed = bench
         .psd(&["compare", "reports/small", "run-1"])

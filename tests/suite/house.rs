@@ -1,11 +1,11 @@
-//! The house rules that a reader would otherwise have to trust: read from the source text itself.
+//! The rules of the repository that a reader could otherwise not verify, checked in the source text.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::source_text::{SourceText, none, rust_files};
 
-/// What turns text into a verdict and its outputs: a function of its input, on every machine.
+/// Code that converts text into a verdict and its outputs: a function of its input only, on every machine.
 const PURE: &[&str] = &[
     "text",
     "units",
@@ -19,7 +19,7 @@ const PURE: &[&str] = &[
     "golden",
 ];
 
-/// What such code may not name: the clock, files, the environment, the terminal, processes and the network.
+/// Names that such code must not use: the clock, files, the environment, the terminal, processes and the network.
 const IMPURE: &[&str] = &[
     "std::fs",
     "fs::",
@@ -117,8 +117,8 @@ fn only_the_run_and_those_it_is_lent_to_drive_a_rig() {
     );
 }
 
-/// A driver and the emulator it is tried on read the same bytes with code of their own: else a mistake of one is hidden by
-/// the other. They share only the port, the clock, and the plan.
+/// A driver and its emulator read the same bytes with separate code; otherwise one error could hide the other. They share only the port,
+/// the clock, and the plan.
 #[test]
 fn emulator_and_drivers_share_no_parsing_code() {
     let files = rust_files("src");
@@ -149,8 +149,8 @@ fn emulator_and_drivers_share_no_parsing_code() {
     );
 }
 
-/// The program's name is a digest of its sources, without the files that are named as tests (`build.rs`): none of them may
-/// become a part of the program.
+/// The program version is a digest of its sources, without the files whose names mark them as tests (`build.rs`). No such file may become
+/// part of the program.
 #[test]
 fn what_is_named_a_test_is_built_for_tests_alone() {
     let named = |name: &str| name == "tests" || name == "testing" || name.ends_with("_tests");
@@ -177,7 +177,7 @@ fn what_is_named_a_test_is_built_for_tests_alone() {
     none(&found, "not of tests alone");
 }
 
-/// Files that are longer than the wall. The list may only shrink.
+/// Files that are longer than the limit. The list may only shrink.
 const LONG: &[&str] = &[
     "emulator/firmware/grbl.rs",
     "emulator/firmware/native/mod.rs",
@@ -236,7 +236,7 @@ fn nothing_is_left_undone_or_switched_off() {
     none(&found, "left undone");
 }
 
-/// Numbers of every plan are accepted results; pages and pictures are large, and change with every wording.
+/// The numbers of every plan are accepted results. Pages and pictures are not, because they are large and change with every wording.
 #[test]
 fn accepted_results_stay_small() {
     let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("reports")];

@@ -1,5 +1,5 @@
-//! Which file of `src` uses which other, read from its paths: `use` trees and paths in the code, through re-exports to the file
-//! that defines what is used. Tests beside the code are left out. It knows no rule.
+//! Dependencies between files of `src`, read from their paths: `use` trees and paths in the code, through re-exports to the defining
+//! file. Tests beside the code are left out. This module contains no rule.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use super::source_text::SourceText;
 /// Names of modules from the root of the crate, or of a path in the code.
 type Path = Vec<String>;
 
-/// The files of `src` that make up the product, by module, and what each uses.
+/// The files of `src` that make up the product, by module, with the files that each uses.
 pub struct ImportGraph {
     files: BTreeMap<Path, Module>,
 }
@@ -16,16 +16,16 @@ pub struct ImportGraph {
 struct Module {
     /// Relative to `src`.
     file: String,
-    /// Every path that the file names, as it is written from here.
+    /// Every path in the file, as written there.
     paths: BTreeSet<Path>,
-    /// `use` of a module or a name: what it is known by here, and the path it stands for.
+    /// `use` of a module or a name: its local name, and its full path.
     imported: BTreeMap<String, Path>,
-    /// The same of every `pub use`, which gives the name on.
+    /// The same for every `pub use`, which re-exports the name.
     given_on: BTreeMap<String, Path>,
 }
 
 impl ImportGraph {
-    /// Of these files, without those of tests.
+    /// The graph of these files, without test files.
     pub fn of(files: &[SourceText]) -> Self {
         let product = files.iter().filter(|file| !is_of_tests(&file.path));
         let modules = product.map(|file| (module_of(&file.path), read(file)));
@@ -50,10 +50,10 @@ impl ImportGraph {
             .collect()
     }
 
-    /// The file that defines what `written` means in the module `here`; None of other crates and local names.
+    /// The file that defines `written` in the module `here`; None for other crates and local names.
     fn target(&self, here: &[String], written: &[String]) -> Option<&Module> {
         let mut path = self.absolute(here, written)?;
-        // A chain of re-exports is short; a glob that leads back would be endless.
+        // A chain of re-exports is short; a circular glob would be endless.
         for _ in 0..8 {
             let depth = (0..=path.len())
                 .rev()
@@ -100,8 +100,8 @@ impl ImportGraph {
     }
 }
 
-/// Groups of files that use each other in a circle, each with more than one file. A `mod.rs` and the files of its own folder
-/// are one room: what it uses of them is not counted.
+/// Dependency cycles, each with more than one file. A `mod.rs` and the files of its own folder count as one unit: its uses of them are
+/// not counted.
 pub fn cycles<'a>(uses: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<BTreeSet<&'a str>> {
     let outside = |file: &'a str, used: &BTreeSet<&'a str>| {
         let folder = file.strip_suffix("mod.rs").map(str::to_owned);
@@ -127,7 +127,7 @@ pub fn cycles<'a>(uses: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<BTreeSet<&
     found.into_iter().collect()
 }
 
-/// Every file that can be reached from one; itself where a circle leads back to it.
+/// Every file that can be reached from one; this includes the file itself in a dependency cycle.
 fn reachable<'a>(file: &str, uses: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTreeSet<&'a str> {
     let mut reached = BTreeSet::new();
     let mut open: Vec<&str> = uses[file].iter().copied().collect();
@@ -139,7 +139,7 @@ fn reachable<'a>(file: &str, uses: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTr
     reached
 }
 
-/// Whether a file is built for tests alone.
+/// Whether a file is built for tests only.
 pub fn is_of_tests(path: &str) -> bool {
     path.trim_end_matches(".rs")
         .split('/')
@@ -181,7 +181,7 @@ fn read(file: &SourceText) -> Module {
         }
     }
     module.paths.extend(written_paths(&rest));
-    // What is given on may be used here, too.
+    // Re-exported names may also be used here.
     let own = names_in(&rest);
     let used = module
         .given_on
@@ -208,7 +208,7 @@ pub fn without_comments_and_tests(text: &str) -> String {
         .join("\n")
 }
 
-/// What stands before a `use` in a statement, and its tree.
+/// The text before a `use` in a statement, and its tree.
 fn use_tree(statement: &str) -> Option<(&str, &str)> {
     let at = statement
         .match_indices("use ")
@@ -218,7 +218,7 @@ fn use_tree(statement: &str) -> Option<(&str, &str)> {
     Some((&statement[..at], tree))
 }
 
-/// Every path of a `use` tree, with the name it is known by.
+/// Every path of a `use` tree, with its local name.
 fn leaves(tree: &str) -> Vec<(Path, String)> {
     let tree = tree.trim();
     if let Some((head, group)) = tree.split_once('{') {
@@ -247,7 +247,7 @@ fn leaves(tree: &str) -> Vec<(Path, String)> {
     name.map(|name| (path, name)).into_iter().collect()
 }
 
-/// The parts of a group between the commas that are its own.
+/// The parts of a group, separated at its top-level commas.
 fn at_top_level(group: &str) -> Vec<&str> {
     let (mut depth, mut start, mut parts) = (0, 0, Vec::new());
     for (at, letter) in group.char_indices() {
@@ -279,7 +279,7 @@ fn names_in(code: &str) -> BTreeSet<&str> {
         .collect()
 }
 
-/// Every path of two names or more in the code.
+/// Every path of at least two names in the code.
 fn written_paths(code: &str) -> BTreeSet<Path> {
     let part_of_path = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == ':';
     code.split(|letter| !part_of_path(letter))

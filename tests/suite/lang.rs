@@ -1,5 +1,5 @@
-//! The language by example: every plan of `tests/lang/STAGE/` goes as far as its folder says, and the snapshot holds the plan
-//! and what psd says of it. A case is one file; `# options: --set "speed=2 m/s"` or `--rig NAME` in its first line is its command line.
+//! The language by example. Every plan of `tests/lang/STAGE/` reaches the stage of its folder; the snapshot contains the plan and the
+//! output of psd. A case is one file. `# options: --set "speed=2 m/s"` or `--rig NAME` in its first line is its command line.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -15,7 +15,7 @@ use psd::text::diagnostic::{Code, Diagnostic, Severity};
 use psd::units::display::readable;
 use psd::verdict::{Assessment, Verdict, assess};
 
-/// Where a plan's way ends, and the exit code that goes with it.
+/// The stage at which a plan ends, and its exit code.
 const STAGES: &[(&str, u8)] = &[
     ("ok", 0),
     ("syntax_error", 2),
@@ -25,7 +25,7 @@ const STAGES: &[(&str, u8)] = &[
     ("fail", 1),
 ];
 
-/// Codes without a case of their own, and why.
+/// Codes without a separate case, with the reason.
 const WITHOUT_CASE: &[(Code, &str)] = &[
     (
         Code::TooManyFiles,
@@ -94,7 +94,7 @@ impl Case {
                     options.settings.push((name.to_owned(), value.to_owned()));
                 }
                 "rig" => options.rig = Some(value.to_owned()),
-                // A run that nobody attends: `--yes`, and no `--operator`.
+                // A run without an operator: `--yes`, and no `--operator`.
                 "unattended" => options.unattended = true,
                 other => panic!("{}: unknown option `{other}`", self.name),
             }
@@ -152,7 +152,7 @@ fn exit_code(played: Option<&(Record, Assessment)>) -> u8 {
     }
 }
 
-/// What happened, for the snapshot: the end of the run, then each condition with what was found.
+/// The events for the snapshot: the end of the run, then each condition with its actual value.
 fn told(record: &Record, assessment: &Assessment) -> String {
     let mut text = match &record.outcome {
         Outcome::Completed => "the run completed\n".to_owned(),
@@ -288,7 +288,7 @@ fn line_ends_of_other_systems_are_tested() {
     );
 }
 
-/// The names of the cases that leave out a required argument, also of choices inside choices.
+/// The names of the cases without a required argument, including those of nested options.
 fn argument_cases(field: &Field) -> Vec<String> {
     let (FieldType::Choice(variants) | FieldType::Choices(variants)) = field.ty else {
         return Vec::new();
@@ -337,7 +337,8 @@ fn every_required_field_and_argument_has_a_case() {
     );
 }
 
-/// The real rigs of `plans/lib` are whole: a plan on each of them has no fault, and the beam's moves it only when named.
+/// The real rigs of `plans/lib` are complete: a plan on each of them has no error. The plan of the beam moves its rig only if it is
+/// named.
 #[test]
 fn the_rigs_of_the_library_are_sound() {
     let plans = Path::new(env!("CARGO_MANIFEST_DIR")).join("plans");

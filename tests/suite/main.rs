@@ -1,4 +1,4 @@
-//! All integration tests in one binary: one link, one module a concern.
+//! All integration tests in one binary: one link step, one module per topic.
 
 mod book;
 mod cli;

@@ -1,5 +1,5 @@
-//! The book's pages on controllers, native protocol and run log are true: rig blocks check, frames are the driver's, entries are
-//! those of the journal.
+//! Checks of the book's pages on controllers, native protocol and run log. Rig blocks pass their check, frames equal those of the driver,
+//! entries equal those of the run log.
 
 use std::fs;
 use std::path::Path;
@@ -108,7 +108,7 @@ fn every_rig_block_checks_in_the_plan_around_it() {
     }
 }
 
-/// The frames of the protocol's conversations, of a rig of one axis and of one of two, without their endings.
+/// The frames of the protocol's conversations, for a rig of one axis and for one of two, without their endings.
 fn frames() -> Vec<String> {
     let page = page("reference/native-protocol.md");
     let talks: Vec<_> = blocks(&page, "text")

@@ -1,4 +1,4 @@
-//! The page of golden tests is true: its commands and options are the program's, its plan runs and gives what the page says.
+//! Checks of the page of golden tests: its commands and options exist, its plan runs and gives the results of the page.
 
 use std::fs;
 use std::path::Path;
@@ -111,7 +111,7 @@ fn the_plan_of_the_page_checks_and_its_tolerances_are_read() {
     );
 }
 
-/// Every table of a blessed report has the columns of the schema, and every number column is there.
+/// Every table of an accepted report has the columns of the schema, and all number columns are present.
 #[test]
 fn the_columns_of_the_tables_are_those_of_the_schema() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -144,7 +144,7 @@ fn the_columns_of_the_tables_are_those_of_the_schema() {
                         .is_some_and(|rest| rest.starts_with('_'))
             });
             let Some((_, owner)) = owner else {
-                // What the zeros of the rig did is of no procedure.
+                // The zero readings of the rig do not belong to a procedure.
                 assert!(
                     stem == "drift" && summary["drift"].is_object(),
                     "{}: a table has its procedure",

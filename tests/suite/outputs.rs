@@ -1,4 +1,4 @@
-//! What a run leaves: the bytes of every output, read back as their readers would.
+//! Outputs of a run: the bytes of every output, read back as its readers would read it.
 
 mod fixture;
 mod hostile;
@@ -25,7 +25,7 @@ fn files(finished: &Finished) -> Vec<OutputFile> {
     everything(&finished.run()).expect("every output can be made")
 }
 
-/// The files of the run as it is, made once.
+/// The files of the unchanged run, made once.
 fn made() -> &'static [OutputFile] {
     static MADE: LazyLock<Vec<OutputFile>> = LazyLock::new(|| files(&finished()));
     &MADE
@@ -129,7 +129,7 @@ fn csv_has_the_columns_of_the_language_and_reads_back_bit_for_bit() {
     );
 }
 
-/// The numbers of a row in the order of the columns, step and state apart.
+/// The numbers of a row in the order of the columns, without step and state.
 fn row(step: &ImpactStep) -> [f64; 23] {
     let e = step.energies;
     [
@@ -183,7 +183,7 @@ fn parquet_reads_back_as_the_record() {
 #[test]
 fn the_committed_schema_is_the_generated_one_and_holds_for_a_summary() {
     let generated = Summary::json_schema().unwrap();
-    // Where the types have changed on purpose, SNAPSHOTS=overwrite writes the file anew.
+    // If the types were changed intentionally, SNAPSHOTS=overwrite regenerates the file.
     snapbox::assert_data_eq!(
         generated.clone(),
         snapbox::file!["../../grammar/summary.schema.json": Text].raw()
@@ -274,7 +274,7 @@ fn the_certificate_loads_and_runs_nothing_and_says_what_it_is() {
     assert_eq!(html.matches("<figcaption>").count(), pictures);
 }
 
-/// A run whose every text wants to be something else.
+/// A run in which every text contains markup or control characters.
 fn hostile() -> Finished {
     let mut finished = finished();
     let label = "</td><script>alert(1)</script><img src=x onerror=alert(1)>\u{1b}[31m";

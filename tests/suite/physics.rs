@@ -1,4 +1,4 @@
-//! The numerics against closed forms, an independent event-driven solution and the reference results.
+//! The numerical methods, compared with closed forms, an independent event-driven solution and the reference results.
 
 mod contact;
 mod falling;

@@ -1,4 +1,4 @@
-//! The plans of `plans/`, run as a user runs them: through the program, to a run folder.
+//! The plans of `plans/`, run like a user would: through the program, to a run folder.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -42,7 +42,7 @@ struct Run {
     output: Output,
 }
 
-/// Runs a plan of `plans/` once for all tests that ask for it.
+/// Runs a plan of `plans/` once for all tests that require it.
 fn ran(plan: &str) -> &'static Run {
     static RUNS: LazyLock<BTreeMap<String, OnceLock<Run>>> = LazyLock::new(|| {
         let name = |plan: PathBuf| {
@@ -290,7 +290,7 @@ fn the_same_plan_gives_the_same_bytes() {
     }
 }
 
-/// The blessed results are what the program gives today, by the program's own test.
+/// The accepted results equal the present results of the program, by the program's own test.
 #[test]
 fn the_blessed_reports_are_true() {
     let scratch = tempfile::tempdir().expect("a folder");

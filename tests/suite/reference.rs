@@ -1,5 +1,5 @@
-//! The language reference, `grammar/LANGUAGE.md`: its generated part is the schema's, its plans are right.
-//! `PSD_BLESS=1 cargo test` writes the generated part anew.
+//! The language reference, `grammar/LANGUAGE.md`: its generated part equals that of the schema, its plans are valid. `PSD_BLESS=1 cargo
+//! test` regenerates the generated part.
 
 use std::fs;
 use std::path::PathBuf;
@@ -70,7 +70,7 @@ fn the_plans_of_the_reference_are_right() {
             plan,
             "psd fmt would change a plan of the reference"
         );
-        // A plan on a real rig is one that is run with `--rig`.
+        // A plan on a real rig is a plan that is run with `--rig`.
         let rig =
             (plan.contains("serial(") && !plan.contains("behaviour")).then(|| "frame".to_owned());
         let checked = check(

@@ -1,4 +1,4 @@
-//! `psd run --rehearse`: on a virtual rig, and on a real one over a pseudo-terminal against `psd rig simulate`.
+//! The low-level check run `psd run --rehearse`: on a virtual rig, and on a real one over a pseudo-terminal against `psd rig simulate`.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-/// The rig is stiffer than the specimen of the plan only where the simulator's plan says so.
+/// The rig is stiffer than the specimen of the plan only if the simulator's plan states this.
 const PLAN: &str = r#"plan "A blow" {
   edition = 1
 }
@@ -69,7 +69,7 @@ report {
 struct Place(tempfile::TempDir);
 
 impl Place {
-    /// A folder with the plan, where `force` (kN) is the highest allowed.
+    /// A folder with the plan, with `force` (kN) as the highest allowed force.
     fn new(force: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let port = folder.path().join("port");
@@ -103,11 +103,11 @@ impl Place {
     }
 }
 
-/// The stand-in, which ends with the test.
+/// The emulator, which ends with the test.
 struct Simulator(Child);
 
 impl Simulator {
-    /// In place of the plan's bench, whose specimen is of `stiffness`.
+    /// Replaces the plan's simulated rig, with a specimen of `stiffness`.
     fn start(place: &Place, stiffness: &str) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
         command
@@ -173,7 +173,7 @@ fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
     );
     let (code, verified, log) = place.psd(&["verify", "out"]);
     assert_eq!(code, Some(0), "{verified}{log}");
-    // The prediction is kept, on a page too, and comes out of the record again.
+    // The prediction is stored, also on a page, and is reproduced from the record.
     let kept = fs::read(place.path().join("out/rehearsal.json")).unwrap();
     let foretold: Value = serde_json::from_slice(&kept).unwrap();
     assert_eq!(
@@ -205,7 +205,7 @@ fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
     let (code, again, log) = place.psd(&["report", "out", "--out", "again"]);
     assert_eq!(code, Some(0), "{again}{log}");
     assert!(fs::read(place.path().join("again/rehearsal.json")).unwrap() == kept);
-    // The run that it rehearses is another one, and says nothing of it.
+    // The corresponding full run is a different run, and does not mention the check run.
     let (code, ..) = place.psd(&["run", "plan.psd", "--yes", "--out", "real"]);
     assert_eq!(code, Some(0));
     let real: Value =
@@ -220,7 +220,7 @@ fn a_rehearsal_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
     );
 }
 
-/// The rehearsal itself reads no zeros; the run that it foretells does, and takes the time for it.
+/// The check run itself reads no zeros. The run that it predicts does, and includes the time for it.
 #[test]
 fn a_rig_that_watches_its_zeros_is_foretold_to() {
     let place = Place::new("15");
@@ -268,7 +268,7 @@ fn a_rig_that_watches_its_zeros_is_foretold_to() {
 
 #[test]
 fn a_limit_that_the_run_would_reach_is_exit_4_with_its_procedure_and_step() {
-    // √(20 kg·300 kN/m)·1 m/s is some 2.4 kN.
+    // √(20 kg·300 kN/m)·1 m/s is about 2.4 kN.
     let place = Place::new("2");
     let (code, told, log) = place.psd(&["run", "plan.psd", "--rehearse", "--yes", "--out", "out"]);
     assert_eq!(code, Some(4), "{told}{log}");
@@ -316,7 +316,7 @@ fn on_a_real_rig_the_prediction_is_of_the_stiffness_that_the_rig_shows() {
         .iter()
         .any(|event| event["text"].as_str().unwrap().starts_with("gate passed"));
     assert!(gate, "{summary}");
-    // As the plan's own virtual rig has it with a specimen of that stiffness, and not with that of the plan.
+    // The result of the plan's own virtual rig with a specimen of that stiffness, and not with that of the plan.
     let peak = told
         .lines()
         .find(|line| line.contains("peak displacement"))

@@ -1,5 +1,5 @@
-//! A relaxing specimen on a real rig's driver: native dialect, the simulated bench of the plan, no real time. The rig waits half a second
-//! in its band after every move; the places that it was polled for on the way say when it moved.
+//! A relaxing specimen with a real rig's driver: native protocol, the simulated rig of the plan, simulated time. The rig waits half a
+//! second in its band after every move; the positions polled during the move show when it moved.
 
 use psd::emulator::{InProcess, Log, Script, of_plan};
 use psd::language::check::{LoadError, Loader, Options, check};
@@ -49,7 +49,7 @@ impl Loader for NoFiles {
     }
 }
 
-/// 0.2 s of move, 0.5 s of dwell: taken for one even move they made 103 of 120 kN/m.
+/// 0.2 s of move, 0.5 s of dwell: treated as one uniform move they gave 103 of 120 kN/m.
 #[test]
 fn a_real_rig_says_when_it_moved() {
     let options = Options {

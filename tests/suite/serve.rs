@@ -1,4 +1,4 @@
-//! `psd rig serve` as it is started from a shell: it says when it listens, serves one client, and ends with its code.
+//! `psd rig serve` as started from a shell: it reports when it listens, serves one client, and ends with its code.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
@@ -68,7 +68,7 @@ impl Server {
         TcpStream::connect(&self.address).unwrap()
     }
 
-    /// What `psd verify` says of its run folder, and the code.
+    /// Output of `psd verify` on its run folder, and the exit code.
     fn verified(&self) -> (String, i32) {
         let run = self.folder.path().join("runs/spring-1");
         let ended = Command::new(env!("CARGO_BIN_EXE_psd"))
@@ -82,7 +82,7 @@ impl Server {
         )
     }
 
-    /// What it printed, and its exit code.
+    /// Its printed output, and its exit code.
     fn end(&mut self) -> (String, i32) {
         let mut printed = String::new();
         self.stdout.read_to_string(&mut printed).unwrap();
@@ -181,7 +181,7 @@ fn a_session_is_on_record_and_its_targets_come_out_again() {
     server.end();
     let (told, code) = server.verified();
     assert_eq!(code, 0, "{told}");
-    // The cancelled one is on record and was never sent.
+    // The cancelled step is in the run log and was never sent.
     assert!(
         told.contains("all 2 came out again bit for bit, and 1 steps"),
         "{told}"
@@ -201,7 +201,7 @@ fn a_session_is_on_record_and_its_targets_come_out_again() {
     );
 }
 
-/// Two floors, every one with its actuator: the client's vectors move both at once.
+/// Two floors, each with its own actuator: the client's vectors move both simultaneously.
 const FRAME: &str = "\
 specimen frame {
   storeys = [storey(mass: 2 t, stiffness: 3 MN/m), storey(mass: 1.5 t, stiffness: 2 MN/m)]

@@ -1,5 +1,5 @@
-//! Frames on moving ground, from the text of a plan: against the closed form of a steady motion, through every integrator, and
-//! as a record that is enough without the files it was made from.
+//! Frames on moving ground, from the text of a plan: compared with the closed form of a steady motion, with every integrator. The record
+//! alone is sufficient without its source files.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 
-/// Largest acceleration of the ground, m/s², its angular frequency, rad/s, and the damping ratio of both modes.
+/// Largest acceleration of the ground \[m/s²\], its angular frequency \[rad/s\], and the damping ratio of both modes.
 const GROUND: f64 = 0.5;
 const FREQUENCY: f64 = 4.0 * std::f64::consts::PI;
 const RATIO: f64 = 0.1;
@@ -21,7 +21,7 @@ struct Files;
 
 impl Loader for Files {
     fn load(&self, path: &str) -> Result<String, LoadError> {
-        // Two floors of 1 t on storeys of k: ω² = (3 − √5)/2 · k/m is the ground's.
+        // Two floors of 1 t on storeys of k: ω² = (3 − √5)/2 · k/m equals that of the ground.
         let k = 1000.0 * FREQUENCY * FREQUENCY * (3.0 + 5.0_f64.sqrt()) / 2.0;
         match path {
             "sine.csv" => {
@@ -106,8 +106,8 @@ fn error(record: &Record) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// At resonance the motion grows to its steady size, e⁻¹⁰ from it after sixteen periods, so that the peak of the run is that of
-/// the steady motion. The error falls with the square of the step until the sixteen periods show.
+/// At resonance the motion grows to its steady amplitude, e⁻¹⁰ from it after sixteen periods. The peak of the run is thus that of the
+/// steady motion. The error decreases with the square of the step until the limit of sixteen periods dominates.
 #[test]
 fn a_steady_motion_is_the_closed_form_and_converges_with_the_square_of_the_step() {
     for integrator in ["tangent", "alpha_os(alpha: 0)", "explicit"] {
@@ -159,7 +159,7 @@ fn psd(arguments: &[&str], out: &Path) {
     );
 }
 
-/// A run, its verification and its report made anew give the same bytes, with the plan and its data gone: the record has them.
+/// A run, its verification and its regenerated report give the same bytes without the plan and its data. The record contains both.
 #[test]
 fn the_record_of_a_shake_is_enough() {
     let folder = tempfile::tempdir().expect("a folder");

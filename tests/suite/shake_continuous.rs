@@ -1,5 +1,5 @@
-//! Frames whose storeys never stop, from the text of a plan: what dampers and friction of the storeys do, against closed forms and
-//! beside step and pause; readings corrected axis by axis; and a record that is enough.
+//! Frames in continuous mode, from the text of a plan. The effects of dampers and friction of the storeys are compared with closed forms
+//! and with ramp-and-hold. Readings are corrected axis by axis, and the record alone is sufficient.
 
 use std::fs;
 use std::path::Path;
@@ -11,12 +11,12 @@ use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 
-/// Largest acceleration of the ground, m/s², its angular frequency, rad/s, and the stiffness that makes it the first of two
-/// equal storeys of 1 t, N/m.
+/// Largest acceleration of the ground \[m/s²\], its angular frequency \[rad/s\], and a stiffness \[N/m\]. With this stiffness the
+/// frequency is the first of two equal storeys of 1 t.
 const GROUND: f64 = 0.5;
 const FREQUENCY: f64 = 4.0 * std::f64::consts::PI;
 const STIFFNESS: f64 = 1000.0 * FREQUENCY * FREQUENCY * 2.618_033_988_749_895;
-/// Damping ratio of the first mode, and the dampers of the storeys, N·s/m, that make it so: C = c/k · K.
+/// Damping ratio of the first mode, and the corresponding dampers of the storeys \[N·s/m\]: C = c/k · K.
 const RATIO: f64 = 0.1;
 const DAMPER: f64 = 2.0 * RATIO / FREQUENCY * STIFFNESS;
 const SCALE: f64 = 50.0;
@@ -44,7 +44,7 @@ impl Loader for Files {
     }
 }
 
-/// Two storeys with `damped` in each, on `ground`, moved as `shake` says by a rig that errs as `errs` says.
+/// Two storeys with `damped` in each, on `ground`, moved with the options `shake` by a rig with the errors `errs`.
 fn plan(ground: &str, damped: &str, shake: &str, errs: &str) -> Plan {
     let storey = format!("storey(mass: 1 t, stiffness: {STIFFNESS} N/m{damped})");
     let text = format!(
@@ -78,7 +78,7 @@ fn viscous() -> String {
     format!(", damping: {} N*s/m", SCALE * DAMPER)
 }
 
-/// Largest displacement of each floor, m.
+/// Largest displacement of each floor \[m\].
 fn peaks(steps: &[ShakeStep]) -> [f64; 2] {
     [0, 1].map(|floor| {
         steps
@@ -88,8 +88,8 @@ fn peaks(steps: &[ShakeStep]) -> [f64; 2] {
     })
 }
 
-/// Steady amplitude of both floors, m, by modes: φ = (1, g) and (g, −1), ω₂ = g²ω, and dampers in proportion to the
-/// storeys give them ζ and g²ζ.
+/// Steady amplitude of both floors \[m\] by modes: φ = (1, g) and (g, −1), ω₂ = g²ω. Dampers in proportion to the storeys give the modes
+/// ζ and g²ζ.
 fn closed_form() -> [f64; 2] {
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mode = |shape: [f64; 2], own: f64| {
@@ -109,8 +109,8 @@ fn closed_form() -> [f64; 2] {
     [0, 1].map(|floor| (first[floor].0 + second[floor].0).hypot(first[floor].1 + second[floor].1))
 }
 
-/// Dampers of the storeys that are felt at 1/50 of the speed: a steady motion at resonance whose size is the damping's alone. The
-/// error falls with the square of the step. At rest nothing of them is felt, and the motion grows without bound.
+/// Dampers of the storeys that act at 1/50 of the speed: the amplitude of a steady motion at resonance depends on the damping only. The
+/// error decreases with the square of the step. At rest they have no effect, and the motion grows without bound.
 #[test]
 fn dampers_of_the_storeys_give_the_steady_motion_of_the_closed_form() {
     let error = |step: &str| {
@@ -138,7 +138,8 @@ fn dampers_of_the_storeys_give_the_steady_motion_of_the_closed_form() {
     assert!(paused[1] > 5.0 * closed_form()[1], "{paused:?}");
 }
 
-/// What is read is K·X and, beside it, C·Ẋ / `time_scale` at the velocity the floors are passed with: to the square of the step.
+/// The reading is K·X plus C·Ẋ / `time_scale`, with the velocity of the floors at the target. The error has the order of the step
+/// squared.
 #[test]
 fn the_damping_of_the_material_is_in_the_force() {
     let largest = |step: &str| {
@@ -169,7 +170,7 @@ fn the_damping_of_the_material_is_in_the_force() {
     assert!(fine < 10.0 && coarse / fine > 3.0, "{coarse} N, {fine} N");
 }
 
-/// Friction takes its force times the way of the drifts, in either mode: the cells keep its sign through a pause.
+/// Friction dissipates its force times the path of the drifts, in either mode: the cells keep its sign through a pause.
 #[test]
 fn friction_of_the_storeys_takes_its_force_times_the_way_of_the_drifts() {
     let friction = 20.0;
@@ -242,8 +243,8 @@ fn without_damping_both_modes_are_the_same_run() {
     );
 }
 
-/// Pistons that lag by 0.2 s, 4 ms of virtual time, feed energy in; corrected to its target by K(d_m − d), each floor's
-/// force is what it would have been there, coupling and all.
+/// Pistons with a lag of 0.2 s, 4 ms of simulated time, add energy. Each floor's force is corrected to its target by K(d_m − d). It then
+/// equals the force at the target, including coupling.
 #[test]
 fn readings_of_lagging_axes_are_corrected_to_their_targets() {
     let peak = |errs: &str, more: &str| {
@@ -268,8 +269,8 @@ fn readings_of_lagging_axes_are_corrected_to_their_targets() {
     }
 }
 
-/// Lagging axes of a shake that nobody corrects, and axes that fall short at every step, are held where they have fed in more than
-/// the plan allows; what each floor came to stands in the results, and the whole is their sum.
+/// A ground-motion test with lagging axes without correction, or with undershoot at every step, is put on hold. This happens when the
+/// added energy exceeds the limit of the plan. The results contain the value of each floor, and the total is their sum.
 #[test]
 fn tracking_holds_a_shake_in_both_modes() {
     let raw = format!("{}\n  i_modification = false", continuous("5 ms"));
@@ -334,7 +335,7 @@ fn tracking_holds_a_shake_in_both_modes() {
     }
 }
 
-/// Recorded, verified and made anew from the record, the same bytes.
+/// Recorded, verified and regenerated from the record: the same bytes.
 #[test]
 fn the_record_of_a_continuous_shake_is_enough() {
     let psd = |arguments: &[&str]| {

@@ -1,5 +1,5 @@
-//! The source text of the repository as the tests of house rules read it: every Rust file of a folder, and the lines of one that
-//! name something.
+//! The source text of the repository for the tests of repository rules: every Rust file of a folder, and the lines of a file that contain
+//! a name.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ impl SourceText {
         })
     }
 
-    /// Tests beside the code may be timed, and an example prints; the rules of the core are for what the product runs.
+    /// Tests beside the code may measure time, and an example prints. The rules of the core apply to the code that the product runs.
     pub fn is_test(&self) -> bool {
         self.is_in(&["tests", "physics/examples"])
             || self.path.contains("/tests/")
@@ -29,7 +29,7 @@ impl SourceText {
             || self.path.ends_with("/tests.rs")
     }
 
-    /// The lines where `word` stands and is not the end of a longer name, without comment lines.
+    /// The lines in which `word` occurs and is not the end of a longer name, without comment lines.
     pub fn lines_with(&self, word: &str) -> Vec<String> {
         let names = |line: &str| {
             line.match_indices(word).any(|(at, _)| {
@@ -76,7 +76,7 @@ pub fn rust_files(folder: &str) -> Vec<SourceText> {
     paths.iter().map(read).collect()
 }
 
-/// Fails with the places found against a rule.
+/// Fails with the lines that violate a rule.
 pub fn none(found: &[String], rule: &str) {
     assert!(found.is_empty(), "{rule}:\n{}", found.join("\n"));
 }

@@ -1,5 +1,5 @@
-//! The page of specimen models: every plan on it runs and passes, its loop is the figure beside it, drawn by the program, and
-//! every behaviour of the schema has one. `PSD_BLESS=1 cargo test --test suite specimens_page` draws the figures again.
+//! The page of specimen models: every plan on it runs and passes. Its loop equals the figure beside it, drawn by the program, and every
+//! model of the schema has one. `PSD_BLESS=1 cargo test --test suite specimens_page` regenerates the figures.
 
 use std::fs;
 use std::path::{Path, PathBuf};

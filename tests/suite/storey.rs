@@ -1,5 +1,5 @@
-//! An impact on one storey of a frame, from the text of a plan: against a frame that yields and was integrated by a method of
-//! its own, with one storey against the impact of one degree of freedom, and as a record that is enough.
+//! An impact on one storey of a frame, from the text of a plan. It is compared with a yielding frame integrated by a separate method. A
+//! single storey is compared with one degree of freedom. The record alone is sufficient.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -78,7 +78,7 @@ fn yielding(fields: &str) -> Record {
     yielding_by(fields, &["hit"])
 }
 
-/// The frame under so many blows, each of 0.4 s.
+/// The frame under this number of impacts, each of 0.4 s.
 fn yielding_by(fields: &str, blows: &[&str]) -> Record {
     let storeys: Vec<String> = (0..3)
         .map(|i| {
@@ -101,9 +101,9 @@ fn yielding_by(fields: &str, blows: &[&str]) -> Record {
     record(&text)
 }
 
-/// The same frame and striker by central differences, x₂ = 2x₁ − x₀ + h²a: the storey's shear is h·kδ + (1 − h)·kz with z the
-/// drift of an elastic, perfectly plastic spring beside an elastic one. Displacements at `times` (s), in order. At `again` (s)
-/// the frame is held and struck once more.
+/// The same frame and striker by central differences, x₂ = 2x₁ − x₀ + h²a. The storey's shear is h·kδ + (1 − h)·kz. Here z is the drift
+/// of an elastic–perfectly plastic spring in parallel with an elastic one. The result contains the displacements at `times` \[s\], in
+/// order. At `again` \[s\] the frame is stopped and hit once more.
 fn central_differences(times: &[f64], again: f64) -> Vec<[f64; 3]> {
     const STEP: f64 = 2e-6;
     let (mut x, mut before, mut z) = ([0.0; 3], [0.0; 3], [0.0_f64; 3]);
@@ -163,7 +163,7 @@ fn difference(record: &Record) -> f64 {
         / largest
 }
 
-/// Every storey yields, and the test is that frame: ever nearer as the step shrinks.
+/// Every storey yields, and the test converges to that frame with decreasing step.
 #[test]
 fn a_frame_that_yields_is_the_one_of_central_differences() {
     let record = yielding("  time_step = 0.25 ms");
@@ -184,7 +184,7 @@ fn a_frame_that_yields_is_the_one_of_central_differences() {
     );
 }
 
-/// A run that ends on the way out has no peak, and one that ends in a blow has cut it; both are said.
+/// A run that ends before its reversal has no peak, and one that ends in contact has truncated the impact; both are reported.
 #[test]
 fn a_run_that_is_cut_says_what_is_missing() {
     let cut = |duration: &str, contact: &str| {
@@ -198,7 +198,7 @@ fn a_run_that_is_cut_says_what_is_missing() {
             .collect::<Vec<_>>()
             .join("; ")
     };
-    // Joined, the two turn after a quarter of 2π√((M + Ms)/K) = 1.2032 s.
+    // Joined, the two bodies reverse after a quarter of 2π√((M + Ms)/K) = 1.2032 s.
     let early = cut("0.2 s", "restitution(0)");
     assert!(
         early.contains("is not a peak")
@@ -206,7 +206,7 @@ fn a_run_that_is_cut_says_what_is_missing() {
             && !early.contains("blow is cut"),
         "{early}"
     );
-    // They stand still together, in contact.
+    // They stop together, in contact.
     let still = cut("0.5 s", "restitution(0)");
     assert!(
         still.contains("blow is cut") && !still.contains("is not a peak"),
@@ -214,7 +214,7 @@ fn a_run_that_is_cut_says_what_is_missing() {
     );
 }
 
-/// A second blow meets the frame as the first one left it: bent, and with the memory of its storeys.
+/// A second impact hits the frame in its state after the first one: deformed, and with the memory of its storeys.
 #[test]
 fn a_second_blow_meets_the_damage_of_the_first() {
     let record = yielding_by("  time_step = 0.25 ms", &["first", "second"]);
@@ -241,7 +241,7 @@ fn a_second_blow_meets_the_damage_of_the_first() {
     }
 }
 
-/// On an ideal rig floors that never stop are read where they would have stopped: the same motion, whatever integrates it.
+/// On an ideal rig, floors in continuous mode are read as if they had stopped: the same motion with every integrator.
 #[test]
 fn floors_that_never_stop_are_struck_as_those_that_do() {
     let plan = |mode: &str, integrator: &str| {
@@ -277,12 +277,12 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
     }
 }
 
-/// The storeys' energies are the frame's, the balance closes, and where the plan counts on a rebound it is there.
+/// The energies of the storeys sum to that of the frame, and the balance closes. A rebound that the plan assumes occurs.
 #[test]
 fn results_say_of_each_storey_what_the_balance_says_of_all() {
     let record = yielding("  time_step = 0.5 ms\n  damping_ratio = 2 %");
     let last = steps(&record).last().expect("steps").energies;
-    // It ran past its peaks and past its blow: neither is cut.
+    // It continued past its peaks and past its impact: neither is truncated.
     assert!(record.events.is_empty(), "{:?}", record.events);
     let storeys: f64 = list(&record, "storey_energy").iter().sum();
     assert!(
@@ -303,7 +303,7 @@ fn results_say_of_each_storey_what_the_balance_says_of_all() {
     assert!(number(&record, "energy_error").expect("a number").abs() < 2e-3);
     let back = number(&record, "rebound_velocity").expect("it bounced");
     assert!((0.5 * STRIKER * back * back - last.striker).abs() < 1e-9 * last.striker);
-    // A blow of finite stiffness lasts 2.943 δ/u between free masses; the storeys' give is little in it.
+    // An impact of finite stiffness lasts 2.943 δ/u between free masses; the flexibility of the storeys has little effect.
     let reduced = STRIKER * MASSES[1] / (STRIKER + MASSES[1]);
     let blow = 2.943 * (1.25 * reduced * SPEED * SPEED / HERTZ).powf(0.4) / SPEED;
     let lasted = number(&record, "contact_duration").expect("it touched");
@@ -318,7 +318,7 @@ fn results_say_of_each_storey_what_the_balance_says_of_all() {
     assert_eq!(number(&record, "max_base_shear"), shear.reduce(f64::max));
 }
 
-/// The same plan said twice, as a storey and as one degree of freedom: every column to rounding.
+/// The same plan in two forms, as a storey and as one degree of freedom: every column agrees to rounding.
 #[test]
 fn one_storey_is_one_degree_of_freedom() {
     const STRIKER_AND_LAWS: [&str; 4] = [
@@ -399,7 +399,7 @@ fn psd(arguments: &[&str], out: &Path) {
     );
 }
 
-/// A run, its verification and its report made anew give the same bytes, with the plan gone: the record has it.
+/// A run, its verification and its regenerated report give the same bytes without the plan, because the record contains it.
 fn record_is_enough(name: &str, files: &[&str]) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);

@@ -1,5 +1,5 @@
-//! A damping sweep on a real rig's driver, over a line that takes its time: native dialect, the simulated bench of the
-//! plan, no real time. c comes out within its uncertainty although far fewer readings come than were asked for.
+//! A damping sweep with a real rig's driver, over a slow line: native protocol, the simulated rig of the plan, simulated time. c is
+//! within its uncertainty although far fewer readings arrive than requested.
 
 use psd::emulator::{InProcess, Log, Script, of_plan};
 use psd::language::check::{LoadError, Loader, Options, check};
@@ -10,7 +10,7 @@ use psd::rig::real::RealRig;
 use psd::rig::{StopRequest, controllers};
 use psd::run::{Unwatched, run};
 
-/// c and the Coulomb force of the bench, N·s/m and N.
+/// c and the Coulomb force of the simulated rig \[N·s/m\] and \[N\].
 const DAMPING: f64 = 600.0;
 const COULOMB: f64 = 12.0;
 
@@ -69,7 +69,7 @@ fn plan() -> Plan {
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
 }
 
-/// The plan, run on its stand-in over lines of `baud`.
+/// The plan, run on its emulator over lines of `baud`.
 fn over_a_line(baud: f64, seed: u64) -> Record {
     let plan = plan();
     let stand =
@@ -110,7 +110,7 @@ fn result(record: &Record, name: &str) -> (f64, f64) {
     }
 }
 
-/// Readings of each way of the sweep, and the least time between two of them, s.
+/// Readings of each pass of the sweep, and the least time between two of them \[s\].
 fn readings(record: &Record) -> (Vec<usize>, f64) {
     let History::Sweep(sweep) = &record.procedure("c").expect("a sweep").history else {
         panic!("a sweep")
@@ -169,7 +169,7 @@ fn damping_is_recovered_at_one_to_seven_milliseconds_a_reading() {
 
 #[test]
 fn a_line_too_slow_for_the_fast_strokes_is_told() {
-    // At 38400 baud a reading takes some 20 ms: the stroke of 50 ms has one or two on its steady part.
+    // At 38400 baud a reading takes some 20 ms: the pass of 50 ms has one or two on its steady part.
     let record = over_a_line(38_400.0, 1);
     assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
     let told = record.events.iter().any(|event| {

@@ -1,5 +1,5 @@
-//! The uncertainty of a blow as a person meets it: in `summary.json`, on the certificate, in a verdict, and out of the record
-//! again.
+//! The uncertainty of an impact in the outputs for the user: in `summary.json`, on the test report, in a verdict, and reproduced from the
+//! record.
 
 use std::fs;
 use std::path::Path;
@@ -65,7 +65,7 @@ fn number(value: &Value) -> f64 {
         .unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// u is the root of the sum of squares of what stands in the budget, each its input's uncertainty times its sensitivity.
+/// u is the root of the sum of squares of the lines of the budget. Each line is the uncertainty of its input times its sensitivity.
 #[test]
 fn a_budget_adds_up_and_comes_out_of_the_record_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -154,7 +154,7 @@ fn a_budget_adds_up_and_comes_out_of_the_record_again() {
     }
 }
 
-/// The limit is nearer than U: neither rule of thumb nor luck decides.
+/// A limit inside the guard band: the verdict is inconclusive.
 #[test]
 fn a_limit_within_the_uncertainty_is_inconclusive() {
     let folder = tempfile::tempdir().unwrap();

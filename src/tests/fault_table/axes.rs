@@ -1,5 +1,5 @@
-//! Several axes on one rig: a run of two storeys over the real driver and the simulated controller is the virtual run, each
-//! fault of one axis holds them all and is said of that axis, and killed at any write nothing is done twice.
+//! Several axes on one rig. A run of two storeys over the real driver and the simulated controller equals the virtual run. A fault of one
+//! axis holds all axes, and the message names that axis. A run killed at any write repeats no move.
 
 use super::cut_off::{GoneOn, gone_on, killed};
 use super::stage::{Ended, link, open, run, run_watched, run_without, stand};
@@ -21,7 +21,7 @@ const YIELDING: &str = include_str!("../../../plans/two_storeys_yielding.psd");
 /// Results with their names.
 type Named = Vec<(&'static str, f64)>;
 
-/// The plan on its bench and on an ideal virtual rig; the results of each.
+/// Results of the plan on its simulated rig and on an ideal virtual rig.
 fn both(text: &str) -> (Named, Named) {
     let ended = run(&checked(text, "bench"), "");
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
@@ -31,7 +31,7 @@ fn both(text: &str) -> (Named, Named) {
 
 #[test]
 fn the_plans_of_two_storeys_give_on_two_axes_what_they_give_on_a_virtual_rig() {
-    // The first three seconds of the yielding one hold its largest drift; the gate of both proves every axis.
+    // The first three seconds of the yielding frame contain its largest drift. The pre-test check of both runs checks every axis.
     let short = YIELDING.replace("  pause         = 0.2 s\n", "  duration      = 3 s\n");
     assert_ne!(short, YIELDING);
     for text in [
@@ -42,8 +42,8 @@ fn the_plans_of_two_storeys_give_on_two_axes_what_they_give_on_a_virtual_rig() {
         short,
     ] {
         let (real, ideal) = both(&text);
-        // The wire resolves 1 nm and 1 mN, 3 nm of the softer storey, and rounding adds up over the steps. The energy error,
-        // nothing on an ideal rig, is a share of the input.
+        // The line resolves 1 nm and 1 mN, which is 3 nm of the softer storey. Rounding errors accumulate over the steps. The energy
+        // error is zero on an ideal rig, so it is compared with the input energy.
         same(&real, &ideal, |name, size| {
             if name.contains("energy_error") || name.contains("nrms_error") {
                 1e-6
@@ -62,7 +62,7 @@ fn the_gate_measures_the_stiffness_matrix_column_by_column() {
         .iter()
         .filter(|note| note.starts_with("gate passed by axis"))
         .collect();
-    // K = [500, −200; −200, 200] kN/m, whatever the sign of the upper device.
+    // K = [500, −200; −200, 200] kN/m, for either polarity of the upper device.
     assert!(
         passed[0].contains("stiffness 500.0 kN/m")
             && passed[0].contains("with −200.0 kN/m in axis 2"),
@@ -79,7 +79,7 @@ fn the_gate_measures_the_stiffness_matrix_column_by_column() {
     );
 }
 
-/// Told to hold, after which nothing moved.
+/// Commanded to hold; nothing moved after that.
 pub(super) fn stopped(ended: &Ended) {
     let held = ended
         .log
@@ -92,7 +92,7 @@ pub(super) fn stopped(ended: &Ended) {
     );
 }
 
-/// The run is stopped for `why`, and not for that without the guard.
+/// The run is stopped for `why`; without the guard it is not stopped for that reason.
 fn caught(guard: Guarding, plan: &Plan, script: &str, why: &str) -> Ended {
     let ended = run(plan, script);
     stopped(&ended);
@@ -200,7 +200,7 @@ fn a_limit_of_one_axis_is_its_own() {
         "{}",
         ended.reason()
     );
-    // The controller knows it too: of the guard alone nothing hangs on.
+    // The controller has the same limit, so nothing depends on the guard alone.
     let told = ended
         .log
         .lines()
@@ -236,7 +236,7 @@ fn a_controller_of_another_number_of_axes_is_refused_before_anything_is_asked_of
     }
 }
 
-/// Where every move went, by its number.
+/// Target of every move, by its number.
 fn moves(stand: &crate::emulator::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
     stand
         .stand()
@@ -287,7 +287,7 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
     }
 }
 
-/// Cut off after so many calls of the disk: its record, and what the rig of the same stand says then.
+/// Cut off after this number of disk calls: the run log, and the replies of the rig on the same emulator afterwards.
 fn cut_off(plan: &Plan, call: usize) -> (LoggedRun, RigBody, Reading) {
     let (stand, disk) = (stand(plan, "", Log::none(), 1), PowerLoss::new());
     assert!(
@@ -319,7 +319,7 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
         replay::decide(&played, &about, &found, &bands, false)
     };
     decided(|_| ()).unwrap();
-    // What the coarse axis cannot tell is too much for the fine one.
+    // A difference that the coarse axis cannot resolve is too large for the fine axis.
     decided(|found| found.displacement[0] += 5e-5).unwrap();
     decided(|found| found.force[0] += 20.0).unwrap();
     let elsewhere = decided(|found| found.displacement[1] += 5e-5).unwrap_err();

@@ -1,7 +1,7 @@
-//! The paper's beam, `plans/beam.psd`, on a stand-in of every dialect: in one process and on the stand's own time, for on a line it
-//! would take its minutes. In: the plan and its libraries, of which only the devices of the rig, what they resolve and their noise
-//! are others. Out: the ideal virtual run's results, within what the rig resolves. The plan as it stands runs on the one dialect that
-//! reads displacement and force at one instant; of every other the sweep is refused, and its result given.
+//! The paper's beam, `plans/beam.psd`, on a rig emulator of every protocol driver. The test runs in one process and in simulated time,
+//! because on a line it would take minutes. In: the plan and its libraries, with other rig devices, resolutions and noise. Out: the
+//! results of the ideal virtual run, within the resolution of the rig. The unchanged plan runs on the one driver that reads displacement
+//! and force at one instant. For every other driver the sweep is refused, and its result is supplied instead.
 
 use super::stage::{header, open, stand};
 use crate::emulator::Log;
@@ -15,15 +15,15 @@ use crate::rig::virtual_rig;
 use crate::run::{Unwatched, replay, run};
 use crate::text::diagnostic::Code;
 
-/// Of the beam, N/m.
+/// Stiffness of the beam \[N/m\].
 const STIFFNESS: f64 = 3e5;
 
-/// A rig and what it resolves.
+/// A rig and its resolution.
 struct Case {
     devices: &'static str,
-    /// m
+    /// \[m\]
     resolution: f64,
-    /// Half the quantum of its force readings, N.
+    /// Half the resolution of its force readings \[N\].
     force_error: f64,
     /// Whether it reads displacement and force at one instant.
     sweeps: bool,
@@ -122,7 +122,7 @@ impl Case {
         })
     }
 
-    /// What the plan comes to, as it stands or without its sweep.
+    /// Results of the plan, complete or without its sweep.
     fn checked(&self, rig: &str, sweep: bool) -> Checked {
         let text = include_str!("../../../plans/beam.psd");
         let begins = text.find("damping sweep c {").unwrap();
@@ -182,7 +182,7 @@ fn number(record: &Record, procedure: &str, name: &str) -> f64 {
     }
 }
 
-/// By how much a result of the two runs differs, which must be at most `allowed`.
+/// Difference of a result between the two runs, which must be at most `allowed`.
 fn near(
     case: &Case,
     (ideal, real): (&Record, &Record),
@@ -202,15 +202,15 @@ fn near(
     off
 }
 
-/// Holds the results of a rig against those of the ideal one.
+/// Compares the results of a rig with those of the ideal rig.
 ///
-/// A target is rounded by at most half the resolution r, and so is the reading of where it ended: the force read lies within
-/// e = K·r/2 + q of that of the ideal rig, q being half a quantum of the force.
+/// A target is rounded by at most half the resolution r. The reading of the end position has the same error. The force read thus differs
+/// from that of the ideal rig by at most e = K·r/2 + q, where q is half the force resolution.
 /// - K of the ramp's line: Σ|x − m|/Σ(x − m)² of 0.1 to 1 mm by 0.1 mm is 3031/m, and the displacements err by r/2 too.
 /// - c of five velocities: each mean errs by at most e; Σ|v − m|/Σ(v − m)² of 5 to 100 mm/s is 24.6 s/m.
-/// - The blow: K foretells one increment of at most 1.1 mm, and c adds c·v. A beam that vibrates freely, at ω = 641/s, answers a force
-///   error with at most (2/π)·ωt·e/K until the striker stops, t = 13.5 ms; the work of e is along the way, at most v·t, and the
-///   spring's is K·X times the error of X. The striker stops one step of 0.5 ms sooner or later.
+/// - The impact: K predicts one increment of at most 1.1 mm, and c adds c·v. A beam that vibrates freely, at ω = 641/s, answers a force
+///   error with at most (2/π)·ωt·e/K until the striker stops, t = 13.5 ms. The work of e is done along the path, which is at most v·t.
+///   The work of the spring is K·X times the error of X. The striker stops one step of 0.5 ms earlier or later.
 fn compare(case: &Case, runs: (&Record, &Record)) {
     const STOP: f64 = 0.0135;
     const VELOCITY: f64 = 2.2;
@@ -265,7 +265,8 @@ fn the_papers_beam_itself_gives_the_ideal_runs_results_in_every_dialect() {
     }
 }
 
-/// Why the sweep is refused: with the guard of the check gone round, the way between two readings is a damper of many times the beam's.
+/// Reason for refusing the sweep. Without the guard of the check, the move between two readings acts as a damper. This damper is many
+/// times larger than that of the beam.
 #[test]
 fn a_sweep_whose_readings_are_apart_would_take_the_way_between_them_for_damping() {
     let case = Case {

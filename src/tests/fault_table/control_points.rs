@@ -1,5 +1,5 @@
-//! A frame behind the NEES protocol, a control point a floor: a run over the real driver and the stand-in is the virtual run,
-//! and what one floor refuses or does not do holds them all.
+//! A frame behind the NEES protocol, with one control point per floor. A run over the real driver and the rig emulator equals the virtual
+//! run. A floor that refuses a command, or does not execute it, holds all floors.
 
 use super::stage::{Ended, run};
 use super::two_axes::{checked, ideal, results, same};
@@ -9,7 +9,7 @@ use crate::rig::LineStatistics;
 const SINE: &str = include_str!("../../../plans/two_storeys_sine.psd");
 const BENCH: &str = include_str!("../../../plans/lib/two_actuator_frame.psd");
 
-/// Eleven digits say a place to 1e-13 m and a force to 1e-7 N; a target is one the wire says, m.
+/// Eleven digits represent a position to 1e-13 m and a force to 1e-7 N. The line resolves a target to the value below \[m\].
 const NEAR: f64 = 1e-10;
 
 /// The sine's plan, whose rig speaks NEES.
@@ -18,7 +18,7 @@ fn text() -> String {
         "serial(port: \"/tmp/psd-frame\", dialect: native, serial_number: \"STAND-IN-2\")",
         "tcp(address: \"127.0.0.1:44000\", dialect: nees(\"MDL-00-01:lower, MDL-00-02\"))",
     );
-    // What the text of the protocol loses is what is looked for, not what a cell does.
+    // The test measures the rounding of the protocol's text, so the load cell is ideal.
     let (noise, resolution) = (
         "  noise           = 0.001 N\n",
         "  resolution      = 1 nm\n",
@@ -36,7 +36,7 @@ fn text() -> String {
     SINE.replace("use \"lib/two_actuator_frame.psd\"\n", &rig)
 }
 
-/// As near as the wire says them.
+/// The results agree within the resolution of the line.
 fn as_near_as_the_wire(_: &str, size: f64) -> f64 {
     NEAR + 1e-9 * size
 }
@@ -96,7 +96,7 @@ fn what_one_floor_does_not_do_holds_them_all() {
     );
 }
 
-/// A reply to another floor is none to this one.
+/// A reply to a different floor is not accepted for this floor.
 #[test]
 fn a_reply_that_is_late_or_twice_is_not_taken_for_another_floors() {
     let ended = run(

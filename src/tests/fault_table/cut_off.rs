@@ -1,5 +1,5 @@
-//! A run killed at one write of its record, and gone on with. In: a plan, a stand, the disk of the record. Out: whether psd died
-//! there; the run as it was brought to its end, on the same stand.
+//! A run that is killed at one write of its run log, and then resumed. In: a plan, an emulator, the disk of the run log. Out: whether psd
+//! was killed there; the run completed on the same emulator.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -15,7 +15,8 @@ use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, RigBody};
 
-/// Runs the plan until this write or sync of its record, at which psd dies, before it or `after` it; whether it did.
+/// Runs the plan until the given write or sync of its run log. psd is killed there, before the write or `after` it. Returns whether psd
+/// was killed.
 pub(super) fn killed(
     plan: &Plan,
     stand: &InProcess,
@@ -34,16 +35,16 @@ pub(super) fn killed(
     ended.is_err()
 }
 
-/// What became of a run that was cut off.
+/// Outcome of a run that was cut off.
 pub(super) enum GoneOn {
     ToItsEnd(Box<Record>),
     /// The record had its end.
     Ended,
-    /// Of the rig nothing was recorded.
+    /// The run log contains no entry of the rig.
     NeverBegun,
 }
 
-/// Goes on with the run that this disk holds, as its record and the rig say.
+/// Resumes the run on this disk, from its run log and the replies of the rig.
 pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: usize) -> GoneOn {
     let (recovered, before) = played(disk);
     if before.ended {
@@ -94,8 +95,8 @@ pub(super) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: us
     GoneOn::ToItsEnd(Box::new(resumed.record))
 }
 
-/// The run is cut off at every third write or sync of its record from `first` on, left to `meanwhile`, and gone on with: each record, and
-/// its disk, is held to `whole`.
+/// Cuts the run off at every third write or sync of its run log from `first` on. `meanwhile` acts on the emulator, then the run is
+/// resumed. Each run log and its disk are compared with `whole`.
 pub(super) fn cut_off_anywhere(
     plan: &Plan,
     first: usize,

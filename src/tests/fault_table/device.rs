@@ -1,5 +1,5 @@
-//! What a device says that is not so: numbers that are none, rails, a sensor that stays, spikes, a start from nothing. In:
-//! runs with such a device. Out: none of it is integrated.
+//! Invalid readings of a device: invalid numbers, saturation, a frozen sensor, spikes, a restart. In: runs with such a device. Out: no
+//! such reading is integrated.
 
 use super::stage::{STIFFNESS, link, plan, run, run_without};
 use crate::plan::Interval;
@@ -42,7 +42,7 @@ fn what_is_no_number_is_never_integrated() {
         );
         assert_eq!(always.line_statistics.reread, 3, "{word}");
     }
-    // Where nothing else bounds it, what is not looked at as a number goes into the record.
+    // If no other limit applies, a value that is not checked as a number enters the run log.
     let mut unbounded = plan();
     link(&mut unbounded).readings.force_range = Interval::ALL;
     link(&mut unbounded).readings.samples = 1;
@@ -65,7 +65,7 @@ fn a_clipped_force_holds_the_rig() {
         low: -60.0,
         high: 60.0,
     };
-    // A force that stays at its rail looks frozen, too: that is another guard.
+    // A saturated force also looks frozen, which is a different guard.
     link(&mut plan).readings.frozen_after = 1000;
     let clipped = run(&plan, "at 0 s: clip force at 60 N");
     clipped.held();

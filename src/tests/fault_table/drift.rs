@@ -1,5 +1,5 @@
-//! A load cell or a transducer whose zero drifts, as one that warms up does. In: runs on rigs that say how far it may. Out: a
-//! run beyond that comes to its end, and decides nothing that its readings enter.
+//! Zero drift of a load cell or a displacement transducer, for example during warm-up. In: runs on rigs that state the allowed zero
+//! drift. Out: a run with more zero drift is completed, and no statement of conformity uses its readings.
 
 use super::stage::{Ended, STIFFNESS, plan, plan_of, run, run_without, to};
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
@@ -13,7 +13,7 @@ use crate::tests::testing::ramp;
 use crate::units::Dimension;
 use crate::verdict::{Assessment, Verdict, assess};
 
-/// A ramp with pauses of 2 s, and what is required of its stiffness and of its way.
+/// A ramp with pauses of 2 s, with requirements on its stiffness and its displacement.
 fn drifting(check: DriftCheck) -> Plan {
     let slow = StiffnessRamp {
         pause: Formula::Constant(2.0),
@@ -51,7 +51,7 @@ const CHECK: DriftCheck = DriftCheck {
     after: ZeroAfter::Start,
 };
 
-/// The verdicts on stiffness and way, and on the run; and why the first is inconclusive.
+/// The verdicts on stiffness, displacement and run; and the reason why the first is inconclusive.
 fn decided(plan: &Plan, ended: &Ended) -> ([Verdict; 3], String) {
     assert!(ended.completed(), "{}", ended.reason());
     let Assessment {
@@ -103,7 +103,7 @@ fn a_zero_that_drifts_too_far_decides_nothing_that_the_force_enters() {
     );
     let without = without(Guarding::ZeroDrift, || decided(&plan, &ended));
     assert_eq!(without.0, SOUND, "it is this guard that holds it up");
-    // Back where it began, with the load gone.
+    // Back at the start position, unloaded.
     assert!(ended.stand.stand().bench().commanded().abs() < 1e-6);
 }
 
@@ -148,7 +148,7 @@ fn a_transducer_that_drifts_decides_nothing_at_all() {
     );
 }
 
-/// Nobody reads the zero again: a force that grows in the pauses of a ramp, where a specimen relaxes, is seen all the same.
+/// The zero is not read again. Relaxation in the pauses of a ramp changes the force, and this change is still detected.
 #[test]
 fn a_force_that_grows_in_a_hold_farther_out_than_ever_is_drift() {
     let plan = drifting(DriftCheck {
@@ -188,7 +188,7 @@ fn a_drift_at_rest_is_seen_before_anything_is_loaded() {
     );
 }
 
-/// The cell is free where the rig stands: nothing moves for its zero.
+/// The cell is unloaded at the present position, so reading its zero requires no move.
 #[test]
 fn a_free_cell_is_read_where_it_is() {
     let mut plan = drifting(DriftCheck {
@@ -200,7 +200,7 @@ fn a_free_cell_is_read_where_it_is() {
         kind: to(2e-4),
     });
     let ended = run(&plan, "");
-    // The stand-in has no hands: its specimen is still on.
+    // The emulator has no operator, so its specimen is still mounted.
     let (verdicts, reason) = decided(&plan, &ended);
     assert!(
         verdicts[0] == Verdict::Inconclusive && reason.contains("drifted by 20"),

@@ -1,5 +1,5 @@
-//! Changes that a forger who knows the format makes in the run log of a real rig, and the check that finds each: times and
-//! numbers of targets against those before, readings against the replay, END against the end of the replay.
+//! Changes that a forger who knows the format makes in the run log of a real rig. Each is detected by a check. Times and numbers of
+//! targets are compared with the earlier ones. Readings are compared with the replay, and END with the end of the replay.
 
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ use crate::record::journal::{EntryKind, Recovered};
 use crate::run::replay;
 use crate::run::replay::LoggedRun;
 
-/// The record with the `nth` record of a kind altered; what `psd verify` finds first.
+/// Alters the `nth` entry of a kind in the run log, and returns the first finding of `psd verify`.
 pub(super) fn found(
     plan: &Plan,
     ended: &Ended,
@@ -122,7 +122,7 @@ fn what_is_taken_out_of_an_ended_record_is_missed() {
         forged.lines.remove(of_kind(kind).unwrap());
         assert!(judged(&plan, &forged).is_err(), "{kind:?}");
     }
-    // All from the last event on, but END.
+    // All entries from the last event on, except END.
     let mut forged = ended.recovered.clone();
     let end = forged.lines.pop().unwrap();
     forged.lines.truncate(of_kind(EntryKind::Step).unwrap());

@@ -1,11 +1,11 @@
-//! What the gate finds before the first step: a wrong sign, unit, scale or offset, a dead sensor, a drift. In: runs on
-//! rigs that are wrong from the start. Out: only the tiny move of the probe is made.
+//! Errors that the pre-test check finds before the first step: polarity, unit, scale, offset, a dead sensor, zero drift. In: runs on rigs
+//! with such an error from the start. Out: only the small move of the check is made.
 
 use super::stage::{Ended, plan, run, run_without};
 use crate::record::{EventKind, Outcome};
 use crate::rig::safety::failpoint::Guarding;
 
-/// The gate refuses: nothing of the plan was done.
+/// The pre-test check refuses the rig; no procedure of the plan was started.
 fn refused(script: &str, why: &str, most_moves: usize) {
     let ended = run(&plan(), script);
     let Outcome::Faulted { reason } = &ended.record.outcome else {
@@ -34,7 +34,7 @@ fn refused(script: &str, why: &str, most_moves: usize) {
 #[test]
 fn a_wrong_sign_unit_or_scale_is_refused_before_the_first_step() {
     refused("at 0 s: scale force by -1", "opposite signs", 2);
-    // kN for N, a hundred times too much, kg for N, a dead cell.
+    // kN instead of N, a factor of one hundred, kg instead of N, a dead cell.
     for scale in ["0.001", "100", "9.80665", "0"] {
         refused(
             &format!("at 0 s: scale force by {scale}"),
@@ -42,7 +42,7 @@ fn a_wrong_sign_unit_or_scale_is_refused_before_the_first_step() {
             2,
         );
     }
-    // N for kN is beyond the cell itself.
+    // N instead of kN exceeds the range of the cell.
     let saturated = run(&plan(), "at 0 s: scale force by 1000");
     saturated.held();
     assert!(!past(&saturated));
@@ -64,7 +64,7 @@ fn a_displacement_in_another_unit_never_gets_past_the_probe() {
 
 #[test]
 fn an_offset_is_refused_and_nothing_moves() {
-    // 6 N after the first second, where 5 N are allowed.
+    // 6 N after the first second; 5 N are allowed.
     let offset = "at 0 s: drift force 6 N/s";
     refused(offset, "at rest", 0);
     assert!(past(&run_without(Guarding::PretestZero, &plan(), offset)));

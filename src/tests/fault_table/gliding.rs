@@ -1,5 +1,5 @@
-//! A run that never stops over the real driver and the simulated controller: of two axes, and of one. It is the virtual run; what
-//! goes wrong on the way holds every axis; and cut off anywhere it goes on to the same end.
+//! A continuous run over the real driver and the simulated controller, with two axes and with one. It equals the virtual run. A fault
+//! during a move holds every axis. A run that is cut off anywhere is resumed to the same end.
 
 use super::axes::{played, stopped};
 use super::cut_off::cut_off_anywhere;
@@ -17,7 +17,7 @@ fn plan(duration: &str) -> Plan {
     checked(&gliding_text(duration), "frame_rig")
 }
 
-/// One degree of freedom under a blow.
+/// One degree of freedom under an impact.
 const IMPACT: &str = r#"
 specimen beam {
   mass      = 1 kg
@@ -54,8 +54,8 @@ impact hit {
 require "stays in travel" hit.max_displacement < 25 mm
 "#;
 
-/// A reading comes some milliseconds behind its target, and the force of an elastic specimen is corrected to it: the motion is the
-/// virtual one. What is told of the forces as they were read, and of the work that they did, is so much off.
+/// A reading comes some milliseconds after its target. The force of an elastic specimen is corrected to the target, so the motion equals
+/// the virtual motion. The reported raw forces and their work contain this error.
 fn as_near_as(near: f64) -> impl Fn(&str, f64) -> f64 {
     move |name, size| {
         let told = ["energy", "error", "indicator", "force", "shear", "impulse"]
@@ -167,7 +167,7 @@ fn the_whole_path_of_each_axis_is_held_against_its_own_limits() {
         "{}",
         ended.reason()
     );
-    // The controller holds the whole of a way against them too, and the driver against what the controller said of itself.
+    // The controller also checks the whole move against its limits. The driver checks it against the limits that the controller reported.
     let missed = run_without(Guarding::TargetLimits, &plan, "");
     assert!(
         missed.reason().contains("outside the limits"),
@@ -182,7 +182,7 @@ fn cut_off_anywhere_it_is_brought_back_and_goes_on_to_the_same_end() {
     link(&mut plan).watchdog = 3.0;
     let whole = run(&plan, "");
     assert!(whole.completed(), "{}", whole.reason());
-    // Nobody speaks to it: it goes on for a moment, and holds by itself.
+    // Without communication the rig continues for a moment, and then holds automatically.
     let left_alone = |stand: &InProcess| {
         stand.clock().sleep(4.0);
         assert!(!stand.stand().bench().moving());

@@ -1,5 +1,5 @@
-//! What befalls the line of a rig whose frames are numbered and sealed: silence, pieces, garbage, flipped bits, replies out
-//! of turn. In: runs with such a line. Out: the same numbers as on a sound line, or a rig that is held.
+//! Faults on the line of a rig with numbered and check-summed frames: silence, partial replies, garbage, flipped bits, replies out of
+//! order. In: runs with such a line. Out: the same numbers as on a sound line, or a rig on hold.
 
 use super::stage::{Ended, REPLY_TIMEOUT, link, open, plan, plan_of, run, run_without, stand, to};
 use crate::emulator::Log;
@@ -8,7 +8,7 @@ use crate::rig::controllers::LONGEST_LINE;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{LineStatistics, Rig as _};
 
-/// Moments at which a frame left, with the frame, from the first that holds `part`.
+/// Times at which a frame was sent, with the frame, from the first that contains `part`.
 fn sent<'a>(ended: &'a Ended, part: &str) -> Vec<(f64, &'a str)> {
     let frames = ended
         .log
@@ -44,14 +44,14 @@ fn a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held
         assert!((at - expected).abs() < 0.1, "{same:?}");
     }
     assert_eq!(same.len(), 4);
-    // The first `!` after 8 T, whatever becomes of its answer.
+    // The first `!` after 8 T, whether or not it is answered.
     let held = frames
         .iter()
         .find(|(_, frame)| frame.starts_with('!'))
         .unwrap()
         .0;
     assert!(((held - third.0) / REPLY_TIMEOUT - 8.0).abs() < 0.2);
-    // Its answer is waited for as long: the last frame leaves after 12 T, the program after 16.
+    // psd waits for its answer for the same time: the last frame is sent after 12 T, the program ends after 16.
     let last = frames.last().unwrap().0;
     assert!(
         ((last - third.0) / REPLY_TIMEOUT - 12.0).abs() < 0.3,
@@ -64,7 +64,7 @@ fn a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held
         "the move itself was begun once"
     );
 
-    // One lost reply is mended, and said on page one.
+    // One lost reply is recovered, and page one of the report states this.
     let once = run(&plan(), "after 3 moves: drop reply");
     once.sound();
     assert_eq!(
@@ -111,7 +111,7 @@ fn a_reply_cut_anywhere_is_never_a_shorter_number() {
             &format!("after 12 replies: cut reply at {at} bytes"),
         );
         ended.sound();
-        // What came of the cut reply spoils the next one, too, where no line's end stands between them.
+        // Without a line end between them, the rest of the cut reply also spoils the next reply.
         assert!(ended.line_statistics.resent <= 2);
     }
 }
@@ -142,7 +142,7 @@ fn garbage_of_any_kind_is_counted_and_none_of_it_is_used() {
     }
     let megabyte = run(&plan(), "after 20 replies: fill 1048576 bytes of 41 before");
     assert!(megabyte.log.len() > 1 << 20);
-    // At 115200 baud it takes a minute and a half to come: longer than any wait, so that the rig is held.
+    // At 115200 baud it takes a minute and a half to arrive. This exceeds every time-out, so the rig is put on hold.
     assert!(
         megabyte.reason().contains("no usable answer"),
         "{}",
@@ -160,7 +160,7 @@ fn garbage_of_any_kind_is_counted_and_none_of_it_is_used() {
 #[test]
 fn every_flipped_bit_of_a_reply_is_seen() {
     let plan = plan_of(vec![to(2e-4)]);
-    // Of the reading of a rig at rest: the first byte to the last before the line's end.
+    // The reading of a rig at rest, from its first byte to the last byte before the line end.
     let reading = |bit: Option<usize>| {
         let text = crate::emulator::testing::SharedText::default();
         let stand = stand(&plan, "", Log::to(Box::new(text.clone())), 1);
@@ -222,7 +222,7 @@ fn a_doubled_a_late_and_an_old_reply_are_ignored() {
             ended.line_statistics
         );
     }
-    // A reply of one reading ago, taken for the present one.
+    // A reply of the previous reading, used for the present one.
     let old = "after 40 readings: replay replies 9";
     let seen = run(&plan(), old);
     seen.sound();

@@ -1,5 +1,5 @@
-//! Very many steps, with faults by chance that can be mended; and a wall clock that jumps. In: seeds. Out: no sample lost,
-//! no descriptor left open, no memory but that of the steps themselves, and the seed of what failed.
+//! Very many steps with random faults that can be recovered, and a wall clock that jumps. In: seeds. Out: no sample is lost, no
+//! descriptor stays open, and only the steps themselves use memory. A failure reports its seed.
 
 use std::io;
 use std::process::Command;
@@ -15,17 +15,16 @@ use crate::rig::LineStatistics;
 use crate::run::{Unwatched, replay};
 use crate::tests::testing::ramp;
 
-/// Steps out and back: 20 000 in all. What a step holds on to shows in their number, not in the time they take: 400 bytes a step
-/// are 7 MB of so many.
+/// Steps out and back: 20 000 in all. A memory leak per step shows in the memory of this many steps: 400 bytes per step are 7 MB.
 const STEPS: u32 = 10_000;
-/// Steps between two looks at what the process holds.
+/// Steps between two checks of the resources of the process.
 const LOOK: usize = 2_000;
-/// Memory that a step may take for good, bytes: what is kept of it in the record, and of its target at the bench.
+/// Memory that a step may keep \[bytes\]: its entry in the run log, and its target in the emulator.
 const OF_A_STEP: usize = 400;
-/// Set where the test is the only one of its process.
+/// Set if the test runs alone in its process.
 const ALONE: &str = "PSD_TEST_ALONE";
 
-/// A disk that keeps counts alone.
+/// A disk that only counts.
 #[derive(Clone, Default)]
 struct Counted(Arc<Mutex<Counts>>);
 
@@ -33,12 +32,12 @@ struct Counted(Arc<Mutex<Counts>>);
 struct Counts {
     samples: usize,
     steps: usize,
-    /// The longest record, bytes.
+    /// Size of the longest run log \[bytes\].
     longest: usize,
     promised: usize,
-    /// SAMPLE records that were safe when the next target left.
+    /// SAMPLE entries that were synced when the next target was sent.
     unsafe_samples: usize,
-    /// Resident memory (bytes) and open descriptors, every so many steps.
+    /// Resident memory \[bytes\] and open descriptors, every `LOOK` steps.
     held: Vec<(usize, usize)>,
 }
 
@@ -100,7 +99,7 @@ fn long_plan(steps: u32) -> Plan {
     plan.rig.settle.dwell = 0.0;
     link(&mut plan).readings.samples = 1;
     link(&mut plan).readings.resolution = 1e-7;
-    // A rest at the end of a way is no frozen sensor.
+    // A rest at the end of a move is not a frozen sensor.
     link(&mut plan).readings.frozen_after = 50;
     plan
 }
@@ -108,7 +107,7 @@ fn long_plan(steps: u32) -> Plan {
 #[test]
 fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing() {
     if std::env::var_os(ALONE).is_none() {
-        // What other tests of this process allocate and open is not to be counted: the test is done again in one of its own.
+        // Other tests of this process allocate memory and open files. To exclude them, the test runs again in a separate process.
         let test = "tests::fault_table::long::very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing";
         let mut alone = Command::new(std::env::current_exe().unwrap());
         let ended = alone

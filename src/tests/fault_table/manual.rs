@@ -1,5 +1,4 @@
-//! The rigs of the manual, each against its own stand-in with the noise that it declares: every one passes its gate, whatever
-//! the dice say.
+//! The rigs of the manual, each with its own emulator and the noise that it declares. Every rig passes its pre-test check for every seed.
 
 use super::stage::{header, open, stand};
 use crate::emulator::Log;
@@ -24,7 +23,7 @@ impl Loader for Ground {
     }
 }
 
-/// Every rig of the page in the plan around it, of which nothing is left but the gate.
+/// Every rig of the page in the surrounding plan, in which only the pre-test check remains.
 fn rigs() -> Vec<Plan> {
     let page = include_str!("../../../docs/rigs.md");
     let plans: Vec<&str> = page

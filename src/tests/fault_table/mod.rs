@@ -1,6 +1,5 @@
-//! The faults that a run on a real rig must survive, each in whole runs: the real drivers and the real
-//! rig on an emulated rig with a script of faults, in one thread and in the emulator's own time.
-//! In: a plan, a script. Out: the record, the run log, the log of the emulator. Each guard is also
+//! The faults that a run on a real rig must survive, each in whole runs. The real drivers run on an emulated rig with a script of faults,
+//! in one thread and in simulated time. In: a plan, a script. Out: the record, the run log, the log of the emulator. Each guard is also
 //! switched off once, to show that its fault then gets through.
 //!
 //! | Row | Fault | Shown by |
@@ -27,8 +26,8 @@
 //! | 18–22 | the same on one axis of two | `axes::*` |
 //! | 10, 14, 18, 25, 26 | the same in continuous mode | `gliding::*` |
 //! | 10, 12, 16, 20–22 | the same with one device per axis, a meter with several channels, several sites | `several::*` |
-//! | 28 | signals, a closed terminal | `tests/system/signals.rs`, in processes of their own |
-//! | 29 | panic, abort | `tests/system/ended.rs`, in processes of their own |
+//! | 28 | signals, a closed terminal | `tests/system/signals.rs`, in separate processes |
+//! | 29 | panic, abort | `tests/system/ended.rs`, in separate processes |
 //! | 30 | a run log that contradicts itself | `forged::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
 //! | 32 | very many steps, random faults | `long::very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing` |

@@ -1,5 +1,5 @@
-//! A ram that does not do as it says, a specimen that breaks, a run whose energy goes astray. In: runs with such a bench.
-//! Out: a rig that is held there, and a break that is an event.
+//! An actuator with tracking errors, a specimen that fractures, a run with an energy error. In: runs with such a rig. Out: a rig on hold
+//! at that point, and a fracture that is an event.
 
 use super::stage::{STIFFNESS, plan, plan_of, run, run_without};
 use crate::plan::formula::Formula;
@@ -44,7 +44,7 @@ fn a_force_beyond_its_limit_holds_the_rig() {
     assert!(run_without(Guarding::ReadingLimits, &limited, "").completed());
 }
 
-/// A blow of 1 kg at some mm/s on 2 kg: outwards at first.
+/// An impact of 1 kg at some mm/s on 2 kg: outwards at first.
 fn blow(inspect: Vec<InspectTrigger>) -> Plan {
     let strike = Impact {
         stepping: Stepping {
@@ -101,7 +101,7 @@ fn an_energy_error_beyond_its_limit_holds_the_rig() {
     };
     let sound = run(&plan(10.0), "");
     assert!(sound.completed(), "{}", sound.reason());
-    // A tangent held to a hundredth of what it is no longer closes the balance.
+    // A tangent limited to a hundredth of its value no longer closes the energy balance.
     let ended = run(&plan(0.01), "");
     assert!(
         matches!(&ended.record.outcome, Outcome::Aborted { reason } if reason.contains("energy error")),
@@ -112,8 +112,8 @@ fn an_energy_error_beyond_its_limit_holds_the_rig() {
     assert!(run_without(Guarding::EnergyError, &plan(0.01), "").completed());
 }
 
-/// A ram that reaches 80 % of each of its ways, inside a band that lets it: the work of the force along the targets is then not
-/// what it is along the places (physics, section 11).
+/// An actuator that reaches 80 % of each move, inside a tolerance band that accepts it. The work of the force along the targets then
+/// differs from the work along the measured positions (physics, section 11).
 #[test]
 fn tracking_that_changes_the_energy_holds_the_rig() {
     let mut plan = blow(Vec::new());

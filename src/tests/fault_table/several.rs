@@ -1,6 +1,6 @@
-//! Several devices on a rig of two axes: load cells apart from the actuators, on one meter of two channels or each on a port of its
-//! own, and sites that speak NEES, each behind its own. A run is the virtual one; what one device does holds every axis and is
-//! said of that device; and what one site refuses no other begins.
+//! Several devices on a rig of two axes. The load cells are separate from the actuators, on one meter with two channels or each on its
+//! own port. Other rigs have sites that speak NEES, each behind its own port. A run equals the virtual run. A fault of one device holds
+//! every axis, and the message names that device. If one site refuses a move, no other site starts it.
 
 use super::cut_off::cut_off_anywhere;
 use super::stage::{Ended, run, run_without};
@@ -22,7 +22,7 @@ pub(super) fn metered(duration: &str) -> String {
     with_devices(duration, &[(LINK, devices.as_str())])
 }
 
-/// A cell for each axis, on its own port: a meter and a converter of counts.
+/// A cell for each axis on its own port: a meter, and a converter that sends counts.
 pub(super) fn apart(duration: &str) -> String {
     with_devices(
         duration,
@@ -39,7 +39,7 @@ pub(super) fn apart(duration: &str) -> String {
     )
 }
 
-/// Native firmware that weighs the upper axis alone.
+/// Native firmware that measures the force of the upper axis only.
 fn native_cell(duration: &str) -> String {
     let cell =
         "    axis(load_cell: tcp(\"10.0.0.8:5025\", native, reply_timeout: 0.1 s), sign: negative,";
@@ -49,7 +49,7 @@ fn native_cell(duration: &str) -> String {
     )
 }
 
-/// Each storey behind a site of its own.
+/// Each storey behind its own site.
 pub(super) fn sites(duration: &str) -> String {
     let first = "link        = tcp(\"10.0.0.1:44000\", nees(\"MDL-00-01\"), reply_timeout: 0.1 s)";
     let second = "    axis(actuator: tcp(\"10.0.0.2:44000\", nees(\"MDL-00-07\"), reply_timeout: 0.1 s), sign: negative,";
@@ -72,7 +72,7 @@ fn as_near_as(near: f64) -> impl Fn(&str, f64) -> f64 {
 
 #[test]
 fn each_layout_gives_what_the_virtual_rig_gives() {
-    // Nine digits of a meter, and counts of 10 mN.
+    // Nine digits of a meter, and a resolution of 10 mN of the converter.
     let layouts = [
         (metered("0.3 s"), 2e-6),
         (apart("0.3 s"), 2e-5),
@@ -87,7 +87,7 @@ fn each_layout_gives_what_the_virtual_rig_gives() {
     }
 }
 
-/// Held, with no axis on its way.
+/// On hold, with no axis moving.
 fn held(ended: &Ended, why: &str) {
     assert!(
         !ended.completed() && ended.reason().contains(why),
@@ -156,7 +156,7 @@ fn what_one_site_refuses_no_other_begins() {
     let ended = run(&plan, "");
     assert!(matches!(ended.record.outcome, Outcome::Aborted { .. }));
     held(&ended, "target displacement of axis 2");
-    // Without the guard the site itself refuses, when the other has said yes: that one is told that it is off.
+    // Without the guard the site itself refuses after the other site has accepted. The other site receives a cancellation.
     let ended = run_without(Guarding::TargetLimits, &plan, "");
     held(&ended, "actuator of axis 2 on 10.0.0.2:44000: refused: ");
     let refused = ended.log.find("NOT OK").expect("a refusal");
@@ -183,7 +183,7 @@ fn a_site_that_is_silent_stops_every_other() {
         let ended = run(&plan(&sites("0.3 s")), script);
         held(&ended, "actuator of axis 2 on 10.0.0.2:44000: ");
     }
-    // One whose line is gone ends its own way alone; the other is held.
+    // The device whose line has failed completes its own move; the other device is held.
     let gone = run(&plan(&sites("0.3 s")), "after 41 moves: hang up");
     assert!(
         gone.reason()

@@ -1,5 +1,5 @@
-//! A whole run on a simulated stand. In: a plan and a script of faults. Out: all that was left of it, with the questions
-//! that the tests of faults ask of it.
+//! A whole run on a rig emulator. In: a plan and a script of faults. Out: the outputs of the run, with the checks that the fault tests
+//! make on them.
 
 use crate::emulator::testing::SharedText;
 use crate::emulator::{InProcess, Log, Script, SimulatedPort, of_plan};
@@ -21,10 +21,10 @@ use crate::run::{Observer, Unwatched};
 pub(super) use crate::tests::testing::header;
 use crate::tests::testing::{elastic_plan, ramp};
 
-/// Of the specimen, N/m.
+/// Stiffness of the specimen \[N/m\].
 pub(super) const STIFFNESS: f64 = 1e5;
 
-/// Silence after which a frame is sent again, s.
+/// Time without a reply after which a frame is sent again \[s\].
 pub(super) const REPLY_TIMEOUT: f64 = 0.1;
 
 /// A ramp of ten steps of 0.1 mm on a native rig, three readings each.
@@ -115,19 +115,19 @@ pub(super) const fn to(place: f64) -> ProcedureKind {
     })
 }
 
-/// What is left of a run.
+/// Outputs of a run.
 pub(super) struct Ended {
     pub(super) record: Record,
     pub(super) lines: Vec<Line>,
     pub(super) recovered: Recovered,
-    /// Of the simulator.
+    /// Log of the simulator.
     pub(super) log: String,
     pub(super) line_statistics: LineStatistics,
     pub(super) trusted: bool,
     pub(super) stand: InProcess,
 }
 
-/// Runs a plan on its stand, with this script of faults.
+/// Runs a plan on its emulator with this script of faults.
 pub(super) fn run(plan: &Plan, script: &str) -> Ended {
     run_watched(plan, script, &mut Unwatched).unwrap_or_else(|fault| panic!("{fault}"))
 }
@@ -146,7 +146,7 @@ pub(super) fn run_watched(
     let recorded = replay::record(plan, &mut rig, observer, journal, Box::new(|| None));
     assert!(recorded.mismatch.is_none() && recorded.fault.is_none());
     let recovered = recover(&disk.written()).unwrap();
-    // Whatever went wrong: the record alone gives the run again.
+    // Whatever fault occurred, the run log alone reproduces the run.
     let played = LoggedRun::of(&recovered).unwrap();
     assert_eq!(replay::check_consistency(&recovered, &played, plan), Ok(()));
     let replayed = replay::replay(plan, played);
@@ -178,12 +178,12 @@ pub(super) fn stand(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess
     InProcess::new(of_plan(plan, &script, log, seed, Some(0x7f3a)).unwrap())
 }
 
-/// The plan's rig on a stand.
+/// The plan's rig on an emulator.
 pub(super) fn open(plan: &Plan, stand: &InProcess) -> Result<RealRig, RigFault> {
     open_through(plan, stand, &|port| Box::new(port))
 }
 
-/// The same, with every line `through` something.
+/// The same, with every line wrapped by `through`.
 pub(super) fn open_through(
     plan: &Plan,
     stand: &InProcess,
@@ -243,7 +243,7 @@ impl Ended {
         }
     }
 
-    /// The run came to its end with the numbers of a sound rig.
+    /// The run was completed with the numbers of a sound rig.
     pub(super) fn sound(&self) {
         assert!(
             self.completed(),
@@ -260,7 +260,7 @@ impl Ended {
         assert_eq!(self.count(EntryKind::Fault), 0);
     }
 
-    /// Told to hold, with the reason on record, and after that nothing moved and nothing was used.
+    /// Commanded to hold, with the reason in the run log. After that nothing moved and no reading was used.
     pub(super) fn held(&self) {
         assert!(!self.completed());
         let held = self
@@ -291,7 +291,7 @@ impl Ended {
         );
     }
 
-    /// What the `nth` record of a kind says.
+    /// Text of the `nth` entry of a kind.
     pub(super) fn body(&self, kind: EntryKind, nth: usize) -> serde_json::Value {
         self.lines
             .iter()
@@ -305,7 +305,7 @@ impl Ended {
         self.lines.iter().filter(|line| line.kind == kind).count()
     }
 
-    /// Command (m) and force (N) of the ramps' and moves' steps.
+    /// Command \[m\] and force \[N\] of the steps of ramps and moves.
     pub(super) fn forces(&self) -> Vec<(f64, f64)> {
         let steps = self
             .record

@@ -1,5 +1,5 @@
-//! Where the rig stands when a run begins, and what it reads there. In: rigs that stand elsewhere than their zero, or whose numbers
-//! cannot be. Out: nothing moves, or everything counts from where they stand.
+//! Position and readings of the rig when a run begins. In: rigs that are not at their zero position, or whose numbers are invalid. Out:
+//! nothing moves, or every position counts from the present one.
 
 use super::cut_off::{GoneOn, gone_on, killed};
 use super::forged::{found, judged};
@@ -18,7 +18,7 @@ use crate::rig::safety::failpoint::Guarding;
 
 const AT_3_MM: &str = "stands at 3 mm";
 
-/// The rig was refused before anything was sent, for this reason.
+/// The rig was refused for this reason before any command was sent.
 fn refused(plan: &Plan, script: &str, why: &str) -> Ended {
     let ended = run(plan, script);
     assert!(
@@ -53,9 +53,9 @@ fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
         "{}",
         ended.reason()
     );
-    // Nobody was asked to release it.
+    // No motion release was requested.
     assert!(ended.events(EventKind::Inspection).is_empty());
-    // Nobody asked where it stands: it was sent 2.9 mm the other way by the first target of the plan.
+    // Without this check, the first target of the plan moved the rig by 2.9 mm in the opposite direction.
     let sent = run_without(Guarding::PretestStart, &plan(), AT_3_MM);
     let least = sent
         .stand
@@ -66,14 +66,14 @@ fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
         .copied()
         .fold(f64::INFINITY, f64::min);
     assert!(least < 0.2e-3, "{least}");
-    // As near as it settles at a target is near enough.
+    // A start position within the settling tolerance is accepted.
     assert!(run(&plan(), "stands at 0.004 mm").completed());
     refused(&plan(), "stands at -0.006 mm", "and the plan begins at 0");
 }
 
 #[test]
 fn what_a_specimen_carries_there_is_told() {
-    // The specimen of an earlier run is still bent: 0.1 mm of it are 10 N.
+    // The specimen of an earlier run is still deformed: 0.1 mm correspond to 10 N.
     let bent = run(&plan_of(vec![to(1e-4)]), "").stand;
     let mut rig = open(&plan(), &bent).unwrap();
     let record = crate::run::run(&plan(), &mut rig, &mut crate::run::Unwatched);
@@ -81,7 +81,7 @@ fn what_a_specimen_carries_there_is_told() {
         panic!("{:?}", record.outcome)
     };
     assert!(reason.contains("as a run without `unload`"), "{reason}");
-    // Nor is it given another zero: it carries load where it stands.
+    // The zero is not set again either, because the specimen carries load at this position.
     let mut rig = open(&here(plan()), &bent).unwrap();
     let record = crate::run::run(&here(plan()), &mut rig, &mut crate::run::Unwatched);
     let Outcome::Faulted { reason } = &record.outcome else {
@@ -126,7 +126,7 @@ fn a_plan_whose_zero_is_where_the_rig_stands_counts_from_there() {
             assert!(stand.bench().violations().is_empty());
             drop(stand);
             assert_eq!(judged(&plan, &ended.recovered), Ok(()));
-            // Its limits go with it.
+            // Its limits are shifted with it.
             let beyond = run(&here(plan_of(vec![to(0.0101)])), AT_3_MM);
             assert!(
                 matches!(beyond.record.outcome, Outcome::Aborted { .. }),
@@ -176,7 +176,7 @@ fn a_datum_that_is_not_the_plans_is_found() {
     );
 }
 
-/// Killed at any write, it goes on from the same zero, although it stands elsewhere by then.
+/// Killed at any write, it resumes from the same zero, although the rig is at a different position by then.
 #[test]
 fn a_run_goes_on_from_the_zero_on_record() {
     let plan = here(plan());
@@ -197,7 +197,7 @@ fn a_run_goes_on_from_the_zero_on_record() {
     }
 }
 
-/// A record of an older version, in which nobody asked where the rig stands, is played back as it was.
+/// A run log of an older version, which did not ask for the start position, is replayed unchanged.
 #[test]
 fn a_record_that_says_no_datum_is_played_back_as_it_was() {
     let sent = run_without(Guarding::PretestStart, &plan(), AT_3_MM);
@@ -214,7 +214,7 @@ fn a_grbl_as_it_comes_is_run_from_where_it_was_homed() {
         serde_json::json!([-1e-3]),
         "1 mm off its end switch"
     );
-    // Its own zero is the end switch, and all above it is beyond its travel.
+    // Its own zero is the limit switch, and all positions above it are outside its travel.
     let mut upwards = grbl();
     upwards.rig.sign = 1.0;
     upwards.procedures = plan_of(vec![to(1.1e-3)]).procedures;
@@ -237,7 +237,7 @@ fn swapped(number: ModbusNumber) -> ModbusNumber {
     }
 }
 
-/// A drive whose two words are the other way round than its plan says.
+/// A drive whose number has its two words in the opposite order to the plan.
 #[test]
 fn a_drive_in_the_other_word_order_is_not_moved() {
     let float = ModbusNumber::Float32 {

@@ -1,5 +1,5 @@
-//! Whatever a plan asks for: nothing beyond a limit is ever on the wire. In: plans by chance, with targets and limits of any
-//! kind. Out: what the simulator read from the bytes themselves.
+//! No target beyond a limit is sent on the line, for any plan. In: random plans, with targets and limits of any kind. Out: the targets
+//! that the simulator read from the bytes.
 
 use proptest::prelude::*;
 
@@ -8,7 +8,7 @@ use crate::plan::{Dialect, Interval, Plan};
 use crate::record::Outcome;
 use crate::rig::safety::failpoint::Guarding;
 
-/// A plan that goes to these places within these limits, m.
+/// A plan that moves to these positions within these limits \[m\].
 fn going(places: &[f64], displacement: Interval, increment: f64) -> Plan {
     let mut plan = plan_of(places.iter().map(|place| to(*place)).collect());
     plan.limits.displacement = displacement;
@@ -40,7 +40,7 @@ proptest! {
         increment in prop_oneof![Just(f64::INFINITY), Just(0.001)],
     ) {
         let limit = Interval { low: -0.001, high };
-        // Of a rig without any limit of its own that is told.
+        // A rig that reports no limits of its own.
         let plan = going(&asked, limit, increment);
         let Ok(ended) = super::stage::run_watched(&plan, "", &mut crate::run::Unwatched) else { return Ok(()) };
         let targets: Vec<f64> = ended.log.lines().filter_map(|line| line.split_once(">MOVE ")).map(|(_, frame)| {
@@ -62,7 +62,7 @@ proptest! {
 
 #[test]
 fn without_the_guard_a_target_beyond_the_limits_leaves() {
-    // Grbl has no limits that a run could tell it.
+    // Grbl has no limits that a run could send to it.
     let mut plan = going(
         &[0.001, 0.003],
         Interval {

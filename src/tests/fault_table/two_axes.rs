@@ -1,5 +1,5 @@
-//! The plans of this folder's tests of several axes: a frame of two storeys shaken on a rig of two axes, the upper one of
-//! which counts the other way round. In: text. Out: checked plans, and the same on an ideal virtual rig.
+//! The plans of this folder's tests of several axes: a two-storey frame under ground motion on a rig of two axes. The upper axis has the
+//! opposite polarity. In: text. Out: checked plans, and the same plans on an ideal virtual rig.
 
 use crate::language::check::{LoadError, Loader, Options, check};
 use crate::plan::formula::ResultValue;
@@ -48,7 +48,7 @@ shake quake {
 require "drift" max(quake.max_drift) < 60 mm
 "#;
 
-/// 3 m/s² for a tenth of a second, then back.
+/// 3 m/s² for a tenth of a second, then the opposite.
 const GROUND: &str = "time_s,acceleration_m_per_s2\n0,0\n0.05,3\n0.1,3\n0.2,-3\n0.3,0\n1,0\n";
 
 struct Folder;
@@ -90,19 +90,19 @@ pub(super) fn checked(text: &str, rig: &str) -> Plan {
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
 }
 
-/// The shake above for so long.
+/// The ground-motion test above for this duration.
 pub(super) fn shaken(duration: &str) -> Plan {
     checked(&PLAN.replace("DURATION", duration), "frame_rig")
 }
 
-/// The same, of which the floors do not stop: a step takes two seconds.
+/// The same in continuous mode; a step takes two seconds.
 pub(super) fn gliding_text(duration: &str) -> String {
     let mode = "  time_step = 10 ms\n  mode      = continuous(time_scale: 200)";
     PLAN.replace("DURATION", duration)
         .replace("  time_step = 10 ms", mode)
 }
 
-/// The shake above with other lines of its rig: each of these replaced.
+/// The ground-motion test above with these lines of its rig replaced.
 pub(super) fn with_devices(duration: &str, lines: &[(&str, &str)]) -> String {
     lines
         .iter()
@@ -112,11 +112,11 @@ pub(super) fn with_devices(duration: &str, lines: &[(&str, &str)]) -> String {
         })
 }
 
-/// How its one device is reached.
+/// Port of its single device.
 pub(super) const LINK: &str =
     "link        = serial(port: \"/dev/ttyUSB0\", dialect: native, reply_timeout: 0.1 s)";
 
-/// What the upper axis says of itself.
+/// Declaration of the upper axis.
 pub(super) fn upper(plan: &mut Plan) -> &mut AxisPlan {
     let link: &mut RealLink = super::stage::link(plan);
     &mut link.axes[1]
@@ -142,13 +142,13 @@ pub(super) fn results(record: &Record) -> Vec<(&'static str, f64)> {
         .collect()
 }
 
-/// The same plan on a rig that adds nothing.
+/// The same plan on a rig without errors.
 pub(super) fn ideal(text: &str) -> Vec<(&'static str, f64)> {
     let plan = checked(text, "ideal");
     results(&run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched))
 }
 
-/// All results are those of another run, but for `far` of each, of its name and its size there.
+/// All results equal those of the other run within `far` of each, which depends on its name and size.
 pub(super) fn same(real: &[(&str, f64)], ideal: &[(&str, f64)], far: impl Fn(&str, f64) -> f64) {
     assert!(real.len() == ideal.len() && real.len() > 8);
     for ((name, real), (_, ideal)) in real.iter().zip(ideal) {

@@ -1,5 +1,5 @@
-//! Lines whose answers carry no number: Grbl with a converter, and Modbus. In: runs on which answers are lost, late or old.
-//! Out: the numbers of a sound line, or a rig that is held.
+//! Lines whose replies carry no number: Grbl with a converter, and Modbus. In: runs on which replies are lost, late or old. Out: the
+//! numbers of a sound line, or a rig on hold.
 
 use super::stage::{device_link, link, plan, run, run_without};
 use crate::plan::{Datum, Dialect, Interval, ModbusMap, ModbusNumber, Plan};
@@ -30,7 +30,7 @@ pub(super) fn modbus() -> Plan {
     plan
 }
 
-/// A Grbl stands below its zero when it has been homed, and goes down from there.
+/// After homing, a Grbl axis is below its zero, and moves down from there.
 pub(super) fn as_homed(plan: &mut Plan) {
     plan.rig.sign = -1.0;
     link(plan).datum = Datum::Here;
@@ -65,7 +65,7 @@ fn lost_doubled_and_late_answers_leave_the_same_numbers() {
                 &plan,
                 &format!("after 3 moves: {fault}\nafter 60 replies: {fault}"),
             );
-            // Either mended or held: never another number.
+            // Either recovered or on hold: never a different number.
             if ended.completed() {
                 ended.sound();
             } else {

@@ -1,5 +1,5 @@
-//! psd killed at every word that it says to a rig, before it and after it, and gone on with. In: a plan, a stand, a number of a word.
-//! Out: the same end, and no target twice. What the record does at every write of its own is shown in `run::tape`.
+//! psd is killed at every command that it sends to a rig, before it and after it. The run is then resumed. In: a plan, an emulator, the
+//! number of a command. Out: the same end, and no target is sent twice. `run::tape` tests the writes of the run log.
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -17,7 +17,7 @@ use crate::rig::transport::{Emergency, Port};
 use crate::run::{Unwatched, replay};
 use crate::tests::testing::ramp;
 
-/// A line on which psd dies at one word.
+/// A line on which psd is killed at one command.
 struct Dying {
     line: SimulatedPort,
     said: Arc<AtomicUsize>,
@@ -47,7 +47,7 @@ impl Port for Dying {
     }
 }
 
-/// Whether psd died there.
+/// Whether psd was killed there.
 fn killed(plan: &Plan, stand: &InProcess, disk: &PowerLoss, word: usize, after: bool) -> bool {
     let said = Arc::new(AtomicUsize::new(0));
     let through = |line| -> Box<dyn Port> {
@@ -100,7 +100,7 @@ fn killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_
                 break;
             }
             kills += 1;
-            // Nothing is on record of a rig that was not met.
+            // The run log has no entry of a rig before the first contact.
             if disk.written().is_empty() {
                 continue;
             }

@@ -5,7 +5,7 @@ use crate::record::{EventKind, Record};
 use crate::tests::testing::{number, run_unwatched};
 use crate::tests::uncertainty::frame::{constant, shaken};
 
-/// Two storeys that yield, by the tangent form, on ground that swings for 20 s and rests for 40.
+/// Two storeys that yield, by the tangent form, under ground motion of 20 s followed by a rest of 40 s.
 fn yielding(time_step: f64) -> Record {
     let storey = |mass: f64, stiffness: f64, yield_force: f64| {
         Storey::new(

@@ -74,8 +74,8 @@ fn an_elastic_specimen_gives_everything_back() {
     assert_eq!(history(&record).steps.last().unwrap().command, 0.0);
 }
 
-/// The second cycle at 30 mm is a closed parallelogram: 4·10·0.9·(0.03 − 0.01) J. Thirty even points to the quarter put the
-/// corners, at 20 mm back from each end, on targets, so that the trapezoid is exact.
+/// The second cycle at 30 mm is a closed parallelogram: 4·10·0.9·(0.03 − 0.01) J. With thirty equal points per quarter cycle, the yield
+/// points lie on targets. They are 20 mm back from each end. The trapezoid is therefore exact.
 #[test]
 fn a_yielding_specimen_spends_the_area_of_its_loop() {
     let record = run_unwatched(&yielding(Cycle {
@@ -85,8 +85,8 @@ fn a_yielding_specimen_spends_the_area_of_its_loop() {
     }));
     let energies = list(&record, 0, "energies");
     assert!((energies[1] - 0.72).abs() < 1e-12, "{} J", energies[1]);
-    // The first begins on the virgin curve: from the sum of the areas under it, by hand.
-    // 0 → 30 mm: ½·10·10 mm + 11·20 mm; → −30 mm over the corner at 10 mm, −8 N; → 0 over −10 mm, 8 N.
+    // The first cycle begins on the backbone curve: the sum of the areas under it, by hand.
+    // 0 → 30 mm: ½·10·10 mm + 11·20 mm; → −30 mm over the yield point at 10 mm, −8 N; → 0 over −10 mm, 8 N.
     let by_hand = 0.27
         + (0.5 * (12.0 - 8.0) * -0.02 + 0.5 * (-8.0 - 12.0) * -0.04)
         + (0.5 * (-12.0 + 8.0) * 0.02 + 0.5 * 17.0 * 0.01);
@@ -102,8 +102,8 @@ fn a_yielding_specimen_spends_the_area_of_its_loop() {
     assert!((number(&record, 0, "equivalent_damping_ratio").0.unwrap() - ratio).abs() < 1e-12);
 }
 
-/// Friction on the cell keeps the sign of the last motion: each cycle costs 4·F_c·a, but for the reversals, where the
-/// trapezoid runs over the jump: it loses F_c·h at each of the two ends, h the first step back, which is less than half of an even one.
+/// Friction on the cell keeps the sign of the last motion, so each cycle dissipates 4·F_c·a. At the reversals the trapezoid crosses the
+/// jump and loses F_c·h at each of the two ends. The first step back h is less than half of a regular one.
 #[test]
 fn friction_costs_its_force_times_the_way() {
     let energy = |points: u32| {
@@ -155,7 +155,7 @@ fn one_sided_cycles_go_to_one_side_and_elsewhere() {
     assert_eq!(number(&pulled, 0, "max_force").0, Some(0.0));
 }
 
-/// Viscous damping c on the cell: ±a at speed v costs c·v·4a a cycle, less what the trapezoid loses at the ends.
+/// Viscous damping c on the cell: a cycle of ±a at speed v dissipates c·v·4a, minus the loss of the trapezoid at the ends.
 #[test]
 fn moved_without_stopping_it_is_read_at_its_rate() {
     let (speed, amplitude, damping) = (0.01, 0.01, 50.0);

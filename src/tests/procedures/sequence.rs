@@ -6,7 +6,7 @@ use crate::plan::{Behaviour, Contact, Impact, Plan, ProcedureKind, Unload, Until
 use crate::record::{History, ImpactStep, Record, StepState};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
 
-/// K 20 kN/m; yields at 200 N, 10 mm, without hardening.
+/// K 20 kN/m; yields at 200 N, 10 mm, without post-yield stiffness.
 fn perfectly_plastic(procedures: Vec<ProcedureKind>) -> Plan {
     let mut plan = elastic_plan(2e4, procedures);
     plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
@@ -45,8 +45,8 @@ fn value(record: &Record, procedure: usize, name: &str) -> f64 {
     number(record, procedure, name).0.unwrap()
 }
 
-/// Without hardening an unloaded specimen is as it was born, only elsewhere: the second blow is the first, moved by what
-/// was left.
+/// Without post-yield stiffness, an unloaded specimen equals a new one at a different position. The second impact equals the first,
+/// shifted by the residual displacement.
 #[test]
 fn the_second_blow_begins_where_the_first_left_the_specimen() {
     let kind = ProcedureKind::Impact(blow());
@@ -59,7 +59,7 @@ fn the_second_blow_begins_where_the_first_left_the_specimen() {
         "{rest} m is not {first} m less what springs back"
     );
     assert!(value(&record, 1, "residual_force").abs() < 0.2 + 1e-12);
-    // X counts from where the specimen was born, and the striker touches the surface where it now is.
+    // X counts from the initial position of the specimen, and the striker touches the surface at its present position.
     let start = steps(&record, 2)[0];
     assert_eq!(
         (start.command, start.striker_displacement),
@@ -77,7 +77,7 @@ fn the_second_blow_begins_where_the_first_left_the_specimen() {
     );
 }
 
-/// A gap is measured from the surface where it now is: the same gap costs the same time.
+/// A gap is measured from the present position of the surface: the same gap takes the same time.
 #[test]
 fn a_gap_is_measured_from_where_the_surface_now_is() {
     let kind = ProcedureKind::Impact(blow());
@@ -106,7 +106,7 @@ fn a_specimen_without_load_is_not_moved() {
     assert_eq!(number(&record, 0, "residual_displacement").0, Some(0.0));
 }
 
-/// After the end no contact comes any more, however long the whole is followed.
+/// After the end no further contact occurs, however long the run continues.
 #[test]
 fn a_rebound_ends_the_run_when_the_two_are_apart_for_good() {
     let of = |until, striker_mass: f64, contact: Contact| {
@@ -145,7 +145,7 @@ fn a_rebound_ends_the_run_when_the_two_are_apart_for_good() {
                 "{striker_mass} kg: left at {} s, {again:?}",
                 end.time
             );
-            // And not a whole swing later than it could be known.
+            // And not a whole vibration cycle later than necessary.
             let last_touch = long
                 .iter()
                 .rev()

@@ -16,7 +16,7 @@ use crate::run::session::Session;
 use crate::tests::testing;
 use crate::tests::testing::{elastic_plan, impact, number, run_unwatched};
 
-/// End supports of a beam: 40 kN/m that bear 400 N after 3 mm, faces that slip at 90 N.
+/// End supports of a beam: 40 kN/m that carry 400 N after 3 mm, and faces that slip at 90 N.
 fn bolted() -> Behaviour {
     Behaviour::Bolted(Bolted {
         stiffness: 4e4,
@@ -36,7 +36,7 @@ fn bouc_wen(beta: f64) -> Behaviour {
     }
 }
 
-/// Moved to `to` (m), and unloaded by this stiffness, N/m.
+/// Moved to `to` \[m\], and unloaded with this stiffness \[N/m\].
 fn unloaded(
     behaviour: &Behaviour,
     coulomb: f64,
@@ -68,7 +68,7 @@ fn moves(record: &Record) -> &[RampStep] {
     }
 }
 
-/// Where it carries no load on the way back from the last of these places, at which it feels `friction` against it.
+/// Unloaded position on the path back from the last of these positions, with `friction` opposing the motion.
 fn truly_rests(behaviour: &Behaviour, places: &[f64], friction: f64) -> f64 {
     let mut model = SpecimenModel::new(behaviour);
     let mut force = 0.0;
@@ -88,9 +88,9 @@ fn truly_rests(behaviour: &Behaviour, places: &[f64], friction: f64) -> f64 {
         .unwrap()
 }
 
-/// Supports that come back at twice their stiffness, a Bouc–Wen spring, a beam behind its supports, with and without friction: it never
-/// loads them the other way, and they rest where they do however stiff they were said to be. By hand, the supports from 20 mm: 4.5 mm
-/// back at 80 kN/m, over which the friction turns, then 3.25 mm at 40 kN/m.
+/// Supports that unload at twice their stiffness, a Bouc–Wen spring, a beam behind its supports, with and without friction. Unloading
+/// never loads them in the opposite direction. The rest position is correct for any stated stiffness. By hand, the supports from 20 mm:
+/// 4.5 mm back at 80 kN/m, over which the friction reverses, then 3.25 mm at 40 kN/m.
 #[test]
 fn a_specimen_rests_where_it_does_whatever_its_stiffness_is_said_to_be() {
     let beam = Behaviour::Series(vec![Behaviour::Elastic { stiffness: 3e5 }, bolted()]);
@@ -132,7 +132,7 @@ fn a_specimen_rests_where_it_does_whatever_its_stiffness_is_said_to_be() {
     assert!((truly_rests(&bolted(), &[0.02], 0.0) - 0.01225).abs() < 1e-6);
 }
 
-/// With noise, by the stiffness that a ramp finds and by one that is half as large.
+/// With noise, with the stiffness from a ramp and with half of it.
 #[test]
 fn noise_leaves_it_at_its_place() {
     for stiffness in [4e4, 8e4] {
@@ -145,7 +145,7 @@ fn noise_leaves_it_at_its_place() {
             };
             let record = unloaded(&bolted(), 0.0, 0.02, stiffness, link);
             let (found, u) = number(&record, 1, "residual_displacement");
-            // 3σ is all that readings tell of a load.
+            // 3σ is the smallest load that readings can resolve.
             assert!(
                 (found.unwrap() - 0.01225).abs() < 3.0 * 0.5 / 4e4 + 2.0 * u.unwrap(),
                 "{found:?} m ± {u:?} m"
@@ -154,7 +154,7 @@ fn noise_leaves_it_at_its_place() {
     }
 }
 
-/// What rests within its friction is let be: one short move shows it, and a remark says what is left.
+/// A specimen at rest within its friction is not moved: one short move shows it, and an observation states the remaining load.
 #[test]
 fn a_load_within_the_friction_is_told_to_be_left() {
     let record = unloaded(
@@ -173,7 +173,7 @@ fn a_load_within_the_friction_is_told_to_be_left() {
     );
 }
 
-/// After a blow of a row the supports rest where the same path leads their model, and so the next blow begins there.
+/// After an impact of a series, the supports rest at the position of their model on the same path. The next impact begins there.
 #[test]
 fn a_row_of_blows_rests_there_too() {
     let blow = Impact {
@@ -212,7 +212,7 @@ fn a_row_of_blows_rests_there_too() {
     );
 }
 
-/// Storeys whose shears come back twice as stiff rest by themselves, each with its own friction.
+/// Storeys with twice the stiffness on unloading come to rest, each with its own friction.
 #[test]
 fn storeys_are_never_loaded_the_other_way() {
     let mut plan: Plan = three(0.05);

@@ -14,12 +14,12 @@ use crate::run::Unwatched;
 use crate::uncertainty::{Contribution, Source};
 
 const TIME_SCALE: f64 = 50.0;
-/// C/K of the dampers as the frame feels them, s.
+/// C/K of the dampers in the time of the frame \[s\].
 const LOSS: f64 = 9e-3;
 const TIME_STEP: f64 = 0.01;
-/// Standard uncertainty of every source, of its value.
+/// Relative standard uncertainty of every source.
 const SHARE: f64 = 0.01;
-/// Of the damping ratio itself.
+/// The damping ratio itself.
 const RATIO: f64 = 0.02;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ enum Kind {
     BoucWen,
 }
 
-/// Which run.
+/// Identifies one run.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     kind: Kind,
@@ -38,7 +38,7 @@ struct Case {
     link: VirtualLink,
 }
 
-/// Seconds on a ground of two sines, as long as it lasts and a rest.
+/// Ground motion of two sines for its duration, followed by a rest.
 fn plan(case: Case) -> Plan {
     let ground = (0..200).map(|sample| 0.01 * f64::from(sample)).map(|time| {
         let rises = (std::f64::consts::PI * time / 2.0).sin();
@@ -145,7 +145,7 @@ fn doubtful(case: Case) -> Plan {
     plan
 }
 
-/// The same run with a source truly moved by so many of its uncertainties: the rig bends what it bent.
+/// The same run with a source perturbed by `by` standard uncertainties; the rig keeps its own specimen.
 fn moved(case: Case, source: Source, by: f64) -> Record {
     let (rig_of, mut plan) = (plan(case), plan(case));
     let mut rig = Misread {
@@ -184,7 +184,7 @@ const NAMES: [(&str, usize); 7] = [
     ("max_base_shear", 0),
 ];
 
-/// The numbers of a run, between the ends of its steps.
+/// Results of a run, including peaks between the ends of its steps.
 fn numbers(record: &Record) -> [f64; 7] {
     let History::Shake(history) = &record.procedures[0].history else {
         panic!("{:?}", record.outcome)
@@ -213,7 +213,7 @@ fn numbers(record: &Record) -> [f64; 7] {
     ]
 }
 
-/// A number with what its sources do to it, as told and truly.
+/// A result with the reported and the true effects of its sources.
 struct Told {
     name: (&'static str, usize),
     value: f64,
@@ -221,7 +221,7 @@ struct Told {
 }
 
 impl Told {
-    /// The standard uncertainty by all sources, as told and truly.
+    /// The reported and the true standard uncertainty from all sources.
     fn uncertainties(&self) -> [f64; 2] {
         let root = |amounts: &mut dyn Iterator<Item = f64>| {
             amounts.map(|amount| amount * amount).sum::<f64>().sqrt()
@@ -267,17 +267,17 @@ fn told(case: Case) -> Vec<Told> {
     NAMES.into_iter().enumerate().map(number).collect()
 }
 
-/// How far what is told may be from the truth.
+/// Allowed difference between reported and true values.
 #[derive(Clone, Copy)]
 struct Within {
-    /// What a source that is called smooth does, of what it truly does.
+    /// The reported effect of a source that is marked smooth, relative to its true effect.
     smooth: f64,
-    /// The uncertainty by all of them, of the true one: less, and more.
+    /// The combined uncertainty, relative to the true one: smaller, and larger.
     less: f64,
     more: f64,
 }
 
-/// Every number of every run of one kind of storey. What is less than a ten thousandth of a number is none.
+/// Checks every result of every run of one kind of storey. Effects smaller than a ten thousandth of a result count as zero.
 fn judge(kind: Kind, within: Within, links: [VirtualLink; 2], modes: &[(bool, bool)]) {
     let mut wrong = Vec::new();
     for (continuous, dampers) in modes.iter().copied() {
@@ -303,7 +303,7 @@ fn judge(kind: Kind, within: Within, links: [VirtualLink; 2], modes: &[(bool, bo
                 }
             }
             let [told, truth] = number.uncertainties();
-            // Bouc and Wen's specimen does not keep Masing's rule: nothing is promised of what is marked.
+            // A Bouc–Wen specimen does not follow Masing's rule, so marked contributions have no guaranteed accuracy.
             let promised = kind != Kind::BoucWen
                 || number
                     .parts
@@ -321,7 +321,7 @@ fn judge(kind: Kind, within: Within, links: [VirtualLink; 2], modes: &[(bool, bo
                 ));
             }
         }
-        // What is sure of a specimen that yields under way is over before it first turns.
+        // For a specimen that yields during the run, the smooth contributions end before its first reversal.
         assert!(
             smooth > 0 || kind == Kind::BoucWen || continuous && kind != Kind::Elastic,
             "{case:?}"
@@ -372,7 +372,8 @@ fn yielding_storeys_are_told_as_they_truly_answer() {
     );
 }
 
-/// Bouc and Wen's specimen forgets its turns as it flows on, and does not keep Masing's rule: what is not marked is right all the same.
+/// A Bouc–Wen specimen loses the memory of its reversals during plastic flow, and does not follow Masing's rule. The unmarked
+/// contributions are still correct.
 #[test]
 fn storeys_of_bouc_and_wen_are_told_as_they_truly_answer() {
     judge(
@@ -387,7 +388,7 @@ fn storeys_of_bouc_and_wen_are_told_as_they_truly_answer() {
     );
 }
 
-/// With a quantum of 1 µm and 2 N of noise, the same in every run.
+/// With a resolution of 1 µm and 2 N of noise, the same in every run.
 #[test]
 fn noise_under_way_does_not_hide_what_an_input_does() {
     let noisy = VirtualLink {

@@ -1,4 +1,4 @@
-//! What rounding leaves open of the loops of a `cycle`, against replays on rigs that differ in where the zero of their grid lies.
+//! Effect of rounding on the loops of a `cycle`. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
 use crate::plan::formula::Formula;
 use crate::plan::{Behaviour, Cycle, Level, Link, Plan, ProcedureKind, Sides, VirtualLink};
@@ -15,7 +15,7 @@ const NAMES: [&str; 6] = [
     "last_stiffness",
 ];
 
-/// Two cycles to `amplitude` (m) about `about`, of a specimen that has a load before it is moved.
+/// Two cycles to `amplitude` \[m\] about `about`, of a specimen that carries a load before the first move.
 fn plan(behaviour: &Behaviour, amplitude: f64, about: f64, link: VirtualLink) -> Plan {
     let cycle = Cycle {
         specimen: 0,
@@ -40,7 +40,7 @@ fn plan(behaviour: &Behaviour, amplitude: f64, about: f64, link: VirtualLink) ->
     plan
 }
 
-/// Of every result: root mean square of the errors of `runs`, and of what was told of them, and the share that two of it hold.
+/// For every result: root mean square of the errors of `runs`, root mean square of the reported u, and the fraction of errors within 2u.
 fn replayed(
     runs: u32,
     behaviour: &dyn Fn(f64) -> Behaviour,
@@ -56,7 +56,7 @@ fn replayed(
             .map(|link| run_unwatched(&plan(&behaviour, amplitude, about, link)));
         for (name, sum) in NAMES.into_iter().zip(&mut sums) {
             let ((value, told), (truth, _)) = (number(&found, 0, name), number(&exact, 0, name));
-            // A transducer's quantum is not in a force.
+            // The resolution of the displacement transducer does not affect a force.
             let (error, told) = (value.unwrap() - truth.unwrap(), told.unwrap_or(0.0));
             sum.0 += error * error;
             sum.1 += told * told;
@@ -67,7 +67,7 @@ fn replayed(
     sums.map(|(error, told, held)| ((error / count).sqrt(), (told / count).sqrt(), held / count))
 }
 
-/// Of a specimen that is elastic and of one that yields, on a cell of 40 and of 100 quanta to the largest force, and on a transducer.
+/// An elastic specimen and a yielding one. The peak force is 40 and 100 quantization steps of the cell; one rig rounds its displacement.
 #[test]
 fn replays_on_coarse_rigs_are_held() {
     let elastic = |by: f64| Behaviour::Elastic {
@@ -108,7 +108,7 @@ fn replays_on_coarse_rigs_are_held() {
     }
 }
 
-/// K = ΔF/w with q/√12 at either end: q/(√6·w); what both ends have in common is not in it.
+/// K = ΔF/w with q/√12 at either end: q/(√6·w); an error common to both ends cancels.
 #[test]
 fn a_secant_is_as_uncertain_as_its_two_readings() {
     let link = VirtualLink {

@@ -14,7 +14,7 @@ use crate::verdict::{Verdict, assess};
 
 const STIFFNESS: f64 = 3e5;
 
-/// A ramp of so many points, read with 20 N of noise.
+/// A ramp with this number of points, read with 20 N of noise.
 fn plan(points: u32, seed: u64) -> Plan {
     let displacements = (1..=points)
         .map(|point| Formula::Constant(f64::from(point) * 1e-4))
@@ -45,12 +45,12 @@ fn told(record: &Record, name: &'static str) -> (f64, Known) {
     )
 }
 
-/// Of 500 ramps each of 3, 4, 6 and 12 points 95.45 % have K and R₀ within U. With k = 2 it would be 70, 82, 88 and 93 %: the share of
-/// 500 scatters by 0.93 %, so that five standard deviations, 4.7 %, tell the first three from it.
+/// In 95.45 % of 500 ramps each of 3, 4, 6 and 12 points, K and R₀ lie within U. With k = 2 it would be 70, 82, 88 and 93 %. The fraction
+/// of 500 scatters by 0.93 %. Five standard deviations, 4.7 %, distinguish the first three from it.
 #[test]
 fn as_many_ramps_as_it_says_hold_the_stiffness() {
     const RAMPS: u16 = 500;
-    // Five standard deviations of a share of so many.
+    // Five standard deviations of a fraction of this many runs.
     let scatter = 5.0 * (LEVEL * (1.0 - LEVEL) / f64::from(RAMPS)).sqrt();
     for points in [3, 4, 6, 12] {
         let (mut slopes, mut intercepts) = (0_u16, 0_u16);
@@ -75,7 +75,7 @@ fn as_many_ramps_as_it_says_hold_the_stiffness() {
     }
 }
 
-/// A limit of the stiffness of a ramp of three points is decided by 13.97 u, and not by 2 u.
+/// Conformity of the stiffness of a ramp of three points is assessed with 13.97 u, and not with 2 u.
 #[test]
 fn a_guard_band_has_the_degrees_of_freedom_of_its_ramp() {
     let reference = ResultReference {
@@ -126,7 +126,7 @@ fn a_guard_band_has_the_degrees_of_freedom_of_its_ramp() {
     );
 }
 
-/// Twice as far, ten times as heavy: what is reckoned from K has its degrees of freedom, and what is reckoned from two ramps
+/// Twice as far, ten times as heavy. A value calculated from K has the degrees of freedom of K. A value calculated from two ramps
 /// combines theirs.
 #[test]
 fn what_follows_from_a_fit_has_its_degrees_of_freedom() {

@@ -23,7 +23,7 @@ fn dry(plan: &Plan) -> Plan {
     ideal
 }
 
-/// The mean of u² of so many runs over the u² that is foretold of the result.
+/// The mean of u² of `runs` runs over the predicted u² of the result.
 fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
     let with = |seed: u64| {
         let mut plan = plan.clone();
@@ -42,8 +42,8 @@ fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
     (0..runs).map(square).sum::<f64>() / f64::from(runs) / (foretold * foretold)
 }
 
-/// s² of ν degrees of freedom over N runs has the standard deviation √(2/(Nν)) of σ²: no more than four of it, and `curved` for what a
-/// fit that is not linear makes of it.
+/// s² of ν degrees of freedom over N runs has the standard deviation √(2/(Nν)) of σ². The limit is four of these, plus `curved` for a
+/// non-linear fit.
 fn assert_predicted(
     plan: &Plan,
     link: VirtualLink,
@@ -103,7 +103,7 @@ fn the_line_of_a_ramp_is_predicted() {
         (foretold / (2.0 / 3.0_f64.sqrt() / squares.sqrt()) - 1.0).abs() < 1e-9,
         "{foretold}"
     );
-    // Quanta of force and displacement beside the noise, and alone: what they scatter by is of no normal distribution.
+    // Quantization of force and displacement, with noise and without: its scatter is not normally distributed.
     let rounded = VirtualLink {
         force_resolution: 5.0,
         resolution: 1.3e-5,
@@ -116,7 +116,7 @@ fn the_line_of_a_ramp_is_predicted() {
         ..NOISY
     };
     assert_predicted(&plan, quiet, &["stiffness"], (1, 1e9, 0.35));
-    // An ideal rig has nothing to foretell.
+    // An ideal rig has no scatter to predict.
     assert!(
         number(&run_unwatched(&dry(&plan)), 0, "stiffness")
             .1
@@ -206,7 +206,7 @@ fn the_loops_of_a_cycle_are_predicted() {
         yield_force: 10.0,
         hardening: 0.1,
     });
-    // Both by the same draws.
+    // Both with the same Monte Carlo trials.
     let link = VirtualLink {
         noise: 0.05,
         force_resolution: 0.02,

@@ -1,4 +1,4 @@
-//! What rounding leaves open of holds and of secants, against replays on rigs that differ in where the zero of their grid lies.
+//! Effect of rounding on holds and on secants. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
 use crate::physics::relaxation::law::RelaxationLaw;
 use crate::physics::relaxation::time_constant::RelaxationModel;
@@ -18,7 +18,7 @@ fn elastic(stiffness: f64) -> Box<Behaviour> {
     Box::new(Behaviour::Elastic { stiffness })
 }
 
-/// Six holds of 8 s, each of 21 readings, `begin` (m) from the zero of the grids.
+/// Six holds of 8 s, each of 21 readings, `begin` \[m\] from the zero of the grids.
 fn holds(behaviour: Behaviour, begin: f64, model: WatchedModel, link: VirtualLink) -> Plan {
     let place = |step: u32| Formula::Constant(begin + 2e-4 * f64::from(step));
     let asked = StiffnessRamp {
@@ -44,7 +44,7 @@ fn told(record: &Record, name: &'static str) -> (f64, Known) {
     )
 }
 
-/// Root mean square of the errors of `runs` and of what was told of them, and the share that U holds, of every name.
+/// For every name: root mean square of the errors of `runs`, root mean square of the reported u, and the fraction of errors within U.
 fn replayed(
     runs: u32,
     names: &[&'static str],
@@ -78,7 +78,7 @@ fn replayed(
     names.iter().zip(sums).map(of).collect()
 }
 
-/// Each hold loses 20 N: ten quanta of the cell.
+/// Each hold loses 20 N: ten quantization steps of the cell.
 #[test]
 fn replays_of_holds_on_a_coarse_load_cell_are_held() {
     let quantum = 2.0;
@@ -175,7 +175,7 @@ fn replays_of_forces_that_relax_with_the_logarithm_are_held() {
     }
 }
 
-/// The slope of relaxed forces over places that are read to a quantum.
+/// The slope of relaxed forces over positions that are read with a finite resolution.
 #[test]
 fn replays_of_holds_on_a_coarse_transducer_are_held() {
     let link = VirtualLink {
@@ -212,7 +212,8 @@ fn replays_of_holds_on_a_coarse_transducer_are_held() {
     }
 }
 
-/// Of two readings: noise, rounding and calibration, each by itself and together; of a rig that declares nothing, nothing.
+/// Uncertainty from two readings: noise, rounding and calibration, each alone and together. A rig that declares none of them has no
+/// contribution.
 #[test]
 fn a_secant_is_as_uncertain_as_its_readings() {
     let plan = |state: &mut u64, link: VirtualLink| {

@@ -1,5 +1,5 @@
-//! Uncertainty of frames whose matrices are uncertain as a whole, and of the lists of a row of blows: against the virtual rig run
-//! again with one input moved.
+//! Uncertainty of frames whose matrices have one common uncertainty, and of the lists of an impact series. It is compared with re-runs of
+//! the virtual rig with one input perturbed.
 
 use super::frame::{constant, entry, from, shaken, storey};
 use crate::plan::formula::ResultValue;
@@ -29,7 +29,7 @@ fn of_matrices() -> Plan {
     plan
 }
 
-/// The plan with its matrices times these factors; the rig bends the one that it was built of.
+/// The plan with its matrices times these factors; the rig keeps its original specimen.
 fn run_on(rig_of: &Plan, plan: &Plan) -> Record {
     crate::run::run(plan, virtual_rig(rig_of).as_mut(), &mut Unwatched)
 }
@@ -72,7 +72,7 @@ fn a_matrix_moves_as_a_whole() {
             let (value, parts) = entry(&told, name, place);
             let found = 0.5 * (entry(&up, name, place).0 - entry(&down, name, place).0);
             let foretold = from(&parts, source);
-            // The ends of steps are told of the reruns, what is between them here.
+            // The re-runs report the values at the ends of steps; the values between them are reported here.
             assert!(
                 (found - foretold).abs() < 2e-4 * value.abs(),
                 "{name}[{place}] by {source:?}: {foretold}, of reruns {found}"
@@ -81,7 +81,7 @@ fn a_matrix_moves_as_a_whole() {
         }
     }
     assert!(compared >= 9, "only {compared} that are any");
-    // T = 2π√(M/K) of both modes, and what is struck is as heavy as the whole.
+    // T = 2π√(M/K) of both modes; the mass hit by the striker scales with the whole matrix.
     for mode in 0..2 {
         let (value, parts) = entry(&told, "periods", mode);
         assert!((combined(&parts).unwrap() / value - 0.5 * 0.01_f64.hypot(0.02)).abs() < 1e-4);
@@ -90,7 +90,7 @@ fn a_matrix_moves_as_a_whole() {
     assert!((frame.total_mass_uncertainty() - 0.035).abs() < 1e-12);
 }
 
-/// An elastic frame of two storeys, struck at three speeds.
+/// An elastic frame of two storeys, hit at three velocities.
 fn row(velocities: &[f64], striker: f64) -> Plan {
     let mut plan = rising(velocities, Between::Unload);
     let ProcedureKind::Escalate(row) = &mut plan.procedures[0].kind else {
@@ -121,8 +121,8 @@ fn parts_of(record: &Record, name: &str, place: usize) -> (f64, Vec<Contribution
     }
 }
 
-/// Every list of a row of blows on a storey: half the difference of rows with a heavier and a lighter, a faster and a slower
-/// striker.
+/// Every list of an impact series on a storey: half the difference between series with a heavier and a lighter striker, or with a faster
+/// and a slower one.
 #[test]
 fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
     let velocities = [0.4, 0.7, 1.0];
@@ -130,7 +130,7 @@ fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
     plan.strikers[0].mass_uncertainty = 0.1;
     plan.strikers[0].velocity_uncertainty = 0.01;
     let told = run_unwatched(&plan);
-    // The striker's stated velocity is 1 m/s: each blow is as uncertain in proportion.
+    // The striker's stated velocity is 1 m/s: the uncertainty of each impact is proportional to its velocity.
     let faster = |by: f64| {
         run_unwatched(&row(
             &velocities.map(|velocity| velocity * (1.0 + by)),
@@ -173,7 +173,7 @@ fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
         }
     }
     assert!(compared >= 24, "only {compared} that are any");
-    // Where an elastic frame rests is no matter of its striker.
+    // The unloaded position of an elastic frame does not depend on its striker.
     let (rest, parts) = parts_of(&told, "residual_displacements", 2);
     assert!(rest.abs() < 1e-12 && parts.is_empty(), "{parts:?}");
     assert_eq!(number(&told, 0, "residual_displacement").1, None);

@@ -26,7 +26,7 @@ fn constant(value: f64) -> Formula {
     Formula::Constant(value)
 }
 
-/// About 300 N/m and 20 N, whose newtons are `force` and whose metres `displacement` of those.
+/// A specimen of about 300 N/m and 20 N, whose force scale is `force` and whose displacement scale is `displacement`.
 fn specimens(force: f64, displacement: f64) -> Vec<(&'static str, Behaviour)> {
     let stiffness = 300.0 * force / displacement;
     let yield_force = 20.0 * force;
@@ -124,7 +124,7 @@ fn laws() -> Vec<(&'static str, Contact)> {
     ]
 }
 
-/// What a blow comes to on the virtual specimen.
+/// Results of an impact on the virtual specimen.
 fn truth(
     input: &ImpactInput,
     until: Until,
@@ -144,24 +144,24 @@ struct Cell {
     source: Source,
     outcome: &'static str,
     told: Contribution,
-    /// The larger change of the two sides.
+    /// The larger change of the two perturbations.
     truth: f64,
     value: f64,
 }
 
-/// How hard, for how long, and how uncertain.
+/// Intensity, duration and uncertainty of an impact.
 #[derive(Clone, Copy, Debug)]
 struct Blow {
-    /// kg
+    /// \[kg\]
     striker: f64,
-    /// m/s
+    /// \[m/s\]
     velocity: f64,
-    /// s
+    /// \[s\]
     time_step: f64,
-    /// s
+    /// \[s\]
     duration: f64,
     until: Until,
-    /// Standard uncertainty of each source, of its value.
+    /// Relative standard uncertainty of each source.
     share: f64,
 }
 
@@ -246,23 +246,23 @@ fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
     found
 }
 
-/// Shares that a run is held to.
+/// Fractions that a run must reach.
 #[derive(Clone, Copy, Debug)]
 struct Held {
-    /// Of all contributions on specimens that keep Masing's rule, those that are called smooth.
+    /// Fraction of the contributions that are marked smooth, on specimens that follow Masing's rule.
     smooth: f64,
-    /// Of what a source truly does on such a specimen, what one that is marked contributes at least: what jumps need not be at its worst
-    /// where it is looked at.
+    /// Minimum of a marked contribution on such a specimen, relative to the true effect of its source. A jump need not have its maximum
+    /// where it is evaluated.
     marked: f64,
 }
 
-/// Elements in parallel, by their place among the specimens.
+/// Elements in parallel, by their index among the specimens.
 fn keeps_masing(specimen: usize) -> bool {
     specimen < 4
 }
 
-/// A source that is called smooth contributes what it truly does, to a quarter less and a half more; one that is marked, at
-/// least its share of it. Nothing is promised of one that is marked on a specimen that does not keep Masing's rule.
+/// The contribution of a smooth source equals its true effect, within −25 % and +50 %. A marked one is at least its fraction of the true
+/// effect. For specimens that do not follow Masing's rule, marked contributions are not checked.
 fn judge(blow: Blow, specimens_and_laws: &[(usize, usize)], held: Held) {
     let (mut smooth, mut all) = (0.0, 0.0);
     for (specimen, law) in specimens_and_laws {
@@ -315,7 +315,7 @@ const STRUCK: Blow = Blow {
     share: 1e-3,
 };
 
-/// A heavy striker that hits again and again on the way out.
+/// A heavy striker that hits repeatedly during the outward motion.
 #[test]
 fn blow_upon_blow_contributes_what_it_truly_does() {
     judge(
@@ -339,7 +339,7 @@ fn blow_upon_blow_contributes_what_it_truly_does() {
     );
 }
 
-/// A light one, after which the structure swings back through its rest, yields backwards and comes again.
+/// A light striker. Afterwards the structure moves back through its rest position, yields in reverse and returns.
 #[test]
 fn swinging_back_contributes_what_it_truly_does() {
     let swinging = Blow {
@@ -370,7 +370,7 @@ fn swinging_back_contributes_what_it_truly_does() {
     );
 }
 
-/// Bilinear and degrading by Hertz's contact, bilinear by restitution, in steps of a tenth.
+/// Bilinear and degrading models with Hertz's contact, a bilinear one with restitution, in steps of a tenth.
 #[test]
 fn finer_steps_contribute_as_much() {
     let fine = Blow {
@@ -388,8 +388,8 @@ fn finer_steps_contribute_as_much() {
     );
 }
 
-/// Readings of a specimen that yields and is struck again, 0.2 N uncertain each: what they make of the largest displacement is
-/// the scatter of runs that differ in them alone, and the velocity makes of it what it does of one that is read exactly.
+/// Readings of a specimen that yields and is hit again, each with u = 0.2 N. Their effect on the largest displacement equals the scatter
+/// of runs that differ only in these readings. The effect of the velocity equals that of a run with exact readings.
 #[test]
 fn noise_does_not_hide_what_an_input_does() {
     const RUNS: u64 = 40;
@@ -430,7 +430,7 @@ fn noise_does_not_hide_what_an_input_does() {
         .sum::<f64>()
         / (count - 1.0))
         .sqrt();
-    // Each record foretells by its own knees, and those are read as uncertainly as the rest.
+    // Each record predicts with its own yield points, which have the same reading uncertainty as the other points.
     for record in &records[..8] {
         let parts = &record.procedures[0]
             .result("max_displacement")

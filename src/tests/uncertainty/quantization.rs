@@ -1,4 +1,4 @@
-//! What rounding leaves open of a fit, against replays on rigs that differ in where the zero of their grid lies.
+//! Effect of rounding on a fit. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{
@@ -10,7 +10,7 @@ use crate::tests::testing::{elastic_plan, ramp, result_of, run_unwatched};
 use crate::uncertainty::{Known, Source, known};
 
 const STIFFNESS: f64 = 3e5;
-/// m
+/// \[m\]
 const REACH: f64 = 1e-3;
 
 fn told(record: &Record, procedure: usize, name: &'static str) -> (f64, Known) {
@@ -31,7 +31,7 @@ fn told(record: &Record, procedure: usize, name: &'static str) -> (f64, Known) {
     )
 }
 
-/// `points` steps to the reach from `begin` (m), on a specimen of `stiffness` (N/m).
+/// `points` steps to the reach from `begin` \[m\], on a specimen of `stiffness` \[N/m\].
 fn ramp_plan(points: u32, begin: f64, stiffness: f64, link: VirtualLink) -> Plan {
     let place = |point| Formula::Constant(begin + REACH * f64::from(point) / f64::from(points));
     let kind = ProcedureKind::StiffnessRamp(StiffnessRamp {
@@ -43,7 +43,7 @@ fn ramp_plan(points: u32, begin: f64, stiffness: f64, link: VirtualLink) -> Plan
     plan
 }
 
-/// What replays came to: root mean square of the errors and of what was told of them, and the share that U holds.
+/// Results of replays: root mean square of the errors, root mean square of the reported u, and the fraction of errors within U.
 #[derive(Debug)]
 struct Replayed {
     error: f64,
@@ -68,8 +68,8 @@ fn replayed(count: u32, mut replay: impl FnMut(&mut u64) -> (f64, Known)) -> Rep
     }
 }
 
-/// From three quanta over the whole ramp to 77, of 3 points to 40: U holds 95 % and more, and u is no less than the scatter of the
-/// replays and no more than three times it.
+/// From three quantization steps over the whole ramp to 77, and from 3 points to 40. U covers at least 95 %. u is at least the scatter of
+/// the replays and at most three times that scatter.
 #[test]
 fn replays_of_a_ramp_on_a_coarse_load_cell_are_held() {
     for points in [3, 5, 12, 40] {
@@ -99,14 +99,14 @@ fn replays_of_a_ramp_on_a_coarse_load_cell_are_held() {
     }
 }
 
-/// The same of the displacement, with what it makes of the intercept.
+/// The same for the displacement, including its effect on the intercept.
 #[test]
 fn replays_of_a_ramp_on_a_coarse_transducer_are_held() {
     for (points, quanta) in [(5, 5.3), (10, 33.3)] {
         let quantum = REACH / quanta;
         for name in ["stiffness", "intercept_force"] {
             let found = replayed(150, |state| {
-                // The way is as long as asked for but for part of a quantum, and begins anywhere.
+                // The path has the required length except for part of a quantization step, and begins at any position.
                 let begin = uniform(state) * quantum;
                 let link = VirtualLink {
                     resolution: quantum,
@@ -136,8 +136,8 @@ fn replays_of_a_ramp_on_a_coarse_transducer_are_held() {
     }
 }
 
-/// Readings in step with the grid lie on one line to the last digit: what is told of K is what a quantum makes of it, and the budget
-/// says so. Of a quantum of nothing, nothing.
+/// Readings in phase with the grid lie exactly on one line. The reported uncertainty of K is then the effect of one quantization step,
+/// and the budget states this. A resolution of zero has no effect.
 #[test]
 fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
     let link = VirtualLink {
@@ -170,12 +170,12 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
     )));
     let ideal = run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, VirtualLink::default()));
     assert!(told(&ideal, 0, "stiffness").1.standard < 1e-6);
-    // Figures and reports tell the fit's error by the same.
+    // Figures and reports use the same uncertainty of the fit.
     let History::Ramp(ramp) = &record.procedures[0].history else {
         panic!()
     };
     assert!((ramp.fit.unwrap().slope_error / known.standard - 1.0).abs() < 1e-9);
-    // And noise that is larger than the quantum is told as the scatter that it is.
+    // Noise that is larger than the quantization step is reported as scatter.
     let noisy = |force_resolution| VirtualLink {
         noise: 30.0,
         seed: 3,
@@ -196,7 +196,7 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
     );
 }
 
-/// c and the friction of a sweep on a cell whose quantum is a third of what the damper makes, or three times that.
+/// c and the friction of a sweep on a coarse cell. Its resolution is a third of the damper force, or three times that force.
 #[test]
 fn replays_of_a_sweep_on_a_coarse_load_cell_are_held() {
     for quantum in [1.3, 12.0] {
@@ -234,7 +234,7 @@ fn replays_of_a_sweep_on_a_coarse_load_cell_are_held() {
     }
 }
 
-/// Both stiffnesses and the knee of a ramp past yield, of which each stretch is a few quanta.
+/// Both stiffnesses and the yield point of a ramp past yield, each segment of which is a few quantization steps.
 #[test]
 fn replays_of_a_bilinear_ramp_on_a_coarse_load_cell_are_held() {
     for name in ["stiffness", "hardened_stiffness", "yield_force"] {
@@ -270,7 +270,7 @@ fn replays_of_a_bilinear_ramp_on_a_coarse_load_cell_are_held() {
     }
 }
 
-/// What follows from K knows the rounding of it once: K − K is exact.
+/// A value derived from K includes its rounding once: K − K is exact.
 #[test]
 fn rounding_is_a_source_like_any_other() {
     let link = VirtualLink {

@@ -17,7 +17,7 @@ use crate::tests::procedures::frame::{close, three};
 use crate::tests::testing::elastic_plan;
 use crate::uncertainty::{Contribution, Source, combined};
 
-/// What the cell of each axis makes of newtons, what it reads of none (N), and what its transducer makes of metres.
+/// Force factor of the cell, its zero error \[N\], and displacement factor of the transducer, for each axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wrong {
     pub force: f64,
@@ -31,7 +31,7 @@ pub(crate) const RIGHT: Wrong = Wrong {
     displacement: 1.0,
 };
 
-/// A rig that goes, and reads, by wrong factors.
+/// A rig that moves and reads with wrong factors.
 pub(crate) struct Misread {
     pub rig: Box<dyn Rig>,
     pub axes: Vec<Wrong>,
@@ -115,7 +115,7 @@ impl Rig for Misread {
     }
 }
 
-/// The specimen pushed through `places` (m, an entry an axis) and then unloaded by a rig that reads so.
+/// The specimen pushed through `places` (m, one entry per axis) and then unloaded by a rig with these errors.
 fn rests(plan: &Plan, places: &[&[f64]], axes: Vec<Wrong>, within: Option<f64>) -> Rest {
     let mut rig = virtual_rig(plan);
     for place in places {
@@ -164,8 +164,8 @@ fn calibrated(mut plan: Plan) -> Plan {
     plan
 }
 
-/// One degree of freedom, of specimens that come back as stiff as they were born and of such that do not: half the difference
-/// of what rigs find whose cell or transducer is off by ± its uncertainty.
+/// One degree of freedom, for specimens that unload with their initial stiffness and for others. Expected is half the difference between
+/// rigs whose cell or transducer has an error of ± its uncertainty.
 #[test]
 fn a_rig_with_calibration_errors_unloads_as_predicted() {
     let specimens = [
@@ -223,7 +223,7 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
                 "{name} by {source:?}: {found} m, foretold {foretold} m of {u} m"
             );
         }
-        // Where it carries next to nothing the zero is all that is uncertain of what it carries.
+        // If the specimen carries almost no load, only the zero contributes to the uncertainty of that load.
         assert!(
             (combined(&force).unwrap() / 0.5 - 1.0).abs() < 1e-6,
             "{name}: {force:?}"
@@ -231,8 +231,8 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
     }
 }
 
-/// Three storeys that yielded: a false zero of the top floor's cell moves each drift by −z/k of its storey, one of the
-/// lowest floor's that of the lowest storey alone; places add up the drifts below.
+/// Three storeys that yielded. A zero error z of the top floor's cell changes the drift of each storey by −z/k. One of the lowest floor
+/// changes that of the lowest storey only. Displacements add the drifts below.
 #[test]
 fn a_false_zero_of_a_floor_moves_the_storeys_below_it() {
     let plan = calibrated(three(0.1));
@@ -270,7 +270,7 @@ fn a_false_zero_of_a_floor_moves_the_storeys_below_it() {
             );
         }
     }
-    // The transducer of a floor is in the drifts of its storey and of the one above, against each other.
+    // The transducer of a floor affects the drifts of its storey and of the storey above, with opposite signs.
     for axis in 0..3 {
         let of_entry = |entry: usize| {
             let parts: Vec<Contribution> = drifts
@@ -300,8 +300,8 @@ fn scatter(values: &[f64]) -> f64 {
         .sqrt()
 }
 
-/// Noise of the cells: runs that differ in nothing but the seed. The deviation of a deviation of n normal numbers is
-/// 1/√(2(n − 1)) of it: within three of them.
+/// Noise of the cells: runs that differ only in the seed. The relative standard deviation of a standard deviation of n normal numbers is
+/// 1/√(2(n − 1)); the limit is three times this.
 #[test]
 fn unloaded_positions_scatter_as_predicted() {
     const RUNS: u32 = 200;
@@ -334,7 +334,8 @@ fn unloaded_positions_scatter_as_predicted() {
     }
 }
 
-/// Nothing uncertain, nothing told; where a load was left that readings can tell, its way to none is uncertain too.
+/// Without uncertain inputs, no uncertainty is reported. If a measurable load is left, the distance to the unloaded position is also
+/// uncertain.
 #[test]
 fn what_was_left_counts_where_anything_is_uncertain() {
     let plan = three(0.5);
@@ -362,7 +363,7 @@ fn what_was_left_counts_where_anything_is_uncertain() {
             of(&rough.contributions_at_floor(floor)[0], source),
             rough.displacement[floor] - fine.displacement[floor],
         );
-        // Along hk it is farther than along the stiffness of the whole of the last move.
+        // Along hk it is farther than along the secant stiffness of the whole last move.
         assert!(
             off.abs() < 4.0 * left.abs() + 1e-9 && left.abs() < 4.0 * off.abs() + 1e-9,
             "floor {floor}: {off} m, {left} m"

@@ -1,5 +1,5 @@
-//! What the length of the time step does to the results: closed forms and the same runs in far finer steps. And inputs that cannot
-//! be moved by their uncertainty to both sides.
+//! Effect of the length of the time step on the results: closed forms, and the same runs with much smaller steps. Also inputs that cannot
+//! be perturbed by ±u in both directions.
 
 pub(crate) use crate::plan::formula::{Formula, Stated};
 use crate::plan::{
@@ -14,7 +14,7 @@ const STIFFNESS: f64 = 327.65;
 const STRIKER: f64 = 10.0;
 const MASS: f64 = 1.0;
 
-/// Perfectly plastic: both go on with V = `Ms·V0/(M + Ms)`.
+/// Perfectly plastic: both bodies continue with V = `Ms·V0/(M + Ms)`.
 fn sticking(time_step: f64) -> Plan {
     let contact = Contact::Restitution {
         coefficient: Formula::Constant(0.0),
@@ -27,7 +27,7 @@ fn sticking(time_step: f64) -> Plan {
     elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)])
 }
 
-/// What the time step contributes to a result.
+/// Contribution of the time step to a result.
 fn of_step(record: &Record, name: &str) -> f64 {
     let parts = &record.procedures[0].result(name).unwrap().contributions;
     parts
@@ -36,7 +36,7 @@ fn of_step(record: &Record, name: &str) -> f64 {
         .map_or(0.0, |part| part.amount.abs())
 }
 
-/// X = `Ms·V0/√(K(M + Ms))`, a quarter period and the energy of both: U holds them at every step, and is small at the default one.
+/// X = `Ms·V0/√(K(M + Ms))`, a quarter period and the energy of both. U covers the error at every step, and is small at the default step.
 #[test]
 fn an_expanded_uncertainty_holds_the_closed_form_at_any_step() {
     let total = MASS + STRIKER;
@@ -66,7 +66,7 @@ fn an_expanded_uncertainty_holds_the_closed_form_at_any_step() {
     assert!(of_step(&run_unwatched(&sticking(critical)), "max_displacement") > 1e-3 * peak);
 }
 
-/// The same with noise, which the path that is taken again has in all its steps.
+/// The same with noise, which the re-integrated path contains in all its steps.
 #[test]
 fn noise_is_not_taken_for_the_time_step() {
     let mut plan = sticking(2e-3);
@@ -122,7 +122,7 @@ fn shaken(time_step: f64) -> Record {
     run_unwatched(&plan)
 }
 
-/// Two elastic storeys on moving ground against the same in steps of 62.5 µs.
+/// Two elastic storeys on moving ground, compared with the same run in steps of 62.5 µs.
 #[test]
 fn a_frame_is_known_no_better_than_its_time_step_lets_it_be() {
     let drifts = |record: &Record| {
@@ -148,7 +148,7 @@ fn a_frame_is_known_no_better_than_its_time_step_lets_it_be() {
     }
 }
 
-/// A striker that sticks, on a specimen whose damping is stated with an uncertainty.
+/// A plastic impact on a specimen whose damping is stated with an uncertainty.
 fn damped(damping: f64, uncertainty: f64) -> Record {
     let mut plan = sticking(2e-3);
     let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
@@ -172,7 +172,7 @@ fn of_damping(record: &Record, name: &str) -> f64 {
         .amount
 }
 
-/// c = 1 ± 2 N·s/m: below 0 is no damping, and u is what 3 N·s/m do.
+/// c = 1 ± 2 N·s/m: damping below 0 is invalid, and u is the effect of 3 N·s/m.
 #[test]
 fn an_input_that_would_pass_its_bound_is_moved_to_the_other_side() {
     let peak = |damping: f64| {
@@ -194,7 +194,8 @@ fn an_input_that_would_pass_its_bound_is_moved_to_the_other_side() {
     assert!((central / (0.5 * (peak(7.0) - peak(3.0))) - 1.0).abs() < 0.02);
 }
 
-/// c = −0.5 ± 2 N·s/m, which may well be 0: the blow runs with 0, and 0 + 2 is moved to. −5 ± 2 is no damping, and no fault of a rig's.
+/// c = −0.5 ± 2 N·s/m is compatible with 0: the impact runs with 0, and the perturbed value is 0 + 2. −5 ± 2 is not valid damping, and
+/// not a fault of the rig.
 #[test]
 fn a_damping_that_is_not_significantly_below_none_is_none() {
     let peak = |damping: f64| {

@@ -7,7 +7,7 @@ use crate::rig::{Rig, VirtualRig};
 use crate::run::{Unwatched, run};
 use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
 
-/// ζ = c/(2√(KM)) with nothing uncertain but M: u(ζ) = ζ u(M)/(2M).
+/// ζ = c/(2√(KM)) with only M uncertain: u(ζ) = ζ u(M)/(2M).
 #[test]
 fn the_mass_of_the_specimen_is_in_its_damping_ratio() {
     let mut plan = ramp_then_sweep();
@@ -38,7 +38,7 @@ fn an_ideal_ramp_and_sweep_give_back_the_specimen() {
     };
     near(0, "stiffness", 3e5);
     near(0, "intercept_force", 3.0);
-    // The first increment is where friction sets in: (30 + 3) N over 0.1 mm.
+    // Friction acts from the first increment on: (30 + 3) N over 0.1 mm.
     near(0, "secant_stiffness", 3.3e5);
     near(0, "max_force", 303.0);
     near(0, "max_displacement", 1e-3);
@@ -93,8 +93,8 @@ fn the_return_closes_the_loop_and_friction_is_its_energy() {
     assert_eq!(steps.len(), 2 * 20);
     assert_eq!(steps.iter().filter(|step| step.returning).count(), 20);
     assert_eq!(steps[19].command, 0.0);
-    // Trapezoids through the readings, by hand. Out and back of 1 mm with ±0.5 N is 1 mJ, less the corners: half an
-    // increment at the start (from 0 N, or from −0.5 N the second time) and a whole one at the turn.
+    // Trapezoids through the readings, by hand. Out and back of 1 mm with ±0.5 N is 1 mJ, minus the corners. At the start this is half an
+    // increment (from 0 N, or from −0.5 N the second time). At the reversal it is a whole one.
     let first: f64 = 0.5 * 1e-3 * 2.0 - 0.5 * 0.5 * 1e-4 - 0.5 * 1e-4;
     let second = first - 0.5 * 0.5 * 1e-4;
     let energy = number(&record, 0, "loop_energy").0.unwrap();
@@ -177,7 +177,7 @@ fn a_lagging_actuator_does_not_bias_the_damping() {
     assert!((damping / 400.0 - 1.0).abs() < 0.005, "{damping}");
 }
 
-/// At 10 mm/s and a lag of 20 ms the piston trails by 0.2 mm where a stroke ends: it must come to rest before what follows.
+/// At 10 mm/s and a lag of 20 ms the piston trails by 0.2 mm at the end of a pass. It must come to rest before the next move.
 #[test]
 fn a_sweep_ends_at_rest_at_its_start() {
     let mut plan = ramp_then_sweep();
@@ -193,6 +193,6 @@ fn a_sweep_ends_at_rest_at_its_start() {
     let record = run(&plan, &mut rig, &mut Unwatched);
     assert_eq!(record.outcome, Outcome::Completed);
     let left = rig.read().unwrap().displacement[0];
-    // The settling time is solved for, so that the piston ends on the edge of the band, to rounding.
+    // The settling time is calculated so that the piston ends on the edge of the band, to rounding.
     assert!(left.abs() <= 1e-7 * (1.0 + 1e-9), "left at {left} m");
 }

@@ -28,7 +28,7 @@ fn a_violated_limit_holds_the_rig_and_keeps_the_record() {
     assert!((number(&record, 0, "stiffness").0.unwrap() - 3e5).abs() < 1e-3);
     let last = record.events.last().unwrap();
     assert_eq!((last.kind, last.step), (EventKind::LimitBreach, Some(5)));
-    // The force limit is found out by reading.
+    // The force limit is detected by reading.
     plan.limits = crate::plan::Limits {
         force: Interval {
             low: -1e3,
@@ -51,7 +51,7 @@ fn a_violated_limit_holds_the_rig_and_keeps_the_record() {
         reason.split_whitespace().next(),
         by_hand.to_string().split_whitespace().next()
     );
-    // The reading that broke it is the last row, and what the specimen was taken to.
+    // The reading that exceeded the limit is the last row; the specimen reached it.
     let steps = ramp_steps(&record.procedures[0].history);
     assert_eq!((steps.len(), steps[6].command), (7, 7.0 * steps[0].command));
     assert!(
@@ -72,7 +72,7 @@ fn a_violated_limit_holds_the_rig_and_keeps_the_record() {
 #[test]
 fn a_violated_limit_inside_a_stroke_keeps_the_readings_before_it() {
     let mut plan = ramp_then_sweep();
-    // The ramp ends at 303 N; damping lifts the stroke at 5 mm/s to 305 N.
+    // The ramp ends at 303 N; damping raises the pass at 5 mm/s to 305 N.
     plan.limits.force = Interval {
         low: -1e3,
         high: 304.0,
@@ -237,7 +237,7 @@ fn an_operator_can_stop_after_any_step_and_at_an_inspection() {
     assert_eq!(at_inspection.procedures.len(), 2);
 }
 
-/// Pauses after the second step, and says something when asked again.
+/// Pauses after the second step, and adds a comment at the next inspection.
 #[derive(Default)]
 struct Pausing {
     steps: u64,

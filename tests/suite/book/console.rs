@@ -1,5 +1,5 @@
-//! The console blocks of the book: each `$ ` line is run by `sh` in a folder of the page, which holds a copy of `plans/`. What it
-//! prints on both streams must be what the page shows. A line `...` stands for any lines.
+//! The console blocks of the book. `sh` runs each `$ ` line in a folder of the page, which contains a copy of `plans/`. The output on
+//! both streams must equal the block of the page. A line `...` represents any lines.
 
 use std::fs;
 use std::path::Path;
@@ -20,7 +20,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// What a command prints, standard error among it, without the progress of writing.
+/// Output of a command, including standard error, without the progress of writing.
 fn printed(command: &str, folder: &Path) -> Vec<String> {
     let program = Path::new(env!("CARGO_BIN_EXE_psd"));
     let path = format!(
@@ -58,7 +58,7 @@ fn without_digests(line: &str) -> String {
         .join(" ")
 }
 
-/// Whether lines are as shown; `...` stands for any number of them.
+/// Whether lines equal the expected ones; `...` represents any number of lines.
 fn matches(shown: &[String], printed: &[String]) -> bool {
     match (shown.first().map(String::as_str), printed.first()) {
         (None, None) => true,
@@ -70,7 +70,7 @@ fn matches(shown: &[String], printed: &[String]) -> bool {
     }
 }
 
-/// What the page is to show: all of it, or as many first and last lines around `...` as it showed.
+/// Text that the page must show: the whole output, or as many first and last lines around `...` as before.
 fn rewritten(shown: &[String], printed: Vec<String>) -> Vec<String> {
     let is_gap = |line: &String| line == "...";
     let (Some(first), Some(last)) = (
@@ -89,7 +89,7 @@ fn rewritten(shown: &[String], printed: Vec<String>) -> Vec<String> {
     lines
 }
 
-/// The page with every console block run; where it differs from the page, the block is wrong.
+/// The page with the output of every console block. A block that differs from the page is wrong.
 fn run(page: &Path) -> (String, String) {
     let text = super::text(page);
     let folder = TempDir::new().expect("a folder can be made");

@@ -1,4 +1,4 @@
-//! The figures of the book. `figures/PLAN-FIGURE.svg` is the figure of that name which the plan draws on its virtual rig.
+//! The figures of the book. `figures/PLAN-FIGURE.svg` is the figure with that name that the plan draws on its virtual rig.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -81,7 +81,7 @@ fn every_column_is_explained_and_listed() {
     }
 }
 
-/// Columns of words, and those of tables that no procedure has.
+/// Text columns, and columns of tables that do not belong to a procedure.
 const TEXTS: [&str; 2] = ["zero_drift", "force_state"];
 
 /// The type of a property, and the definition that it refers to.

@@ -1,9 +1,9 @@
-//! The messages that the page on troubleshooting names are those of the program: the parts between `…` are in its sources.
+//! The messages in the page on troubleshooting are messages of the program: the parts between `…` occur in its sources.
 
 use std::fs;
 use std::path::Path;
 
-/// The sources, with strings that go over several lines joined.
+/// The sources, with multi-line strings joined.
 fn sources() -> String {
     let (mut folders, mut text) = (
         vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")],

@@ -1,5 +1,6 @@
-//! The book in `docs/`: every page is in the summary, every link leads to a page and a heading, every plan checks, every console
-//! block shows what psd prints. `PSD_BLESS=1 cargo test --test suite book` writes console blocks, figures and generated parts again.
+//! The book in `docs/`: every page is in the summary, every link leads to a page and a heading, every plan passes its check. Every
+//! console block shows the output of psd. `PSD_BLESS=1 cargo test --test suite book` regenerates console blocks, figures and generated
+//! parts.
 
 mod console;
 mod figures;
@@ -15,7 +16,7 @@ fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
 }
 
-/// Whether the tests write what they would compare.
+/// Whether the tests write the expected files instead of comparing them.
 fn bless() -> bool {
     std::env::var_os("PSD_BLESS").is_some()
 }
@@ -115,7 +116,7 @@ fn anchors(page: &Path) -> Vec<String> {
     anchors
 }
 
-/// A path without its `..`; none where it leaves the book.
+/// A path without its `..`; `None` if it leaves the book.
 fn resolved(page: &Path, target: &str) -> Option<PathBuf> {
     let mut path = page.parent().unwrap_or(Path::new("")).to_owned();
     for part in Path::new(target).components() {

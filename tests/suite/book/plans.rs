@@ -1,5 +1,5 @@
-//! The plans of the book. A fence names what its block is: `psd` alone a whole plan, `psd plans/NAME.psd` an excerpt of that file,
-//! `psd E301` a plan with that error, `psd fragment` a part that is not checked; any other word names a whole plan.
+//! The plans of the book. The words after a fence describe its block. `psd` alone marks a whole plan, `psd plans/NAME.psd` an excerpt of
+//! that file. `psd E301` marks a plan with that error, `psd fragment` a part that is not checked. Any other word names a whole plan.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ impl Loader for Beside {
     }
 }
 
-/// The rig to name for a plan that has real ones alone.
+/// The rig to select for a plan that has only real rigs.
 fn real_rig(plan: &str) -> Option<String> {
     let real = plan.contains("serial(") || plan.contains("tcp(");
     let name = plan.split("\nrig ").nth(1)?.split_whitespace().next()?;

@@ -1,5 +1,5 @@
-//! The style of the book: short sentences, and no idiom that the glossary replaces. Code, tables, headings and generated parts
-//! do not count.
+//! The style of the book: short sentences, and no idiom that the glossary replaces. Code, tables, headings and generated parts are not
+//! checked.
 
 use std::path::Path;
 

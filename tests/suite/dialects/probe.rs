@@ -1,5 +1,5 @@
-//! `psd rig probe` and `monitor` in every dialect, and what they say where nobody, or somebody else, answers. In: the rigs of
-//! `rigs` and their stand-ins. Out: nothing has moved, which the log of every byte proves.
+//! `psd rig probe` and `monitor` with every protocol driver. Further tests check their messages without a reply, or with replies of a
+//! different device. In: the rigs of `rigs` and their emulators. Out: nothing moved; the log of every byte verifies this.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use super::rigs::{CASES, Case, by_name};
 use super::{ANSWERS, Process, SILENT, ready, write_plan};
 
-/// Exit code and everything said.
+/// Exit code and all output.
 struct Said {
     code: Option<i32>,
     out: String,
@@ -31,7 +31,7 @@ fn psd(folder: &Path, arguments: &[&str]) -> Said {
     }
 }
 
-/// A stand-in of the case for as long as it lives.
+/// The emulator of a case, which ends with this value.
 fn stand_in(folder: &Path) -> Process {
     let simulate = [
         "rig",
@@ -51,7 +51,7 @@ fn stand_in(folder: &Path) -> Process {
     simulator
 }
 
-/// Targets that the stand-in was given.
+/// Targets that the emulator received.
 fn moves(folder: &Path) -> usize {
     let bytes = fs::read_to_string(folder.join("bytes.txt")).expect("a log");
     assert!(bytes.contains("opened"), "nobody came");
@@ -61,7 +61,7 @@ fn moves(folder: &Path) -> usize {
         .count()
 }
 
-/// Does `what` for every case at once; all that failed are told.
+/// Runs `what` for every case in parallel; all failures are reported.
 fn each(cases: &[&Case], what: impl Fn(&Case) + Sync) {
     let failed: Vec<&str> = std::thread::scope(|scope| {
         let running: Vec<_> = cases
@@ -143,7 +143,7 @@ fn numbers(row: &str) -> Vec<f64> {
         .collect()
 }
 
-/// What somebody says who spoke to a rig that does not listen: whose fault it is, at which place of the plan.
+/// The message for a rig that does not understand the driver: the device and its location in the plan.
 fn not_understood(said: &Said, place: &str) {
     assert_eq!(
         (said.code, said.out.as_str()),
@@ -173,10 +173,10 @@ fn not_understood(said: &Said, place: &str) {
     );
 }
 
-/// A device that speaks another dialect at the plan's port: every driver gives up, says so, and has moved nothing.
+/// A device with a different protocol at the plan's port: every driver gives up, reports this, and has moved nothing.
 #[test]
 fn a_rig_of_another_dialect_is_not_taken_for_ours() {
-    // The stand-in's rig, and the one that the plan is changed to.
+    // The rig of the emulator, and the rig in the changed plan.
     let pairs = [
         ("native", "grbl with scpi", "actuator = serial"),
         ("native", "instron", "link = serial"),
@@ -193,7 +193,7 @@ fn a_rig_of_another_dialect_is_not_taken_for_ours() {
                 write_plan(by_name(there), folder, SILENT);
                 let _simulator = stand_in(folder);
                 write_plan(by_name(ours), folder, SILENT);
-                // A load cell of its own has a line, on which nobody talks: the actuator is met first.
+                // A separate load cell has a silent line: the actuator is addressed first.
                 let _nobody =
                     psd::emulator::PseudoTerminal::linked(&folder.join("b")).expect("a line");
                 let said = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
@@ -204,7 +204,7 @@ fn a_rig_of_another_dialect_is_not_taken_for_ours() {
     });
 }
 
-/// Nothing at the port, and a port whose device is silent, as with a wrong baud rate.
+/// No device at the port, or a silent device, as with a wrong baud rate.
 #[test]
 fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -240,7 +240,7 @@ fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
         silent.told
     );
 
-    // The load cell's own port is the one that is told.
+    // The message names the port of the separate load cell.
     write_plan(by_name("grbl with hx711"), folder, SILENT);
     let other = tempfile::tempdir().expect("a folder");
     let other = other.path();
@@ -251,7 +251,7 @@ fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
     not_understood(&missing, "load_cell = serial(port: \"");
 }
 
-/// Nobody at a TCP address.
+/// No device at a TCP address.
 #[test]
 fn an_address_where_nobody_listens_says_so() {
     let folder = tempfile::tempdir().expect("a folder");

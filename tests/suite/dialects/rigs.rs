@@ -1,26 +1,25 @@
-//! The rigs of the dialect test. In: nothing. Out: what each says in a plan, and what its readings resolve. It starts
-//! nothing.
+//! The rigs of the driver test. In: nothing. Out: the text of each in a plan, and the resolution of its readings. It starts no process.
 
 use std::path::Path;
 
-/// A rig that the paper's beam is bent on.
+/// A rig that deforms the paper's beam.
 pub struct Case {
     pub name: &'static str,
-    /// `link`, or `actuator` and `load_cell`, and what only they need; FOLDER and ADDRESS stand for ports.
+    /// `link`, or `actuator` and `load_cell`, with the lines that only they need; FOLDER and ADDRESS are replaced by ports.
     pub devices: &'static str,
-    /// `resolution` in the plan, and half of it the error of a target and of a displacement reading, m.
+    /// `resolution` in the plan \[m\]; half of it is the error of a target and of a displacement reading.
     pub resolution: f64,
-    /// Half the quantum of its force readings, N.
+    /// Half the resolution of its force readings \[N\].
     pub force_error: f64,
-    /// mm/s
+    /// \[mm/s\]
     pub speed: f64,
-    /// Virtual time of the impact, ms: what is slow by nature is given few steps.
+    /// Simulated time of the impact \[ms\]: a slow protocol gets few steps.
     pub duration: f64,
-    /// It streams readings on the way.
+    /// It streams readings during a move.
     pub sweep: bool,
 }
 
-/// Every actuator and every load cell at least once. Quanta of the force are those of the dialect's text.
+/// Every actuator and every load cell at least once. The force resolutions are those of the protocol's text.
 pub const CASES: &[Case] = &[
     // Six decimals of a millimetre, three of a newton.
     Case {
@@ -57,7 +56,7 @@ pub const CASES: &[Case] = &[
             "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: scpi(1 N))\n  sign = negative\n  datum = here",
         )
     },
-    // Eight decimals of 1 m and of 15 kN; it bears ten polls a second.
+    // Eight decimals of 1 m and of 15 kN; it accepts ten polls a second.
     Case {
         force_error: 1e-4,
         duration: 4.0,
@@ -112,7 +111,7 @@ pub fn by_name(name: &str) -> &'static Case {
         .unwrap_or_else(|| panic!("no rig is called {name}"))
 }
 
-/// One that resolves a micrometre, and is as fast as the limits allow.
+/// A rig with a resolution of a micrometre, as fast as the limits allow.
 const fn serial(name: &'static str, devices: &'static str) -> Case {
     Case {
         name,
@@ -126,8 +125,8 @@ const fn serial(name: &'static str, devices: &'static str) -> Case {
 }
 
 impl Case {
-    /// The beam of the paper's section 5, in a plan that runs on this rig and on an ideal virtual one. Its velocities are
-    /// slow and its readings far apart: a machine under load must keep up with them. `reply_timeout` is in seconds.
+    /// The beam of the paper's section 5, in a plan that runs on this rig and on an ideal virtual one. Its velocities are low and its
+    /// readings far apart, so that a loaded machine can follow. `reply_timeout` is in seconds.
     pub fn plan(&self, folder: &Path, address: &str, reply_timeout: f64) -> String {
         let devices = self
             .devices
@@ -139,7 +138,7 @@ impl Case {
         );
         let watchdog = 10.0 * reply_timeout;
         let (speed, resolution, duration) = (self.speed, self.resolution * 1e6, self.duration);
-        // Half a quantum of the target and half a one of the reading, and a little for the last bit.
+        // Half the resolution for the target and half for the reading, and a small margin for the last bit.
         let band = resolution.max(1.0) * 1.5;
         let (sweep, damping) = if self.sweep {
             (SWEEP, "c.damping")

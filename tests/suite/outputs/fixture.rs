@@ -1,5 +1,5 @@
-//! A finished run made by hand: a ramp, a sweep and a rigid impact by the paper's eqs. 2–5 on a linear structure, so
-//! that outputs are tested without a rig.
+//! A finished run made by hand: a ramp, a sweep and a rigid impact by the paper's eqs. 2–5 on a linear structure. Outputs are thus tested
+//! without a rig.
 
 use psd::physics::contact::state::StepState;
 use psd::physics::identification::LineFit;
@@ -21,7 +21,7 @@ use psd::rig::Identity;
 use psd::units::Dimension;
 use psd::verdict::{Assessment, Bound, ConditionOutcome, RequirementOutcome, Verdict};
 
-/// Owns what a [`Run`] borrows.
+/// Owns the data that a [`Run`] borrows.
 pub struct Finished {
     pub plan: Plan,
     pub record: Record,
@@ -355,7 +355,7 @@ fn sweep_steps() -> Vec<SweepStep> {
         .collect()
 }
 
-/// Half the difference of out and back, as the fit has it.
+/// Half the difference of out and back, as in the fit.
 fn sweep_pairs(steps: &[SweepStep]) -> Vec<(f64, f64)> {
     let strokes = steps.chunks(100).map(|stroke| stroke.split_at(50));
     let pairs = strokes.flat_map(|(out, back)| out.iter().zip(back));
@@ -587,7 +587,7 @@ fn assessment(largest: f64, error: f64) -> Assessment {
                 margin: Some(limit - value),
                 guard_band: None,
                 margin_degrees: f64::INFINITY,
-                // Far inside its limit.
+                // Far below its limit.
                 conforms: uncertainty.map(|_| 1.0),
                 wider_than_tolerance: false,
                 reason: None,

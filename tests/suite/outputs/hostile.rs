@@ -1,5 +1,5 @@
-//! Labels that want to be something else, in every sink: page, terminal, tables, JSON, file names, manifest, record. Each
-//! must come out as a text that stands there.
+//! Labels that contain markup or control characters, in every output: page, terminal, tables, JSON, file names, manifest, record. Each
+//! must appear as plain text.
 
 use psd::golden::comparison::page;
 use psd::golden::comparison::{Comparison, Side, csv};
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use super::fixture::{Finished, finished};
 
-/// The labels, and one longer than any that a person writes.
+/// The labels, and one longer than any that a person would write.
 fn labels() -> Vec<String> {
     let mut labels: Vec<String> =
         serde_json::from_str(include_str!("../../hostile_labels.json")).unwrap();
@@ -26,7 +26,7 @@ fn labels() -> Vec<String> {
     labels
 }
 
-/// A run with the label wherever a text from outside can stand.
+/// A run with the label at every position of an external text.
 fn run_with(label: &str) -> Finished {
     let mut finished = finished();
     let own = || label.to_owned();
@@ -88,7 +88,7 @@ fn text<'a>(files: &'a [OutputFile], path: &str) -> &'a str {
     str::from_utf8(&files.iter().find(|file| file.path == path).unwrap().bytes).unwrap()
 }
 
-/// What of a text would steer, newlines apart.
+/// The control characters of a text, except newlines.
 fn steering(text: &str) -> String {
     text.chars()
         .filter(|c| sanitize::is_control_like(*c) && *c != '\n')
@@ -121,7 +121,7 @@ fn no_label_is_markup_on_a_page() {
         let files = files_of(&run_with(label));
         let page = text(&files, "certificate.html");
         assert_eq!(steering(page), "", "{label:?}");
-        // A label without letters may be told as missing, and one of lines is more lines of the plan.
+        // A label without letters may be reported as missing. A label with several lines adds lines to the plan.
         if !label.trim().is_empty()
             && !label.contains([
                 '\n', '\r', '\u{85}', '\u{2028}', '\u{2029}', '\u{b}', '\u{c}',
@@ -144,8 +144,7 @@ fn no_label_is_markup_on_a_page() {
     });
 }
 
-/// Every text goes to paper as data: typst would fail on markup that makes no sense, and a form made for archives takes no
-/// script and no link.
+/// Every text reaches the PDF as data: typst would fail on invalid markup, and an archival format allows no script and no link.
 #[test]
 fn no_label_is_markup_on_paper() {
     let paper = |label: &str| {
@@ -158,7 +157,7 @@ fn no_label_is_markup_on_paper() {
             .unwrap()
             .bytes
     };
-    // Each kind once: paper takes its time.
+    // One label of each kind, because a PDF takes long.
     let marks = [
         "#eval",
         "<script",
@@ -263,7 +262,7 @@ fn no_label_is_a_formula_in_a_table() {
         assert_eq!(steering(&cell), "");
         assert!(!cell.contains('\n'));
     }
-    // Numbers are numbers, also those below zero.
+    // Numbers remain numbers, including negative ones.
     let files = files_of(&run_with("x"));
     let table = text(&files, "tables/hit.csv");
     assert!(
@@ -292,7 +291,7 @@ fn no_label_is_another_place_or_another_line_of_the_manifest() {
                 file.path
             );
             for part in file.path.split('/') {
-                // One that was cut and then numbered is longer than one that is cut.
+                // A name that was cut and then numbered is longer than one that was only cut.
                 assert!(
                     sanitize::file_part(part) == part || (100..256).contains(&part.len()),
                     "{label:?}: {}",
@@ -324,7 +323,7 @@ fn no_label_is_another_place_or_another_line_of_the_manifest() {
     }
 }
 
-/// A test report whose every text is the label.
+/// A test report in which every text is the label.
 fn tested_with(label: &str) -> Report {
     let own = || label.to_owned();
     let found = vec![
@@ -360,7 +359,7 @@ fn no_label_is_another_result_of_a_test() {
             .count()
     };
     let xml_tags = |text: &str| {
-        // A suite is a folder: a label with a slash names another.
+        // A suite is a folder: a label with a slash is a different folder.
         let named = tags(text)
             .into_iter()
             .map(|tag| tag.split(' ').next().unwrap().to_owned());
@@ -416,7 +415,7 @@ fn no_label_is_another_result_of_a_test() {
     }
 }
 
-/// Two runs side by side, each with the label wherever a text from outside can stand.
+/// A comparison of two runs, each with the label at every position of an external text.
 fn compared_with(label: &str) -> Comparison {
     let summary: serde_json::Value =
         serde_json::from_str(text(&files_of(&run_with(label)), "summary.json")).unwrap();

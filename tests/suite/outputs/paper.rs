@@ -1,4 +1,4 @@
-//! The certificate on paper: made from the document that the page is made from, by a world without a clock.
+//! The test report as a PDF: made from the same document as the page, without access to the clock.
 
 use psd::plan::Format;
 

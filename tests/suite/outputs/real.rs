@@ -1,4 +1,4 @@
-//! What the outputs of a run on a real rig say of it: its standing, its equipment, its record.
+//! Statements of the outputs about a run on a real rig: its status, its equipment, its record.
 
 use psd::plan::{
     Calibration, Datum, DeviceLink, Dialect, Format, Gate, Interval, Link, PortPlan, ReadingRules,
@@ -11,10 +11,10 @@ use psd::report::{Change, Issue, IssueKind, Issues, RealRun, console};
 use super::fixture::{Finished, finished};
 use super::{files, text};
 
-/// A test of a specimen that lacks nothing.
+/// A test of a specimen with complete data.
 fn real() -> Finished {
     let mut finished = finished();
-    // Nothing here looks at a figure, a table or paper.
+    // The tests here do not read a figure, a table or a PDF.
     finished.plan.report.figures.clear();
     finished.plan.report.formats = vec![Format::Html];
     finished.plan.rig.link = Link::Real(RealLink {
@@ -169,7 +169,7 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
         "the day until which the calibration holds",
     ];
     assert_eq!(missing(&uncalibrated), lacks);
-    // It held when the run began, and no more when it ended, a day later.
+    // It was valid when the run began, and not when it ended, a day later.
     let mut expired = real();
     expired.plan.rig.calibration.due = Some("2027-02-28".into());
     assert_eq!(
@@ -187,7 +187,7 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
         console::verdict_text(&expired.run(), false)
             .contains("(NOT CERTIFIABLE: lacks a valid calibration")
     );
-    // Without times in the record the plan's own date is judged, and a date that is none is none.
+    // Without times in the record, the plan's own date is used. An invalid date counts as missing.
     let mut undated = real();
     undated.provenance.real = Some(RealRun {
         operator: Some("A. Tester".into()),
@@ -217,7 +217,7 @@ fn what_lies_outside_the_range_of_its_calibration_is_told() {
             .filter(|text| text.contains("calibrated"))
             .collect()
     };
-    // 157 mm and 51.6 N at most.
+    // At most 157 mm and 51.6 N.
     assert_eq!(told([10.0, 100.0], [0.0, 0.2]), [""; 0]);
     let (weak, far) = (
         told([300.0, 15e3], [0.0, 0.2]),
@@ -267,7 +267,7 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
         };
         assert_eq!(particulars_missing(blank), [name]);
     }
-    // What matters only to some tests is said to be missing, and bars nothing.
+    // Particulars that concern only some tests are listed as missing, and block nothing.
     let mut bare = real();
     bare.plan
         .particulars
@@ -303,7 +303,7 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
         told.contains("(PARTICULARS MISSING: laboratory, address, ") && told.contains("psd issue"),
         "{told}"
     );
-    // A rehearsal is issued by nobody.
+    // A low-level check run is not issuable.
     bare.record.rig.simulated = true;
     assert_eq!(
         ReportStatus::reasons(&bare.run()),
@@ -320,7 +320,7 @@ fn days_out_of_their_order_are_told() {
             all.push((field, day));
         })
     };
-    // Tested from 2027-02-28 to 2027-03-01, by UTC.
+    // Tested from 2027-02-28 to 2027-03-01 (UTC).
     assert_eq!(
         dated("issued", "2020-01-01"),
         ["days in their order (tested 2027-03-01, issued 2020-01-01)"]
@@ -399,7 +399,7 @@ fn a_simulated_rig_on_a_real_line_is_marked_across_the_page_whatever_else_is_wro
     let files = files(&rehearsed);
     let html = text(&files, "certificate.html");
     assert!(html.contains("<div>REHEARSAL ON A SIMULATED RIG</div><div>INCOMPLETE</div>"));
-    // A virtual rig says so too: of a paper that is passed on, any page may be the only one.
+    // A virtual rig states this too, because any single page may be copied without the others.
     assert!(text(super::made(), "certificate.html").contains("<div>REHEARSAL</div>"));
 }
 

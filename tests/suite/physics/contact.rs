@@ -1,4 +1,4 @@
-//! The contact laws against closed forms and exact collisions.
+//! The contact laws, compared with closed forms and exact collisions.
 
 use psd::physics::contact::state::{ContactLaw, StepState};
 use psd::physics::impact::ImpactInput;
@@ -11,7 +11,7 @@ use super::support::{Run, event_driven, impact, run, run_on, run_while};
 
 const K: f64 = 327.65;
 
-/// Relative.
+/// Relative tolerance.
 #[track_caller]
 fn near(what: &str, value: f64, expected: f64, tolerance: f64) {
     assert!(
@@ -93,7 +93,7 @@ fn restitution_follows_exact_collisions() {
     }
 }
 
-/// e = 0: one impact, after which the two are one body.
+/// e = 0: one impact, after which the two bodies move as one.
 #[test]
 fn without_restitution_they_stick() {
     let run = run(&impact(1.0, K, restitution(0.0), 1e-4));
@@ -117,7 +117,7 @@ fn without_restitution_they_stick() {
     );
 }
 
-/// Nothing passes through anything, however coarse the step, and a step counts as contact only if momentum passed.
+/// No body passes through another for any step size. A step counts as contact only if it transferred momentum.
 #[test]
 fn bodies_never_pass_through_each_other() {
     for e in [0.0, 0.3, 0.9, 0.999, 1.0] {
@@ -214,8 +214,8 @@ fn hertz_on_free_masses() {
     );
 }
 
-/// μ v dv/(1 + λv) = −k δ^1.5 dδ: with G(v) = v/λ − ln(1 + λv)/λ², the depth is where 0.4 k δ^2.5 = μ G(u), and the
-/// bodies part at the −v with G(−v) = G(u).
+/// μ v dv/(1 + λv) = −k δ^1.5 dδ. With G(v) = v/λ − ln(1 + λv)/λ², the depth follows from 0.4 k δ^2.5 = μ G(u). The bodies separate at
+/// the −v with G(−v) = G(u).
 #[test]
 fn hertz_loss_spends_what_hunt_and_crossley_say() {
     const LOSS: f64 = 0.3;
@@ -237,7 +237,7 @@ fn hertz_loss_spends_what_hunt_and_crossley_say() {
     );
 }
 
-/// Past the limit the surface yields at it: 0.4 F δ is held elastically and given back, the rest is F δp.
+/// Beyond the limit the surface yields: 0.4 F δ is stored elastically and released, the rest is F δp.
 #[test]
 fn hertz_limit_dents() {
     const FORCE: f64 = 500.0;
@@ -345,7 +345,7 @@ fn a_gap_delays_the_first_contact() {
     );
 }
 
-/// e = 0 on a bilinear specimen stops where its energy is spent: ½(M+Ms)v² = ½Fy²/K + Fy p + ½hKp², X = Fy/K + p.
+/// e = 0 on a bilinear specimen stops when its energy is dissipated: ½(M+Ms)v² = ½Fy²/K + Fy p + ½hKp², X = Fy/K + p.
 #[test]
 fn a_yielding_specimen_stops_where_energy_says() {
     let (yield_force, hardening): (f64, f64) = (20.0, 0.1);
@@ -369,8 +369,8 @@ fn a_yielding_specimen_stops_where_energy_says() {
     );
 }
 
-/// Eq. (6) on ±5 N of noise: a secant counts only over 10·σ/K0 or more, so that 10 N of change is 20 % of K0 at most. At
-/// the fine step no step determines the stiffness alone, and the window of several determines it better than that.
+/// Eq. (6) with ±5 N of noise: a secant counts only over at least 10·σ/K0. 10 N of change is then at most 20 % of K0. At the small step,
+/// no single step determines the stiffness; the window of several steps determines it better.
 #[test]
 fn noise_does_not_become_a_stiffness() {
     struct Noisy {
@@ -407,8 +407,8 @@ fn noise_does_not_become_a_stiffness() {
     }
 }
 
-/// Past yield the tangent is the post-yield stiffness for every time step: at 20 µs no step of some 8 µm exceeds 5 N of noise
-/// (10·σ/K0 is 0.17 mm), so that single secants would keep the initial stiffness to the end.
+/// Past yield the tangent is the post-yield stiffness for every time step. At 20 µs no step of some 8 µm exceeds 5 N of noise (10·σ/K0 is
+/// 0.17 mm). Single secants would thus keep the initial stiffness to the end.
 #[test]
 fn the_tangent_follows_a_specimen_that_yields_under_noise() {
     struct Noisy {
@@ -449,7 +449,7 @@ fn the_tangent_follows_a_specimen_that_yields_under_noise() {
         let ratios: Vec<f64> = yielding
             .map(|state| state.tangent_stiffness / 3e5)
             .collect();
-        // A line of 21 readings over 0.17 mm errs by √12·σ/(S√n), 7 % of K0.
+        // A line of 21 readings over 0.17 mm has an error of √12·σ/(S√n), 7 % of K0.
         assert!(
             ratios.len() > 100 && ratios.iter().all(|ratio| *ratio < 0.4),
             "seed {seed}"

@@ -1,4 +1,4 @@
-//! Strikers that fall: Ms Ẍs = Ms g − F, against the flight of a ball, the pair on a spring and the energy balance.
+//! Strikers that fall, Ms Ẍs = Ms g − F: compared with the flight of a ball, the pair on a spring and the energy balance.
 
 use psd::physics::contact::state::{ContactLaw, StepState};
 use psd::physics::impact::ImpactInput;

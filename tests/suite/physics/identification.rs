@@ -1,4 +1,4 @@
-//! Standard errors are honest: over many seeds, the true value lies as often within one and two of them as it should.
+//! Coverage of standard errors: over many seeds, the true value lies within one and two of them as often as it should.
 
 use psd::physics::identification::{LineFit, fit_damping, fit_line};
 use rand::SeedableRng;
@@ -8,8 +8,8 @@ use rand_pcg::Pcg64Mcg;
 const SEEDS: u64 = 500;
 const READINGS: u32 = 40;
 
-/// How many of the fits hold the truth within one and within two standard errors: 500 draws scatter by three binomial
-/// deviations, 0.062 and 0.028, and 38 degrees of freedom take another 0.01 (Student's t against the normal).
+/// Number of fits whose value lies within one and within two standard errors of the truth. 500 trials scatter by three binomial standard
+/// deviations, 0.062 and 0.028. 38 degrees of freedom add another 0.01 (Student's t compared with the normal distribution).
 #[track_caller]
 fn honest(what: &str, fits: &[LineFit], true_value: f64, of: impl Fn(&LineFit) -> (f64, f64)) {
     for (errors, expected, tolerance) in [(1.0, 0.683, 0.072), (2.0, 0.954, 0.039)] {
@@ -54,8 +54,8 @@ fn stiffness_ramp() {
     });
 }
 
-/// Sweeps both ways at 0.01 to 0.2 m/s, c = 80 N·s/m and 3 N of friction, read with 2 N of noise; the readings at rest
-/// hold a force that would spoil the fit.
+/// Sweeps in both directions at 0.01 to 0.2 m/s. c = 80 N·s/m and 3 N of friction, read with 2 N of noise. The readings at rest contain a
+/// force that would falsify the fit.
 #[test]
 fn damping_sweep() {
     let mut velocities: Vec<f64> = (1..=READINGS / 2)

@@ -1,4 +1,4 @@
-//! Every integrator against the same closed forms: free vibration, the paper's examples as the step shrinks, energy.
+//! Every integrator, compared with the same closed forms: free vibration, the paper's examples with decreasing step, energy.
 
 use psd::physics::contact::state::ContactLaw;
 use psd::physics::impact::{ImpactInput, ImpactSolver};
@@ -23,7 +23,7 @@ fn by(integrator: Integrator, input: ImpactInput) -> ImpactInput {
     }
 }
 
-/// A structure let go at 1 m, with the striker out of reach.
+/// A structure released at 1 m, with the striker out of reach.
 pub fn vibration(
     integrator: Integrator,
     mass: f64,
@@ -40,7 +40,7 @@ pub fn vibration(
     by(integrator, far)
 }
 
-/// Let go at 1 m: error at 0.37 s against e^(−λt)(cos ω't + λ/ω' sin ω't) after `steps` steps.
+/// Released at 1 m: error at 0.37 s relative to e^(−λt)(cos ω't + λ/ω' sin ω't) after `steps` steps.
 fn error(integrator: Integrator, damping: f64, steps: u32) -> f64 {
     let (mass, stiffness, end): (f64, f64, f64) = (1.0, 400.0, 0.37);
     let input = vibration(integrator, mass, damping, stiffness, end / f64::from(steps));
@@ -107,7 +107,7 @@ fn the_papers_examples_converge_to_the_exact_collisions_under_every_integrator()
     }
 }
 
-/// Without α, and split with the specimen's own stiffness, α-OS is the tangent form: the same numbers at any step.
+/// Without α, and with the specimen's own stiffness as operator, α-OS is the tangent form: the same numbers at any step.
 #[test]
 fn splitting_without_alpha_is_the_tangent_form_of_a_linear_specimen() {
     for (law, time_step) in [
@@ -132,7 +132,7 @@ fn splitting_without_alpha_is_the_tangent_form_of_a_linear_specimen() {
     }
 }
 
-/// Balance: to rounding where the trapezoid is exact, and of second order or better elsewhere.
+/// Energy balance: to rounding if the trapezoid is exact, and of second order or better otherwise.
 #[test]
 fn energy_closes_under_every_integrator() {
     for integrator in ALL {
@@ -174,7 +174,7 @@ fn numerical_damping_does_not_soften_the_blow() {
     }
 }
 
-/// Just inside the limit a free vibration is bounded for a thousand steps, just beyond it diverges.
+/// Just below the limit a free vibration is bounded for a thousand steps. Just above it, it diverges.
 #[test]
 fn the_stability_limits_are_where_they_are_said_to_be() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
@@ -219,8 +219,8 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
     }
 }
 
-/// Growth of a free vibration by each step, compared with the reported limit: α-OS that splits with less than the specimen's
-/// stiffness, damped and not. Just inside no more than a damping ratio of 1e-4 would remove in a cycle, just beyond more.
+/// Growth of a free vibration per step, compared with the reported limit: α-OS with an operator below the specimen's stiffness, damped
+/// and undamped. Just below the limit, the growth is at most the decay from a damping ratio of 1e-4. Just above it is larger.
 #[test]
 fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
@@ -282,10 +282,10 @@ fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
     }
 }
 
-/// The tangent form on a specimen that yields. It predicts the force by the slope of the step before; where the slope changes
-/// it errs by δ = (K − `K_t`)ΔX for that step, and the balance by −½ΔX(δ + δ₀), δ₀ that of the step before, which is all that it errs by. So
-/// no step is stable by itself: at a tenth of the default step a yielding vibration loses next to nothing, at a fifth of the period
-/// (`critical` twice over) the balance is worth nothing.
+/// The tangent form on a specimen that yields. It predicts the force with the slope of the last step. If the slope changes, the force
+/// error of that step is δ = (K − `K_t`)ΔX. The error of the balance is −½ΔX(δ + δ₀), with δ₀ from the last step; there is no other
+/// error. Thus no step size is stable in itself. At a tenth of the default step a yielding vibration loses almost nothing. At a fifth of
+/// the period (twice `critical`) the balance is useless.
 #[test]
 fn the_tangent_form_errs_by_what_its_slope_is_late() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);

@@ -1,6 +1,6 @@
-//! Portals by plastic hinges: each mechanism in closed form on both sides of every switch; the least of all statically
-//! admissible states (the lower bound theorem, by enumeration); and a frame analysed hinge by hinge. The last two share
-//! nothing with the product.
+//! Portals with plastic hinges. Each mechanism is compared with its closed form on both sides of every switch. A second test takes the
+//! minimum over all statically admissible states (the lower bound theorem, by enumeration). A third test analyses a frame hinge by hinge.
+//! The last two share no code with the product.
 
 use nalgebra::{DMatrix, DVector};
 use psd::plan::{Loads, Mechanism, Portal, Sections};
@@ -58,8 +58,8 @@ fn collapse_loads_in_closed_form() {
     assert_eq!(frame.mechanism(), Mechanism::Combined);
 }
 
-/// Beam and combined give way at W₀L/2 = 2H₀h, sway and combined at H₀h = 2·W₀L/2·… : 4/(H h) = 6/(WL/2 + Hh) where
-/// WL/2 = Hh/2, and 4/(WL/2) = 6/(WL/2 + Hh) where Hh = WL/4.
+/// Beam and combined mechanisms form together at W₀L/2 = 2H₀h, sway and combined at H₀h = 2·W₀L/2. The reasons: 4/(H h) = 6/(WL/2 + Hh)
+/// if WL/2 = Hh/2, and 4/(WL/2) = 6/(WL/2 + Hh) if Hh = WL/4.
 #[test]
 fn the_mechanism_changes_where_two_loads_are_equal() {
     let beam_load = 10e3;
@@ -94,9 +94,9 @@ fn strengths(sections: Sections) -> [f64; 5] {
     ]
 }
 
-/// With `M_b` and `M_c` and m the less: beam W·L/2 = 2(m + M_b), sway H·h = 2(M_c + m), combined W·L/2 + H·h = 2(M_c + M_b + m). So beam
-/// and combined give way together at H·h = 2M_c·(…): both loads of a pair are compared on either side of where they are equal, of stout
-/// columns and of weak ones.
+/// With `M_b` and `M_c`, and m the smaller one: beam W·L/2 = 2(m + M_b), sway H·h = 2(M_c + m). Combined: W·L/2 + H·h = 2(M_c + M_b + m).
+/// Beam and combined thus form together at `H·h = W·L/2 · M_c/(m + M_b)`. Both loads of a pair are compared on either side of their switch,
+/// for stout columns and for weak ones.
 #[test]
 fn different_sections_in_closed_form_on_both_sides_of_each_switch() {
     let beam_load = 10e3;
@@ -116,7 +116,8 @@ fn different_sections_in_closed_form_on_both_sides_of_each_switch() {
                 },
             )
         };
-        // λ of either: (m + M_b)/w = (M_c + M_b + m)/(w + s), s = w·M_c/(m + M_b); (M_c + m)/s = (M_c + M_b + m)/(w + s), s = w (M_c + m)/M_b.
+        // First pair: (m + M_b)/w = (M_c + M_b + m)/(w + s), s = w·M_c/(m + M_b).
+        // Second pair: (M_c + m)/s = (M_c + M_b + m)/(w + s), s = w (M_c + m)/M_b.
         let switches = [
             (
                 work * column / (corner + beam) / HEIGHT,
@@ -158,8 +159,8 @@ fn different_sections_in_closed_form_on_both_sides_of_each_switch() {
     }
 }
 
-/// Largest λ with |M| ≤ Mp at feet A, E, corners B, D and midspan C, and equilibrium: beam −M_B + 2M_C − M_D = W₀L/2·λ, sway
-/// −M_A + M_B − M_D + M_E = H₀h·λ. A vertex has four of the moments at ±Mp: all are tried.
+/// Largest λ with |M| ≤ Mp at feet A, E, corners B, D and midspan C, and equilibrium. Beam: −M_B + 2M_C − M_D = W₀L/2·λ; sway: −M_A + M_B
+/// − M_D + M_E = H₀h·λ. A vertex has four of the moments at ±Mp: all are tried.
 fn by_lower_bound(sections: Sections, beam_load: f64, sway_load: f64) -> f64 {
     let strong = strengths(sections);
     let beam = [0.0, -1.0, 2.0, -1.0, 0.0];
@@ -197,8 +198,8 @@ fn by_lower_bound(sections: Sections, beam_load: f64, sway_load: f64) -> f64 {
     best
 }
 
-/// A plane frame of A (foot), B (corner), C (midspan), D (corner), E (foot): four members that hardly stretch, with a hinge
-/// wherever the moment reached Mp.
+/// A plane frame of A (foot), B (corner), C (midspan), D (corner), E (foot). It has four almost inextensible members, with a hinge at
+/// every section whose moment reached Mp.
 struct Frame {
     /// Hinged end of each member: near, far.
     hinged: [[bool; 2]; 4],
@@ -212,9 +213,9 @@ const MEMBERS: [(usize, usize, bool, f64); 4] = [
     (2, 3, true, SPAN / 2.0),
     (4, 3, false, HEIGHT),
 ];
-/// Member and end that stand for each section A to E.
+/// Member and end that represent each section A to E.
 const SECTIONS: [(usize, usize); 5] = [(0, 0), (0, 1), (1, 1), (2, 1), (3, 0)];
-/// EA over EI: no axial strain that shows.
+/// EA over EI: axial strain is negligible.
 const STRETCH: f64 = 1e7;
 
 impl Frame {
@@ -284,7 +285,7 @@ impl Frame {
         loads[0] = sway_load;
         loads[4] = -beam_load;
         let reduced = DMatrix::from_fn(9, 9, |row, column| whole[(free[row], free[column])]);
-        // A node whose every member is hinged turns freely: hold it, it carries nothing.
+        // A node with hinges on all members rotates freely: it is fixed, because it carries no moment.
         let reduced = DMatrix::from_fn(9, 9, |row, column| {
             reduced[(row, column)]
                 + if row == column && reduced[(row, row)].abs() < 1e-3 {
@@ -420,8 +421,8 @@ fn two_other_methods_find_the_same_collapse_and_the_same_stiffness() {
     }
 }
 
-/// A stiff beam fixes the heads of the columns: 24EI/h³; a slender one leaves two cantilevers: 6EI/h³. And a beam between
-/// stout columns is built in, between slender ones simply supported: 192 and 48 EI/L³.
+/// A stiff beam fixes the heads of the columns: 24EI/h³. A slender one leaves two cantilevers: 6EI/h³. A beam between stout columns is
+/// built in, between slender ones simply supported: 192 and 48 EI/L³.
 #[test]
 fn slope_deflection_has_its_limits() {
     let (moment, bending) = (Sections::same(MOMENT), Sections::same(BENDING));

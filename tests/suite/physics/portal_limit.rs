@@ -1,5 +1,5 @@
-//! How high a load a portal's mechanism follows: in closed form where it is one, and by the moments along its members, which are summed
-//! here from the inertia point by point. The sums share nothing with the product.
+//! The load up to which the mechanism of a portal is valid. It is compared with the closed form of single mechanisms, and with the
+//! moments along the members. These are summed here from the inertia point by point. The sums share no code with the product.
 
 use psd::physics::structure::portal::limit::mechanism_limit;
 use psd::plan::{FrameMasses, Loads, Portal, Sections};
@@ -21,7 +21,8 @@ const BARE: FrameMasses = FrameMasses {
     corner: 0.0,
 };
 
-/// One section and nothing carried: three times the collapse load at midspan; sideways three times and 12 Mp L/h² of the beam's inertia.
+/// One section without supported mass: three times the collapse load at midspan. Sideways it is three times that load and 12 Mp L/h² of
+/// the beam's inertia.
 #[test]
 fn a_bare_frame_follows_three_times_its_collapse_load() {
     let strong = Sections::same(20e3);
@@ -32,7 +33,8 @@ fn a_bare_frame_follows_three_times_its_collapse_load() {
     assert!((limit(&swayed) / by_hand - 1.0).abs() < 1e-12);
 }
 
-/// Without mass between the hinges, as in the paper's lumped frame, no load is too fast; two loads, and a frame without masses, have no limit.
+/// Without mass between the hinges, as in the paper's lumped frame, there is no limit. The same applies to two loads, and to a frame
+/// without masses.
 #[test]
 fn lumped_frames_follow_any_load() {
     let strong = Sections::same(20e3);
@@ -55,14 +57,15 @@ fn lumped_frames_follow_any_load() {
     );
 }
 
-/// Largest moment over what the section carries, between the hinges of the member that turns under `load` (N), by sums over points: the acceleration
-/// from the energies, then the moments of the inertia beyond each point about it.
+/// Largest moment over the section capacity, between the hinges of the member that rotates under `load` \[N\], by sums over points. The
+/// acceleration follows from the energies, then the moments from the inertia beyond each point.
 fn worst(frame: &Portal, load: f64) -> f64 {
     const POINTS: usize = 4000;
     let masses = frame.masses.expect("it says what it weighs");
     let corner = frame.plastic_moment.beam.min(frame.plastic_moment.column);
     let sways = frame.loads == Loads::Sway;
-    // The member that turns: its length, mass a metre, moments at its pivot and at its end, and what else goes with that end.
+    // The member that rotates: its length, mass per metre, moments at its pivot and at its end, and the other mass that moves with that
+    // end.
     let (length, per_length, pivot, end, strong, carried) = if sways {
         let level = masses.per_length.beam * SPAN + masses.midspan + 2.0 * masses.corner;
         (
@@ -92,9 +95,9 @@ fn worst(frame: &Portal, load: f64) -> f64 {
         .map(|point| per_length * step * at(point) * at(point))
         .sum::<f64>()
         + carried * length * length;
-    // Two such members share the load and turn alike.
+    // Two such members share the load and rotate equally.
     let acceleration = (load / 2.0 * length - pivot - end) / inertia;
-    // Force across the end of the member, what is carried there taken off.
+    // Force across the end of the member, minus the force carried there.
     let across = load / 2.0 - carried * length * acceleration;
     let mut worst: f64 = 0.0;
     for place in 0..POINTS {
@@ -108,7 +111,8 @@ fn worst(frame: &Portal, load: f64) -> f64 {
     worst
 }
 
-/// Just below the limit no section is overdone, just above it one is: of stout columns and of weak ones, with lumps and without.
+/// Just below the limit no section is overloaded, just above it one is: for stout columns and for weak ones, with lumped masses and
+/// without.
 #[test]
 fn the_moments_along_the_members_say_the_same() {
     let lumps = FrameMasses {

@@ -1,6 +1,6 @@
-//! What mass moves with a portal: the elastic one against finite elements with lumped masses as the mesh is refined, and as a
-//! Rayleigh quotient of their first frequency; the mechanisms' against rigid bodies that turn, point by point; both against beams whose
-//! factors are published. The finite elements and the rigid bodies share nothing with the product.
+//! Mass that moves with a portal. The elastic mass is compared with finite elements with lumped masses as the mesh is refined. As a
+//! Rayleigh quotient it is compared with their first frequency. The mechanisms are compared with rigid bodies that rotate, point by
+//! point. Both are compared with published factors of beams. The finite elements and the rigid bodies share no code with the product.
 
 use nalgebra::{DMatrix, DVector};
 use psd::physics::structure::portal::mass::{EquivalentMasses, equivalent_masses};
@@ -10,7 +10,7 @@ const SPAN: f64 = 4.0;
 const HEIGHT: f64 = 3.0;
 const STRONG: Sections = Sections::same(20e3);
 
-/// A frame that differs in everything that may differ.
+/// A frame with different values of all properties.
 #[derive(Clone, Copy)]
 struct Given {
     bending: Sections,
@@ -98,11 +98,11 @@ fn givens() -> Vec<Given> {
         .collect()
 }
 
-/// A plane frame of Bernoulli beams that hardly stretch, `n` to each column and each half of the beam: foot, corner, midspan, corner,
-/// foot, one node after the other, its masses lumped at the nodes. Of each node (x, y, turn).
+/// A plane frame of almost inextensible Bernoulli beams, `n` to each column and each half of the beam. The nodes run from foot to corner,
+/// midspan, corner and foot. The masses are lumped at the nodes. Each node has (x, y, turn).
 struct Mesh {
     stiffness: DMatrix<f64>,
-    /// Of the directions x and y.
+    /// Mass in the directions x and y.
     masses: DVector<f64>,
     n: usize,
 }
@@ -115,7 +115,7 @@ impl Mesh {
         #[expect(clippy::cast_precision_loss, reason = "a few dozen")]
         let parts = n as f64;
         for element in 0..4 * n {
-            // Up, along, along, down: (cosine, sine) of the way, and what it is made of.
+            // Up, along, along, down: (cosine, sine) of the direction, and the section.
             let (cosine, sine, length, bending, per_length) = match element / n {
                 0 => (
                     0.0,
@@ -193,7 +193,7 @@ impl Mesh {
         }
     }
 
-    /// Where H, at the near corner, and W, at midspan, push.
+    /// Degrees of freedom loaded by H, at the near corner, and W, at midspan.
     fn load(&self, given: Given) -> DVector<f64> {
         let (on_beam, on_sway) = given.shares();
         let mut load = DVector::zeros(self.masses.len());
@@ -202,7 +202,7 @@ impl Mesh {
         load
     }
 
-    /// Mass at the place of a load of 1 N that has the kinetic energy of the frame deflected by it.
+    /// Mass at the position of a load of 1 N that has the kinetic energy of the frame deflected by it.
     fn equivalent_mass(&self, given: Given) -> f64 {
         let load = self.load(given);
         let shape = self.stiffness.clone().lu().solve(&load).expect("it stands");
@@ -218,7 +218,7 @@ impl Mesh {
             .sum()
     }
 
-    /// ω² of the first mode of the kind that the load pushes, by inverse iteration; rounding would let in those of the other kind.
+    /// ω² of the first mode with the symmetry of the load, by inverse iteration; rounding would add modes of the other symmetry.
     fn first_mode(&self, given: Given) -> f64 {
         let parts = self.stiffness.clone().lu();
         let kind = if matches!(given.loads, Loads::Beam) {
@@ -249,8 +249,8 @@ impl Mesh {
     }
 }
 
-/// Lumping errs with the square of the length of an element, of a frame that only deflects with the fourth power: halving it leaves a quarter of
-/// the difference to the closed form, or less.
+/// Lumping has an error with the square of the length of an element. For a frame that only deflects it has the fourth power. Halving the
+/// length leaves at most a quarter of the difference from the closed form.
 #[test]
 fn the_elastic_mass_is_that_of_finite_elements_as_they_grow_small() {
     for given in givens() {
@@ -263,14 +263,14 @@ fn the_elastic_mass_is_that_of_finite_elements_as_they_grow_small() {
                 .all(|pair| pair[0] / pair[1] > 3.8 || pair[1].abs() < 2e-7),
             "{told}"
         );
-        // Without the errors of second and of fourth order (Romberg).
+        // Extrapolated without the errors of second and of fourth order (Romberg).
         let [coarse, fine] = [0, 1].map(|at| (4.0 * errors[at + 1] - errors[at]) / 3.0);
         assert!(((16.0 * fine - coarse) / 15.0).abs() < 2e-6, "{told}");
     }
 }
 
-/// The static deflection is a shape that the frame is forced into: Rayleigh's quotient K/M is above ω² of the first mode of its kind. It is near it
-/// where that mode is the frame's; slender columns that weigh three times as much a metre as the beam have one of their own below.
+/// The static deflection is an assumed shape: Rayleigh's quotient K/M is above ω² of the first mode with its symmetry. It is near it if
+/// that mode is the frame's. Slender columns with three times the mass per metre of the beam have a lower mode of their own.
 #[test]
 fn stiffness_over_elastic_mass_is_just_above_the_first_frequency() {
     for given in givens()
@@ -286,7 +286,8 @@ fn stiffness_over_elastic_mass_is_just_above_the_first_frequency() {
     }
 }
 
-/// Kinetic energy of rigid links that turn with 1 rad/s, by a sum over points, over half the square of the velocity at which the load works.
+/// Kinetic energy of rigid links that rotate with 1 rad/s, by a sum over points. It is divided by half the square of the velocity of the
+/// load point.
 fn of_turning_links(given: Given, mechanism: Mechanism) -> f64 {
     const POINTS: u32 = 4000;
     let (turns, deflects) = (mechanism != Mechanism::Beam, mechanism != Mechanism::Sway);
@@ -310,7 +311,8 @@ fn of_turning_links(given: Given, mechanism: Mechanism) -> f64 {
     energy / (velocity * velocity)
 }
 
-/// The mass of a mechanism is exact: beam `m_b L/3`, sway `m_b L + 2 m_c h/3`, lumps as they go, and both together where both move.
+/// The mass of a mechanism is exact: beam `m_b L/3`, sway `m_b L + 2 m_c h/3`. Lumped masses count with their velocities. The combined
+/// mechanism has both parts.
 #[test]
 fn the_plastic_mass_is_that_of_links_that_turn() {
     for given in givens() {
@@ -335,7 +337,7 @@ fn the_plastic_mass_is_that_of_links_that_turn() {
             "{governs:?}: {found} kg is not {by_hand} kg"
         );
     }
-    // H·h between half and twice W·L/2: both give way.
+    // H·h between half and twice W·L/2: both mechanisms form.
     let both = Given {
         loads: Loads::Combined {
             beam_load: 10e3,
@@ -354,9 +356,9 @@ fn the_plastic_mass_is_that_of_links_that_turn() {
     );
 }
 
-/// A beam between columns that cannot turn its ends is simply supported: a point force on a distributed mass has `K_M` = 0.49 while elastic
-/// and 0.33 when plastic (Biggs's factors, as tabulated at ingeania.com, SDOF Transformation Factors, 3rd row), and 17/35 and 1/3 in full.
-/// Between stout columns it is built in: 13/35. A swaying column without a beam that holds its head is a cantilever: 33/140.
+/// A beam between columns that do not restrain its ends is simply supported. A point force on a distributed mass then has `K_M` = 0.49
+/// while elastic and 0.33 when plastic, in full 17/35 and 1/3. Source: Biggs's factors, as tabulated at ingeania.com, SDOF Transformation
+/// Factors, 3rd row. Between stout columns it is built in: 13/35. A swaying column without restraint of its head is a cantilever: 33/140.
 #[test]
 fn frames_that_are_beams_have_the_factors_of_beams() {
     let light = FrameMasses {
@@ -416,7 +418,8 @@ fn frames_that_are_beams_have_the_factors_of_beams() {
     near(sway(1e12), 13.0 / 35.0);
 }
 
-/// Fig. 5 of the paper: a frame pushed sideways has the mass of its beam and of one column, a frame struck at midspan half that of its beam.
+/// Fig. 5 of the paper: a frame pushed sideways has the mass of its beam and of one column. A frame hit at midspan has half that of its
+/// beam.
 #[test]
 fn lumped_masses_are_those_of_fig_5() {
     let masses = FrameMasses {
@@ -440,7 +443,7 @@ fn lumped_masses_are_those_of_fig_5() {
     assert!((of(Loads::Beam).whole - (9.0 * SPAN + 2.0 * 31.0 * HEIGHT)).abs() < 1e-10);
 }
 
-/// A frame whose stiffness was measured has one section throughout, and the shape of it.
+/// A frame whose stiffness was measured has one section throughout, and the corresponding deflected shape.
 #[test]
 fn a_stated_stiffness_has_the_shape_of_one_section() {
     for loads in [

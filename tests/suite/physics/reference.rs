@@ -129,8 +129,8 @@ fn converged() {
         1.5e-6,
     );
     near("stop time", limited.stop_time(), 0.301_09, 3e-5);
-    // The first step starts with no contact force in Ẍ₀, so that the trapezoid gives the structure half of its share: it
-    // then lags by ½(F/M)Δt for the whole duration μV0/F of the contact, and the indentation is ½(μ/M)V0Δt deeper than its limit.
+    // The first step starts with no contact force in Ẍ₀, so the trapezoid gives the structure half of its share. The structure then lags
+    // by ½(F/M)Δt for the whole duration μV0/F of the contact. The indentation is ½(μ/M)V0Δt deeper than its limit.
     let reduced_mass = 10.0 / 11.0;
     let (limit, lag) = (0.5 * reduced_mass / 1500.0, 0.5 * reduced_mass * 2e-6);
     near("limit of the indentation", limit, 0.303e-3, 0.5e-6);
@@ -155,8 +155,8 @@ fn converged() {
     );
 }
 
-/// Eq. (4) from rest: `Ẋ₁ = ½MsV0 / (M + ½Ms + ¼Δt²K)`, which tends to Ms·V0/(2M + Ms), and the force of that one step is
-/// the impulse over Δt.
+/// Eq. (4) from rest: `Ẋ₁ = ½MsV0 / (M + ½Ms + ¼Δt²K)`, which tends to Ms·V0/(2M + Ms). The force of that one step is the impulse over
+/// Δt.
 #[test]
 fn rigid_force_grows_as_the_step_shrinks() {
     for time_step in [1e-2, 1e-4, 1e-6] {
@@ -191,9 +191,9 @@ fn beam() {
     }
 }
 
-/// A linear specimen leaves no integration error: the balance is an identity of each law's step. `restitution` adds the
-/// loss of each impact at its instant, `hertz` that of each part: their sub-steps share the step's tangent stiffness,
-/// which is the specimen's, so that the trapezoid over the whole step is still exact.
+/// A linear specimen leaves no integration error: the balance is an identity of each law's step. `restitution` adds the loss of each
+/// impact at its instant, `hertz` that of each part. Their sub-steps share the step's tangent stiffness. It equals that of the specimen,
+/// so the trapezoid over the whole step is still exact.
 #[test]
 fn energy_closes_at_every_step() {
     for law in [

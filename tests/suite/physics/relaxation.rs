@@ -1,4 +1,4 @@
-//! Force that relaxes, on the virtual rig: the standard linear solid in closed form, whatever the rig does, and the energy of its
+//! Relaxation of force on the virtual rig: the standard linear solid compared with its closed form, for any rig, and the energy of its
 //! cycles.
 
 use psd::physics::relaxation::law::RelaxationLaw;
@@ -9,7 +9,7 @@ use psd::physics::tracking::trajectory::Path;
 use psd::plan::{Behaviour, Settle, Specimen, VirtualLink};
 use psd::rig::{Rig, VirtualRig};
 
-/// 300 kN/m, beside it 200 kN/m that relax with 1.5 s.
+/// 300 kN/m in parallel with 200 kN/m that relax with 1.5 s.
 const K: f64 = 3e5;
 const K1: f64 = 2e5;
 const TAU: f64 = 1.5;
@@ -115,7 +115,7 @@ fn a_lagging_piston_is_followed_in_closed_form() {
     );
 }
 
-/// Settling by the force rate waits for the relaxation: after it the force falls no faster than asked.
+/// Settling by the force rate waits for the relaxation: afterwards the force decreases no faster than required.
 #[test]
 fn a_rig_settles_when_the_force_has_nearly_relaxed() {
     let settle = Settle {
@@ -134,7 +134,7 @@ fn a_rig_settles_when_the_force_has_nearly_relaxed() {
     let (time, force) = go(&mut slow, 1e-3, 2e-3);
     slow.pause(0.01).expect("a pause");
     let rate = (force - read(&mut slow).1) / 0.01;
-    // Half of it is the lag's; the dwell has made less of the other half.
+    // Half of it comes from the lag; the dwell has reduced the other half.
     assert!(rate > 0.8 && rate < 2.0, "{rate} N/s after {time} s");
     let mut never = rig(
         VirtualLink::default(),
@@ -148,8 +148,8 @@ fn a_rig_settles_when_the_force_has_nearly_relaxed() {
     assert!((never.time() - 3.5).abs() < 1e-12);
 }
 
-/// Back and forth between ±A at v, once it repeats: q at the ends is K₁vτ tanh(T/2τ) with T = 2A/v, and a cycle takes
-/// 4vτ(K₁A − q). Slow or fast, it takes less than in between.
+/// Back and forth between ±A at v, in steady state: q at the ends is K₁vτ tanh(T/2τ) with T = 2A/v, and a cycle dissipates 4vτ(K₁A − q).
+/// Very slow and very fast cycles dissipate less than cycles in between.
 #[test]
 fn a_cycle_takes_the_energy_of_the_closed_form() {
     let energy = |velocity: f64| {
@@ -158,7 +158,7 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
         let mut branch = MaxwellBranch::new(K1, TAU);
         branch.follow(&Motion::even(velocity, 0.5 * seconds));
         let mut energy = 0.0;
-        // Thirty time constants, and a whole cycle at least: e^(−30) is left of how it began.
+        // At least thirty time constants and a whole cycle: e^(−30) of the initial state is left.
         let whole = (15.0 * TAU / seconds).ceil().max(1.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some hundreds
         for half in 0..2 * whole as u32 {
@@ -200,8 +200,8 @@ fn rig_of(behaviour: Behaviour, link: VirtualLink, settle: Settle) -> VirtualRig
     )
 }
 
-/// 1 kN/mm to 3 kN: elastic loading in three steps, yielding in the fourth and unloading in the fifth, a dwell after each. The measured force is the
-/// reached force less `a` times the sum of every increment's own logarithm, whatever came after it.
+/// 1 kN/mm to 3 kN: elastic loading in three steps, yielding in the fourth and unloading in the fifth, a dwell after each. The measured
+/// force is the instantaneous force minus `a` times the sum of the logarithms of all increments, independent of later increments.
 #[test]
 fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
     let of = Behaviour::Bilinear {
@@ -249,7 +249,7 @@ fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
     }
 }
 
-/// 300 N at 2 % lose 6 N/(0.4 s + t) a second: 0.5 N/s come after 11.6 s, and the dwell makes less of it.
+/// 300 N at 2 % lose 6 N/(0.4 s + t) a second: 0.5 N/s is reached after 11.6 s, and the dwell reduces it further.
 #[test]
 fn a_rig_settles_when_the_logarithm_is_slow() {
     let settle = Settle {
@@ -339,7 +339,7 @@ fn what_relaxes_gives_back_no_more_than_it_took() {
     }
 }
 
-/// A move in which it begins to yield loses the same in one look and in many.
+/// A move in which it begins to yield relaxes equally in one evaluation and in many.
 #[test]
 fn a_kink_within_a_move_is_followed_however_many_looks_there_are() {
     let of = Behaviour::Bilinear {

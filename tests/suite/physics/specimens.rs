@@ -1,11 +1,11 @@
-//! Properties of every specimen model on any path: finite forces, none beyond the capacity, no more energy released than absorbed, and
-//! large moves that end where small ones do.
+//! Properties of every specimen model on any path: finite forces within the capacity, and no more energy released than absorbed. A large
+//! move ends at the same force as many small ones.
 
 use proptest::prelude::*;
 use psd::physics::specimen::{RestoringForce, SpecimenModel};
 use psd::plan::{Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading};
 
-/// Stiffness 1 N/m to 3 N/m and yield near 1 m: the models know no scale but their own.
+/// Stiffness 1 N/m to 3 N/m and yield near 1 m: the models have no absolute scale.
 fn simple() -> impl Strategy<Value = Behaviour> {
     let stiffness = || 1.0..3.0_f64;
     let force = || 0.5..2.0_f64;
@@ -26,9 +26,9 @@ fn simple() -> impl Strategy<Value = Behaviour> {
                 residual,
             },
         );
-    // Boxed, as all that is nested deep: its tree lies on the stack of a test else.
+    // Boxed, like all deeply nested values; otherwise its tree is on the stack of a test.
     let tires = tires.boxed();
-    // Past any yield, which comes at 2 m at the latest.
+    // Beyond any yield point, which is at most at 2 m.
     let capped =
         (2.0..6.0_f64, 0.01..0.5_f64, 0.01..0.5_f64).prop_map(|(displacement, slope, residual)| {
             Capping {
@@ -56,7 +56,7 @@ fn simple() -> impl Strategy<Value = Behaviour> {
             (force_factor, displacement_factor, unloading_exponent),
             (tires, capping),
         )| {
-            // One strength is never lost, whatever takes the rest.
+            // One element never loses its strength, whatever deteriorates the others.
             let residual = |capping: Capping| Capping {
                 residual: tires.map_or(capping.residual, |rule| rule.residual),
                 ..capping
@@ -135,7 +135,7 @@ fn simple() -> impl Strategy<Value = Behaviour> {
     ]
 }
 
-/// Measured points of any shape: toes, knees, falls.
+/// Measured points of any shape: toes, yield points, decreasing branches.
 fn table() -> impl Strategy<Value = Behaviour> {
     let side = || prop::collection::vec((0.1..1.0_f64, 0.0..2.0_f64), 1..5);
     let unloading = prop_oneof![
@@ -181,7 +181,7 @@ fn any() -> impl Strategy<Value = Behaviour> {
     ]
 }
 
-/// Turning points of a path from 0.
+/// Reversal points of a path from 0.
 fn turns() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-4.0..4.0_f64, 1..8)
 }
@@ -233,8 +233,8 @@ proptest! {
         }
     }
 
-    /// What stability is judged by is an upper bound of every slope, and no more than is reached: some path shows nine tenths
-    /// of it in `a_stiffest_slope_is_reached`.
+    /// The stiffness bound of the stability check is an upper bound of every slope, and not too high: some path reaches nine tenths of it
+    /// in `a_stiffest_slope_is_reached`.
     #[test]
     fn no_slope_is_beyond_the_largest(behaviour in any(), turns in turns()) {
         let mut model = SpecimenModel::new(&behaviour);
@@ -249,8 +249,8 @@ proptest! {
         }
     }
 
-    /// From its virgin state, whatever was done to it: ∫R dX ≥ 0. So a closed cycle from there takes energy, too. What trapezoids
-    /// over a corner seem to give back is less in shorter ones.
+    /// From the initial state, on any path: ∫R dX ≥ 0. A closed cycle from there thus dissipates energy too. The apparent release of
+    /// trapezoids across a breakpoint decreases with the segment length.
     #[test]
     fn nothing_gives_back_more_energy_than_it_took(behaviour in any(), turns in turns()) {
         let (mut given, mut pieces) = (Some([0.0; 3]), 300);
@@ -261,7 +261,7 @@ proptest! {
         prop_assert!(given.is_none(), "at, energy, to and fro: {given:?}");
     }
 
-    /// Exact ones to rounding; Bouc–Wen to its stated 1e-7 of a yield force, more where a solve in series leans on it.
+    /// Exact models to rounding; Bouc–Wen to its stated 1e-7 of a yield force, more if a solver in series depends on it.
     #[test]
     fn large_moves_end_where_small_ones_do(behaviour in any(), turns in turns()) {
         let (mut large, mut small) = (SpecimenModel::new(&behaviour), SpecimenModel::new(&behaviour));
@@ -276,7 +276,8 @@ proptest! {
         }
     }
 
-    /// A rehearsal takes a specimen of a measured stiffness: every force is in its proportion, at every displacement.
+    /// A low-level check run uses a specimen with the measured stiffness: every force is scaled by the same factor, at every
+    /// displacement.
     #[test]
     fn a_scaled_behaviour_is_the_same_times_a_factor(behaviour in any(), turns in turns(), factor in 0.5..2.0_f64) {
         let (mut model, mut scaled) = (SpecimenModel::new(&behaviour), SpecimenModel::new(&behaviour.scaled(factor)));
@@ -287,8 +288,8 @@ proptest! {
     }
 }
 
-/// Two parts in series that yield at one force can share a displacement in many ways: a large move chooses the one
-/// that small moves take. Without force, a table between its toes and a spring that has pinched; at the yield force, two alike.
+/// Two parts in series that yield at one force can share a displacement in many combinations. A large move selects the one of small
+/// moves. Examples: at zero force, a table between its toes and a spring that has pinched; at the yield force, two equal parts.
 #[test]
 fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
     let toes = vec![
@@ -351,7 +352,7 @@ fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
     }
 }
 
-/// A joint bears before its faces slip, and a Bouc–Wen spring with β = 1 unloads: twice as stiff as at first, both.
+/// A joint bears before its faces slip, and a Bouc–Wen spring with β = 1 unloads: both at twice the initial stiffness.
 #[test]
 fn a_stiffest_slope_is_reached() {
     let bolted = Behaviour::Bolted(Bolted {

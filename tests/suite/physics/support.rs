@@ -1,4 +1,4 @@
-//! Runs of an impact, and an exact solution of hard collisions that shares nothing with the product.
+//! Runs of an impact, and an exact solution of hard collisions that shares no code with the product.
 
 use psd::physics::contact::state::ContactLaw;
 use psd::physics::impact::summary::{ImpactSummary, SummaryBuilder};
@@ -31,7 +31,7 @@ pub fn impact(mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> Imp
 pub struct Run {
     pub states: Vec<ImpactState>,
     pub summary: ImpactSummary,
-    /// Largest |integration error| of any step, J.
+    /// Largest |integration error| of any step \[J\].
     pub worst_error: f64,
 }
 
@@ -123,7 +123,7 @@ pub fn event_driven(
         v = common + e * closing * striker_mass / (mass + striker_mass);
         vs = common - e * closing * mass / (mass + striker_mass);
         if e * closing < 1e-10 {
-            // One body: it reverses at the instant given by the amplitude and phase of x and v.
+            // One body: it reverses at the time given by the amplitude and phase of x and v.
             let amplitude = x.hypot(common / joint);
             let stop = if common > 0.0 {
                 (common / joint).atan2(x) / joint
@@ -137,11 +137,11 @@ pub fn event_driven(
             };
         }
         if vs <= 0.0 {
-            // It bounced back: the structure's own peak may still come.
+            // It rebounded: the structure's own peak may still follow.
             let amplitude = if v > 0.0 { x.hypot(v / omega) } else { x };
             return (peak.max(amplitude), time);
         }
-        // Apart until Xs − X, divided by the time flown so that the start is no root, is back at 0.
+        // Separate until Xs − X, divided by the time of flight so that the start is not a root, is 0 again.
         let gap = |t: f64| x + vs * t - arc(omega, x, v, t).0;
         let mut first = (v - vs) / (stiffness * x / mass).abs().max(1e-12) * 0.5;
         first = first.min(STEP);

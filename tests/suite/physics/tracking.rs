@@ -1,5 +1,5 @@
-//! What an actuator that misses its target does to a run, through the solver: the amplitudes of the physics reference
-//! (section 11), the I-modification, and the energy that the monitor sees.
+//! Effect of an actuator that misses its target on a run, through the solver: the amplitudes of the physics reference (section 11), the
+//! I-modification, and the energy that the monitor sees.
 
 use psd::physics::impact::{ImpactInput, ImpactSolver};
 use psd::physics::tracking::monitor::{Monitor, Tracking};
@@ -15,16 +15,16 @@ const STEPS_A_CYCLE: u32 = 50;
 /// Position of an actuator after the command `target`, from the last target and position \[m\].
 type Actuator = fn(target: f64, last_target: f64, last_place: f64) -> f64;
 
-/// Ten per cent short of its increment, which it takes from the target before.
+/// Ten per cent short of its increment, measured from the last target.
 const SHORT: Actuator = |target, last, _| last + 0.9 * (target - last);
 const BEYOND: Actuator = |target, last, _| last + 1.1 * (target - last);
-/// Behind by 2 % of the first amplitude, against the motion.
+/// Short by 2 % of the first amplitude, against the motion.
 const BEHIND: Actuator = |target, last, _| target - 0.02 * (target - last).signum();
 /// An actuator that starts from its present position.
 const SHORT_FROM_PLACE: Actuator = |target, _, place| place + 0.9 * (target - place);
 const BEYOND_FROM_PLACE: Actuator = |target, _, place| place + 1.1 * (target - place);
 
-/// Largest |d| over the last of ten cycles, its first instant included, from 1 m at rest; and what the monitor shows at the end.
+/// Largest |d| over the last of ten cycles, including its start, from 1 m at rest; and the final values of the monitor.
 fn amplitude(integrator: Integrator, i_modification: bool, actuator: Actuator) -> (f64, Tracking) {
     let stiffness = (2.0 * std::f64::consts::PI / PERIOD).powi(2);
     let input = ImpactInput {

@@ -36,7 +36,7 @@ fn impact() -> Impact {
     }
 }
 
-/// Blows that are over before the frame turns back, each followed by the next.
+/// Impacts that end before the frame reverses, each followed by the next.
 pub(crate) fn rising(velocities: &[f64], between: Between) -> Plan {
     let steps = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
@@ -56,7 +56,7 @@ pub(crate) fn rising(velocities: &[f64], between: Between) -> Plan {
     series(impact(), velocities, goes_on, between)
 }
 
-/// Blows that go on until the frame has turned back, until a storey drifts too far.
+/// Impacts that continue until the frame has reversed, in a series that ends when a storey drift is too large.
 fn within(velocities: &[f64], limit: f64) -> Plan {
     let whole = Impact {
         duration: Constant(4.0),
@@ -87,7 +87,7 @@ fn impacts(record: &Record) -> &EscalateHistory {
     }
 }
 
-/// A series of impacts is impact, unloading, impact, … written out, to the last bit: every storey carries its damage on.
+/// A series of impacts is bit-identical to impact, unloading, impact, … written out. Every storey keeps its damage.
 #[test]
 fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
     let velocities = [0.9, 1.2, 1.5];
@@ -128,7 +128,7 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
         );
         let rest = impact.rest.as_ref().unwrap();
         assert_eq!(rest.drift(), list(&apart, 2 * index + 1, "residual_drift"));
-        // The next impact begins there, with nothing to spring back.
+        // The next impact begins there; no elastic deformation is left.
         if let Some(next) = impacts(&series).blows.get(index + 1) {
             let start = &next.storey().unwrap().floors[0];
             close(&start.computed, &rest.displacement, 1e-15);
@@ -142,7 +142,7 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
             assert!(rest.displacement.iter().any(|place| place.abs() > 1e-3));
         }
     }
-    // Largest over the impacts, where it was brought to last, and all that each storey took.
+    // Maximum over the impacts, the final position, and the energy that each storey absorbed.
     let last = impacts(&series).blows.last().unwrap();
     assert_eq!(
         list(&series, 0, "residual_drift"),
@@ -167,8 +167,8 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
     }
 }
 
-/// After a series of impacts each cell's zero z leaves the drift of a storey off by −z/k for each floor above it, and Σ of the squares is
-/// u(`residual_drift`): of the last impact's rest, as its own results tell.
+/// A zero error z of each cell changes the drift of a storey by −z/k for each floor above it. After a series of impacts, the root of the
+/// sum of squares is u(`residual_drift`). It applies to the rest after the last impact, as its own results state.
 #[test]
 fn the_residual_drift_of_a_series_has_the_uncertainty_of_the_zero_offsets() {
     let mut plan = rising(&[0.9, 1.2], Between::Unload);
@@ -197,7 +197,7 @@ fn the_residual_drift_of_a_series_has_the_uncertainty_of_the_zero_offsets() {
     );
 }
 
-/// It ends with the first impact after which a storey has drifted too far, and after the last of the list.
+/// It ends with the first impact after which a storey drift is too large. Otherwise it ends with the last impact of the list.
 #[test]
 fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
     let velocities = [0.2, 0.4, 0.6, 0.8];
@@ -239,7 +239,7 @@ fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
         number(&some, 0, "first_failed_energy").0,
         Some(0.5 * 10.0 * 0.6 * 0.6)
     );
-    // Home is where the first began; to stay is to begin under the load of the last.
+    // `home` is the start of the first impact; `stay` begins the next impact under the load of the last.
     let home = run_unwatched(&rising(&velocities, Between::Home));
     assert!(
         impacts(&home)

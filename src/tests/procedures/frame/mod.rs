@@ -51,7 +51,7 @@ pub(super) fn rest(within: Option<f64>) -> ProcedureKind {
     })
 }
 
-/// The floors pushed to these drifts (m) one after the other, then unloaded.
+/// Pushes the floors to these drifts \[m\] one after the other, then unloads them.
 pub(super) fn unloaded(
     plan: &Plan,
     drifts: [f64; 3],

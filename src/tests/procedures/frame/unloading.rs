@@ -1,4 +1,4 @@
-//! Unloading of a frame: floors without force, inside the limits.
+//! Unloading of a frame to zero floor forces, inside the limits.
 
 use super::{close, rest, three, unloaded};
 use crate::plan::formula::Formula::Constant;
@@ -12,8 +12,8 @@ use crate::run::Unwatched;
 use crate::run::session::Session;
 use crate::tests::testing::{elastic_plan, number, run_unwatched};
 
-/// A bilinear storey beyond its yield drift δy has the shear Fy + hk(δ − δy), and comes back along k: what stays is its
-/// plastic drift, (1 − h)(δ − δy), whatever the other storeys do. Three moves are enough: a short one, most of the way, the rest.
+/// A bilinear storey beyond its yield drift δy has the shear Fy + hk(δ − δy), and unloads along k. The residual drift is its plastic
+/// drift (1 − h)(δ − δy), independent of the other storeys. Three moves are sufficient: a short one, most of the path, the rest.
 #[test]
 fn the_residual_drift_of_a_bilinear_storey_is_plastic() {
     for hardening in [0.0, 0.05, 0.2] {
@@ -34,12 +34,12 @@ fn the_residual_drift_of_a_bilinear_storey_is_plastic() {
     }
 }
 
-/// Beyond a shear of 2Fy a storey yields backwards on its way home, by 2δy along k and the rest along hk: no one move finds
-/// that place, but each is nearer.
+/// Beyond a shear of 2Fy a storey yields in reverse during unloading, by 2δy along k and the rest along hk. No single move finds that
+/// position, but each move is nearer.
 #[test]
 fn a_storey_that_yields_in_unloading_is_followed() {
     let hardening = 0.5;
-    // V = Fy + hk(δ − δy) at δ = 5δy is 3Fy; back by 2δy to Fy, and by Fy/(hk) = 2δy more to none.
+    // V = Fy + hk(δ − δy) at δ = 5δy is 3Fy. Unloading by 2δy gives Fy, and Fy/(hk) = 2δy more gives zero.
     let (rest, steps) = unloaded(&three(hardening), [0.05, 0.05, 0.012], Some(1e-3));
     close(
         &rest.drift(),
@@ -61,8 +61,8 @@ fn a_storey_that_yields_in_unloading_is_followed() {
     );
 }
 
-/// Where increments are limited the way is gone in equal parts of all axes, and the frame rests at the same place; a limit on
-/// the way ends it.
+/// If increments are limited, the path is divided into equal parts of all axes. The frame comes to rest at the same position. A limit on
+/// the path ends the unloading.
 #[test]
 fn all_floors_move_together_inside_the_limits() {
     let mut plan = three(0.1);
@@ -74,7 +74,7 @@ fn all_floors_move_together_inside_the_limits() {
     let (found, steps) = unloaded(&plan, [0.025, 0.03, 0.015], None);
     close(&found.displacement, &wanted.displacement, 1e-15);
     assert_eq!(steps.len(), 4);
-    // Pushed beyond yield and half the way back, it springs out again: beyond a limit it is not let.
+    // Pushed beyond yield and half of the path back, it springs outwards again: moves beyond a limit are refused.
     let mut rig = virtual_rig(&plan);
     plan.limits.increment = Interval::ALL;
     let unloading = of_frame(plan.specimens[0].frame.as_ref().unwrap()).unwrap();
@@ -106,7 +106,7 @@ fn all_floors_move_together_inside_the_limits() {
     );
 }
 
-/// With noise the frame rests within what its cells can tell, and is not chased any further.
+/// With noise, the frame comes to rest within the resolution of its cells, and is not moved further.
 #[test]
 fn noise_is_not_mistaken_for_load() {
     let mut plan = three(0.05);
@@ -119,12 +119,12 @@ fn noise_is_not_mistaken_for_load() {
             ..VirtualLink::default()
         });
         let (found, steps) = unloaded(&plan, [0.02, 0.02, 0.02], None);
-        // Rows of |K| are 8, 6 and 2 MN/m at most: a quantum of 1 µm is 9 N at the second floor, 3σ are 60 N.
+        // The rows of |K| are at most 8, 6 and 2 MN/m. A resolution of 1 µm is 9 N at the second floor; 3σ are 60 N.
         assert!(
             found.force.iter().all(|force| force.abs() <= 60.0),
             "{found:?}"
         );
-        // Three moves, and one more where noise is in the slope of the last.
+        // Three moves, and one more if noise changes the slope of the last.
         assert!(steps.len() <= 5, "{}", steps.len());
         let off = found
             .drift()
@@ -136,7 +136,7 @@ fn noise_is_not_mistaken_for_load() {
     }
 }
 
-/// A frame given by its matrices is no shear building: K⁻¹ takes it home, all floors together.
+/// A frame given by its matrices is not a shear building: K⁻¹ unloads all floors together.
 #[test]
 fn a_frame_of_matrices_is_unloaded_as_a_whole() {
     let mut plan = three(0.05);
@@ -152,7 +152,7 @@ fn a_frame_of_matrices_is_unloaded_as_a_whole() {
     assert!(steps.len() == 4 && steps[1].tangent_stiffness == [None; 3]);
 }
 
-/// Of one storey it is the unloading of one degree of freedom, to the last bit.
+/// Unloading of one storey is bit-identical to that of one degree of freedom.
 #[test]
 fn one_storey_is_unloaded_as_one_degree_of_freedom() {
     let behaviour = Behaviour::Bilinear {

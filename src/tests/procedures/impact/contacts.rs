@@ -1,4 +1,4 @@
-//! How many blows there were, and what errors of energy are shares of, on one degree of freedom and on one storey.
+//! Number of impacts, and the reference energy of relative energy errors, on one degree of freedom and on one storey.
 
 use crate::plan::formula::Formula::Constant;
 use crate::plan::{
@@ -8,10 +8,10 @@ use crate::plan::{
 use crate::record::{History, ImpactStep, Record, StepState};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
 
-/// As heavy as the earth, next to a striker of 10 kg.
+/// As heavy as the earth, compared with a striker of 10 kg.
 const HEAVY: f64 = 1e9;
 
-/// A striker that falls on something heavy at 1 m/s, alone or as the only storey of a frame.
+/// A striker that falls onto a heavy mass at 1 m/s, alone or as the only storey of a frame.
 fn bouncing(contact: &Contact, time_step: f64, framed: bool) -> Plan {
     let mut plan = if framed {
         let mut plan = struck_frame();
@@ -51,7 +51,7 @@ fn steps(record: &Record, procedure: usize) -> &[ImpactStep] {
     }
 }
 
-/// Steps in contact that follow one apart, or begin the run.
+/// Steps in contact that follow a step without contact, or begin the run.
 fn runs_in_contact(steps: &[ImpactStep]) -> usize {
     let free = |step: &ImpactStep| step.state == StepState::Free;
     steps
@@ -60,8 +60,8 @@ fn runs_in_contact(steps: &[ImpactStep]) -> usize {
         .count()
 }
 
-/// After the n-th blow a ball is away for 2eⁿu/g: they are followed until that is a thousandth of a step, however many of
-/// them one step holds.
+/// After the n-th impact a ball is in flight for 2eⁿu/g. The impacts are followed until this time is a thousandth of a step, however many
+/// impacts one step contains.
 #[test]
 fn blows_inside_a_step_are_blows() {
     for coefficient in [0.0, 0.5, 0.7] {
@@ -90,8 +90,8 @@ fn blows_inside_a_step_are_blows() {
     }
 }
 
-/// A surface of finite stiffness throws the striker up elastically: it is back after 2u/g = 0.204 s, and again after as much.
-/// Three blows in half a second, also where a step is longer than the way up and down.
+/// A surface of finite stiffness rebounds the striker elastically: it returns after 2u/g = 0.204 s, and again after the same time. Half a
+/// second contains three impacts, also if a step is longer than the flight.
 #[test]
 fn a_surface_that_closes_inside_a_step_is_struck() {
     let contact = Contact::Hertz {
@@ -112,7 +112,7 @@ fn a_surface_that_closes_inside_a_step_is_struck() {
     }
 }
 
-/// Under the laws that act step by step a run of steps in contact is one blow.
+/// Under the step-by-step laws, consecutive steps in contact are one impact.
 #[test]
 fn steps_in_contact_one_after_the_other_are_one_blow() {
     for contact in [
@@ -181,8 +181,9 @@ fn at_a_load(mut plan: Plan, to: f64, time_step: f64) -> Plan {
     plan
 }
 
-/// A specimen that is let go from 0.1 m under a striker of 5 mJ swings with ½KX₀² = 1.5 J: that is what the error of the explicit
-/// scheme is a share of. It swings at most by (ωΔt)²/4 of it, and shrinks with Δt², where of the striker's energy it is hundreds.
+/// A specimen released from 0.1 m under a striker of 5 mJ vibrates with ½KX₀² = 1.5 J. The error of the explicit scheme is relative to
+/// this energy. It oscillates by at most (ωΔt)²/4 of it, and decreases with Δt². Relative to the energy of the striker it would be
+/// hundreds.
 #[test]
 fn errors_are_shares_of_all_that_was_put_in() {
     let stiffness = 300.0;
@@ -227,7 +228,7 @@ fn errors_are_shares_of_all_that_was_put_in() {
     }
 }
 
-/// Of a striker that falls its weight's work is put in too; where it comes to nothing the input is ½ Ms V0², as the paper has it.
+/// The work of the weight of a falling striker is also input. If this work is negligible, the input is ½ Ms V0², as in the paper.
 #[test]
 fn the_work_of_a_weight_is_put_in() {
     let of = |gravity: f64| {

@@ -1,4 +1,4 @@
-//! Blows of rising energy, as run on a virtual rig.
+//! Impact series of increasing energy, run on a virtual rig.
 
 use crate::plan::formula::Formula;
 use crate::plan::formula::Formula::Constant;
@@ -70,7 +70,8 @@ fn history(record: &Record) -> &EscalateHistory {
     }
 }
 
-/// What is so of every blow is said after the first, and at the end of how many more; a row of one says nothing more.
+/// An observation that applies to every impact is reported after the first, with the number of the others at the end. A series of one
+/// adds nothing.
 #[test]
 fn what_is_so_of_every_blow_is_said_once() {
     let of = |velocities: &[f64]| {
@@ -79,7 +80,7 @@ fn what_is_so_of_every_blow_is_said_once() {
             until: Until::Duration,
             ..blow()
         };
-        // Whatever they come to: a condition on their peak would end the row with the first.
+        // No requirement on their results: a condition on their peak would end the series with the first.
         let row = Escalate {
             impact: short,
             condition: Vec::new(),
@@ -107,7 +108,7 @@ fn what_is_so_of_every_blow_is_said_once() {
     );
 }
 
-/// Each blow is the impact that the plan could have written out, one unload after the other.
+/// Each impact is the impact that the plan could have written out, one unloading after the other.
 #[test]
 fn every_blow_is_an_impact_of_its_own() {
     let velocities = [0.3, 0.6, 0.9];
@@ -154,7 +155,7 @@ fn every_blow_is_an_impact_of_its_own() {
     assert!(peaks.windows(2).all(|pair| pair[0] < pair[1]));
 }
 
-/// An elastic specimen on a sticking blow: X = v Ms/√(K(M + Ms)), so that the level that fails can be reckoned.
+/// An elastic specimen in a plastic impact: X = v Ms/√(K(M + Ms)), so the level that fails can be calculated.
 #[test]
 fn it_ends_with_the_first_blow_that_fails() {
     let velocities = [0.2, 0.4, 0.6, 0.8, 1.0];
@@ -263,7 +264,7 @@ fn a_limit_in_a_blow_ends_it_and_keeps_what_there_is() {
     assert_eq!(number(&record, 0, "passed").0, Some(1.0));
 }
 
-/// Remembers the bound that it was told, and the steps that came.
+/// Stores the bound that was reported, and counts the steps.
 #[derive(Default)]
 struct Counting {
     bound: Option<u64>,
@@ -282,7 +283,7 @@ impl Observer for Counting {
     }
 }
 
-/// The moves between blows are steps too: with blows that go on to their duration the bound is met, never passed.
+/// The moves between impacts are steps too. If the impacts continue to their duration, the bound is reached and never exceeded.
 #[test]
 fn no_more_steps_come_than_were_foretold() {
     for (between, exact) in [
@@ -310,8 +311,8 @@ fn no_more_steps_come_than_were_foretold() {
     }
 }
 
-/// However early its blows are cut, a row neither proves nor refutes what the whole blows do not. K 20 kN/m and 11 kg turn back
-/// after some 37 ms; of whole blows the third is the first beyond 20 mm.
+/// However early its impacts end, a series neither confirms nor rejects a result that complete impacts do not. K 20 kN/m and 11 kg
+/// reverse after some 37 ms. With complete impacts the third is the first beyond 20 mm.
 #[test]
 fn a_row_of_cut_blows_decides_nothing_that_whole_ones_do_not() {
     let requirement = |energy: f64| {
@@ -383,7 +384,8 @@ fn a_row_of_cut_blows_decides_nothing_that_whole_ones_do_not() {
     assert!((3..8).contains(&undecided), "{undecided} were cut");
 }
 
-/// In `while` as in the results, where it rests is where it was brought to: a specimen that springs back goes on.
+/// In `while` and in the results, the unloaded position is the position after unloading: a specimen that springs back continues the
+/// series.
 #[test]
 fn a_row_goes_by_where_the_specimen_rests() {
     let mut row = rising(&[0.1, 0.2], 1e-4, Between::Unload);
@@ -395,7 +397,7 @@ fn a_row_goes_by_where_the_specimen_rests() {
         });
     };
     row.condition.iter_mut().for_each(read);
-    // At the end of each blow it is some 2 mm and 4 mm out.
+    // At the end of each impact it is at some 2 mm and 4 mm.
     let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(row)]));
     assert!(
         history(&record)

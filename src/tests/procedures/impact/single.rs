@@ -1,4 +1,4 @@
-//! Impacts on plans built by hand: the paper's first example, remarks, limits, inspections, resolution of the rig.
+//! Impacts on plans built by hand: the paper's first example, observations, limits, inspections, resolution of the rig.
 
 use crate::physics::contact::state::StepState;
 use crate::plan::formula::Formula;
@@ -59,7 +59,7 @@ fn example_1_comes_out_as_printed() {
     );
     assert_eq!(steps[1].state, StepState::Contact);
     assert_eq!(value(&record, "steps"), count(steps.len() as u64 - 1));
-    // Each move at the rig's own 1 mm/s: 0.157864 m out at least.
+    // Each move at the rig's own 1 mm/s: at least 0.157864 m outwards.
     let way: f64 = steps
         .windows(2)
         .map(|pair| (pair[1].command - pair[0].command).abs())
@@ -119,8 +119,8 @@ fn pauses_take_rig_time_and_a_time_step_may_be_critical() {
     );
 }
 
-/// Under a contact of finite stiffness the critical step is that of the contact: a step that the plan does not give must show the
-/// blow. Between free masses F = k^(2/5)(5/4 μu²)^(3/5) (Hertz); the spring gives nothing of note in so short a time.
+/// With a contact of finite stiffness, the critical step is that of the contact. A step that the plan does not specify must resolve the
+/// impact. Between free masses F = k^(2/5)(5/4 μu²)^(3/5) (Hertz). The spring adds nothing significant in such a short time.
 #[test]
 fn a_step_that_is_not_given_shows_the_blow_of_a_stiff_contact() {
     let hertz = |step, duration| {
@@ -149,7 +149,7 @@ fn a_step_that_is_not_given_shows_the_blow_of_a_stiff_contact() {
     let free = 1e9_f64.powf(0.4) * (1.25_f64 * 10.0 / 11.0).powf(0.6);
     let first = hertz(20.0, 0.5e-3);
     assert!((first / free - 1.0).abs() < 2e-3, "{first} {free}");
-    // Later blows meet a structure that comes back, and are harder.
+    // Later impacts hit a structure that moves back, and are harder.
     let (found, fine) = (hertz(20.0, 0.05), hertz(400.0, 0.05));
     assert!((found / fine - 1.0).abs() < 5e-3, "{found} {fine}");
 }
@@ -175,7 +175,7 @@ fn a_run_that_ends_early_says_that_its_peak_is_none() {
             .iter()
             .map(|step| step.displacement)
             .fold(0.0, f64::max);
-        // What goes on past its largest X has seen a peak.
+        // A run that continues past its largest X contains the peak.
         let moving_on = last.velocity > 0.0 && last.displacement >= largest;
         assert_eq!(says("not a peak"), moving_on, "{duration}");
         still_moving_on += u32::from(moving_on);
@@ -209,7 +209,7 @@ fn a_breach_keeps_every_step_and_what_follows_from_them() {
     assert_eq!(value(&record, "steps"), count(last.step));
     assert_eq!(record.events.last().unwrap().kind, EventKind::LimitBreach);
     assert_eq!(record.events.last().unwrap().step, Some(last.step));
-    // A force is found out by reading: the step that was read past the limit is there, and is what the specimen was taken to.
+    // A force limit is detected by reading. The step that exceeded the limit is in the results, because the specimen reached it.
     plan.limits = crate::plan::Limits {
         force: Interval {
             low: -30.0,
@@ -239,7 +239,7 @@ fn an_energy_error_past_its_limit_aborts_after_recording_the_step() {
         run_unwatched(&plan)
     };
     assert_eq!(within(impact()).outcome, Outcome::Completed);
-    // A tangent held to a hundredth of K0 no longer closes the balance.
+    // A tangent limited to a hundredth of K0 no longer closes the balance.
     let record = within(Impact {
         stepping: Stepping {
             max_tangent_ratio: constant(0.01),
@@ -310,7 +310,8 @@ fn noise_is_declared_to_the_tangent_stiffness_and_a_seed_repeats_the_run() {
     });
     let first = run_unwatched(&noisy);
     assert_eq!(steps(&first), steps(&run_unwatched(&noisy)));
-    // A change of force of less than ten deviations is no stiffness: the guard leaves K0 at the first, short steps back.
+    // A force change of less than ten standard deviations does not determine a stiffness. The guard then uses K0 at the first, short
+    // steps back.
     for step in steps(&first) {
         assert!(
             (step.tangent_stiffness / 327.65 - 1.0).abs() < 0.5,
@@ -364,7 +365,7 @@ fn an_input_can_be_an_earlier_result_with_its_uncertainty() {
     );
 }
 
-/// A table that stiffens from 300 to 900 N/m at 20 mm: the check knows the first, the run measures the second.
+/// A table that stiffens from 300 to 900 N/m at 20 mm: the check uses the first, the run measures the second.
 #[test]
 fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
     let stiffening = |integrator| {
@@ -399,7 +400,7 @@ fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
     };
     let remarks = stiffening(crate::plan::Integrator::AlphaOs { alpha: 0.0 });
     assert_eq!(remarks.len(), 1, "{remarks:?}");
-    // The first secant across the corner, or after it; 2/√(590) s = 82 ms is left.
+    // The first secant across the breakpoint, or after it; 2/√(590) s = 82 ms is left.
     assert!(
         remarks[0].text.contains("K_I = 310.0 N/m")
             && remarks[0].text.contains("is within (2.000 ms)"),

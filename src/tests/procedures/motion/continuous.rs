@@ -1,4 +1,4 @@
-//! Continuous runs on the virtual rig: beside step and pause, against closed forms, and played back from their record.
+//! Continuous runs on the virtual rig: compared with ramp-and-hold and with closed forms, and replayed from their run log.
 
 use crate::plan::formula::Formula::Constant;
 use crate::plan::{
@@ -19,7 +19,7 @@ fn steps(record: &Record) -> &[ImpactStep] {
     }
 }
 
-/// Steps by explicit Newmark, corrected to the targets where the actuator does not stop.
+/// Steps by explicit Newmark, corrected to the targets in continuous mode.
 fn explicit(mode: Mode, time_step: f64) -> Stepping {
     Stepping {
         mode,
@@ -29,7 +29,7 @@ fn explicit(mode: Mode, time_step: f64) -> Stepping {
     }
 }
 
-/// Let go at 10 mm from rest, with the striker out of reach, for half a second.
+/// Released at 10 mm from rest, with the striker out of reach, for half a second.
 fn let_go(mode: Mode, damping: f64, coulomb: f64, time_step: f64) -> Plan {
     let blow = Impact {
         stepping: explicit(mode, time_step),
@@ -53,7 +53,7 @@ fn let_go(mode: Mode, damping: f64, coulomb: f64, time_step: f64) -> Plan {
 
 const CONTINUOUS: Mode = Mode::Continuous { time_scale: SCALE };
 
-/// Energy that has gone out of the structure by the end, J: what it began with less what it has.
+/// Energy that the structure has lost at the end \[J\]: initial energy minus final energy.
 fn lost(plan: &Plan) -> f64 {
     let record = run_unwatched(plan);
     let last = steps(&record).last().unwrap();
@@ -79,7 +79,7 @@ fn a_damper_takes_what_the_closed_form_says_and_step_and_pause_shows_none_of_it(
     assert!(lost(&let_go(Mode::StepAndPause, damper, 0.0, 5e-4)).abs() < 1e-4 * exact);
 }
 
-/// Friction takes F_c over all the way that was gone, in either mode: the cell keeps its sign through a pause.
+/// Friction dissipates F_c over the whole path, in either mode: the cell keeps its sign through a pause.
 #[test]
 fn friction_takes_its_force_times_the_way() {
     let friction = 0.05;
@@ -99,8 +99,8 @@ fn friction_takes_its_force_times_the_way() {
     }
 }
 
-/// Without damping an ideal rig is asked for the same targets, and reads the same forces there, in either mode: the paper's
-/// first example too, with its blows.
+/// Without damping, an ideal rig gets the same targets and reads the same forces there, in either mode. The same applies to the paper's
+/// first example with its impacts.
 #[test]
 fn without_damping_both_modes_are_the_same_run() {
     let by = |mode| {
@@ -119,7 +119,7 @@ fn without_damping_both_modes_are_the_same_run() {
         );
         assert_eq!(one.state, other.state);
     }
-    // A step takes the time scale times Δt of the rig's time, whatever way it goes.
+    // A step takes the time scale times Δt of laboratory time, for every path.
     let wall: Vec<f64> = steps(&one).iter().map(|step| step.wall_time).collect();
     assert!(
         wall.windows(2)
@@ -128,9 +128,9 @@ fn without_damping_both_modes_are_the_same_run() {
     );
 }
 
-/// What is read beside K·d̃ is the damper at the velocity with which the target is passed, right after a blow too, to the first
-/// order of the step: a blow is an impulse, and nothing of it lasts. (With the blow's acceleration kept, half its jump
-/// of velocity would be felt besides, at any step.) A limit force lasts, and is kept.
+/// The reading is K·d̃ plus the damper force at the velocity at the target, to first order of the step. This also applies directly after
+/// an impact. An impact is an impulse and has no lasting effect. With the acceleration of the impact kept, half its velocity jump would
+/// also be measured, at any step. A limit force lasts, and is kept.
 #[test]
 fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
     let damper = 50.0;
@@ -151,7 +151,7 @@ fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
             let forces = [0, 1, 2].map(|step: usize| three[step].contact_force);
             let velocity = (three[2].command - three[0].command) / (three[2].time - three[0].time);
             jump = jump.max(forces[1] * time_step);
-            // The blow at the end of a step, and the first and last step of a lasting one, are no smooth motion.
+            // The impact at the end of a step is not smooth motion. The same applies to the first and last step of a lasting impact.
             if forces[1] == 0.0 || (forces[0] == forces[1] && forces[1] == forces[2]) {
                 let felt = three[1].restoring_force - STIFFNESS * three[1].command;
                 worst = worst.max((felt - damper / SCALE * velocity).abs());
@@ -178,8 +178,8 @@ fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
     }
 }
 
-/// While a target is computed the actuator goes on at the acceleration it had, but not at that of a blow: a jump of velocity is
-/// no trend.
+/// While a target is computed, the actuator continues at its last acceleration, but not at that of an impact. A velocity jump is not a
+/// trend.
 #[test]
 fn a_blow_is_no_trend_to_go_on_with() {
     use crate::record::journal::testing::PowerLoss;
@@ -238,8 +238,8 @@ fn a_blow_is_no_trend_to_go_on_with() {
     }
 }
 
-/// A lag leaves the piston v·lag behind its target: corrected to it, the run is near the ideal one; read as it stands, the
-/// lag feeds energy in, and the monitor holds the rig.
+/// A lag leaves the piston v·lag behind its target. With the correction, the run is near the ideal run. With raw readings, the lag adds
+/// energy, and the monitor holds the rig.
 #[test]
 fn the_reading_is_corrected_to_the_target() {
     let lagging = |correct: bool| {
@@ -248,7 +248,7 @@ fn the_reading_is_corrected_to_the_target() {
             lag: 0.1,
             ..VirtualLink::default()
         });
-        // The striker flies by: its energy is what the shares are of.
+        // The striker passes without contact: its energy is the reference of the relative errors.
         plan.limits.tracking_energy_error = Interval {
             low: 0.0,
             high: 1e6,
@@ -296,8 +296,7 @@ fn a_continuous_run_is_stopped_on_its_way_by_what_is_read_there() {
     );
 }
 
-/// What was recorded of a continuous run is the run: played back, the same to the last bit; with one bit of a path turned,
-/// another one.
+/// The recorded continuous run is replayed bit-identically. With one bit of a path changed, the replay differs.
 #[test]
 fn a_continuous_run_is_played_back_from_its_record() {
     use crate::record::journal::testing::PowerLoss;
@@ -354,8 +353,9 @@ fn a_continuous_run_is_played_back_from_its_record() {
     );
 }
 
-/// An actuator that is late by 0.35 rad of a free swing is behind by a third of its energy twice a cycle, and gets there: under the
-/// correction by the spring's own K nothing is an error, and the run goes on as if there were no lag; without it, it is held.
+/// A lag of 0.35 rad of a free vibration makes the actuator trail by a third of the energy twice a cycle. The actuator still reaches the
+/// target. With the correction by the spring's own K this is not an error, and the run continues as if without lag. Without the
+/// correction the rig is put on hold.
 #[test]
 fn a_lag_that_is_taken_back_holds_no_run() {
     let with = |lag: f64, i_modification: bool| {
@@ -365,7 +365,7 @@ fn a_lag_that_is_taken_back_holds_no_run() {
             lag,
             ..VirtualLink::default()
         });
-        // It begins where it was sent to.
+        // It begins at the commanded position.
         plan.rig.settle.band = 1e-10;
         let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind else {
             panic!()
@@ -381,7 +381,7 @@ fn a_lag_that_is_taken_back_holds_no_run() {
     assert!(behind > 3e-3, "{behind} m");
     for (late, prompt) in steps(&late).iter().zip(steps(&prompt)) {
         assert!((late.computed - prompt.computed).abs() < 1e-9);
-        // Of ½K(10 mm)².
+        // Relative to ½K(10 mm)².
         assert!(
             late.tracking.energy_error.abs() < 1e-6 * 0.015,
             "{:?}",

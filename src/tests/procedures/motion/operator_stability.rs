@@ -1,5 +1,5 @@
-//! Runs on specimens that are stiffer than α-OS takes them for, and on such that are not: one spring and storeys, with a stop at
-//! the steps and without one, dampers and friction in the readings.
+//! Runs on specimens that are stiffer than α-OS assumes, and on others. One spring and storeys, ramp-and-hold and continuous, with
+//! dampers and friction in the readings.
 
 use crate::plan::formula::Formula::Constant;
 use crate::plan::{
@@ -45,7 +45,7 @@ fn splitting(stepping: &Stepping, mode: Mode) -> Stepping {
     }
 }
 
-/// 300 N/m on 1 kg taken for 250 N/m: 2/√50 s = 0.28 s is left.
+/// 300 N/m on 1 kg, assumed as 250 N/m: 2/√50 s = 0.28 s is left.
 #[test]
 fn a_stiffer_spring_is_told_in_both_modes() {
     let of = |mode: Mode, operator: f64, link: VirtualLink| {
@@ -71,7 +71,7 @@ fn a_stiffer_spring_is_told_in_both_modes() {
                 told[0]
             );
         }
-        // No damper and no friction that turns is taken for stiffness.
+        // A damper, or friction that reverses, is not mistaken for stiffness.
         for mode in [Mode::StepAndPause, CONTINUOUS] {
             assert_eq!(
                 of(mode, 310.0, link),
@@ -88,7 +88,7 @@ fn a_stiffer_spring_is_told_in_both_modes() {
     );
 }
 
-/// Of two storeys the upper one, 450 N/m where the frame says 300 N/m, between floors of 1 kg each: 2/√(150·2) s = 0.1155 s.
+/// Two storeys. The upper one has 450 N/m where the frame states 300 N/m, between floors of 1 kg each: 2/√(150·2) s = 0.1155 s.
 #[test]
 fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
     let of = |mode: Mode, upper: f64, link: VirtualLink| {
@@ -133,8 +133,8 @@ fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
     );
 }
 
-/// 300 N/m on 1 kg taken for 100 N/m, in steps that are stable for that: explicit Newmark past 2/√300 s = 0.1155 s, and α-OS past
-/// 2/√200 s = 0.1414 s, turn at every step.
+/// 300 N/m on 1 kg, assumed as 100 N/m, in steps that are stable for 100 N/m. Explicit Newmark beyond 2/√300 s = 0.1155 s, and α-OS
+/// beyond 2/√200 s = 0.1414 s, reverse at every step.
 #[test]
 fn a_response_that_turns_at_every_step_is_told() {
     for (integrator, told_of) in [

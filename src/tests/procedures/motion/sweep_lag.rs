@@ -1,4 +1,4 @@
-//! What a damping sweep tells of a specimen on an actuator that lags: c and its U, whatever K the plan gives.
+//! Damping sweep on an actuator that lags: c and its U, for any K of the plan.
 
 use crate::plan::formula::Formula;
 use crate::plan::{
@@ -52,8 +52,8 @@ fn damping(record: &Record, procedure: usize) -> (f64, f64) {
     )
 }
 
-/// The places as measured are 2vτ apart out and back: with a K that is wrong by 5 kN/m c was wrong by 5 kN/m·τ = 75 N·s/m. What is
-/// left is the decay of the lag on the steady part: its speed is asked for to within 2e⁻⁵.
+/// The measured positions of the two directions differ by 2vτ. A K that is wrong by 5 kN/m made c wrong by 5 kN/m·τ = 75 N·s/m. The
+/// remaining error is the decay of the lag on the steady part. Its speed is required to within 2e⁻⁵.
 #[test]
 fn a_wrong_stiffness_reaches_no_damping_on_a_rig_that_lags() {
     for lag in [0.0, 2e-3, 15e-3] {
@@ -80,7 +80,7 @@ fn a_wrong_stiffness_reaches_no_damping_on_a_rig_that_lags() {
     }
 }
 
-/// By a K of the plan's own ramp, with and without lag: U holds c in 93 to 97 of 100 runs.
+/// With K from the plan's own ramp, with and without lag: U covers c in 93 to 97 of 100 runs.
 #[test]
 fn noisy_sweeps_are_held_with_and_without_lag() {
     for lag in [0.0, 5e-3, 15e-3] {
@@ -103,7 +103,7 @@ fn noisy_sweeps_are_held_with_and_without_lag() {
     }
 }
 
-/// The stiffness of the strokes is a line of the budget where it has a part, and none where nothing lags.
+/// The stiffness of the passes is a line of the budget if it contributes. Without lag it does not appear.
 #[test]
 fn the_stiffness_of_the_strokes_is_in_the_budget_of_a_rig_that_lags() {
     for (lag, counts) in [(0.0, false), (15e-3, true)] {
@@ -129,7 +129,8 @@ fn the_stiffness_of_the_strokes_is_in_the_budget_of_a_rig_that_lags() {
     }
 }
 
-/// A broken specimen has no stiffness, and no damping ratio: rounding is none, at the scale of micrometres as of metres.
+/// A broken specimen has no stiffness and no damping ratio. Rounding does not count as stiffness, at the scale of micrometres or of
+/// metres.
 #[test]
 fn strokes_without_stiffness_have_no_damping_ratio() {
     for scale in [1.0, 1e-6] {

@@ -1,5 +1,5 @@
-//! Floors that are sent along sines by a virtual rig that errs in a known way: indicator, energy error, NRMS and peak of each axis
-//! against closed forms, in both modes; and runs that are held by them.
+//! Floors that follow sines on a virtual rig with known errors. Indicator, energy error, NRMS and peak of each axis are compared with
+//! closed forms, in both modes. Some runs are held because of these values.
 
 use crate::physics::integrator::state::FrameState;
 use crate::physics::structure::frame_properties::FrameProperties;
@@ -22,15 +22,15 @@ use crate::tests::testing::struck_frame;
 
 /// Largest command of each floor, m: within the elastic range of `struck_frame`.
 const AMPLITUDES: [f64; 2] = [0.010, 0.018];
-/// K of the frame, N/m.
+/// K of the frame \[N/m\].
 const STIFFNESS: [[f64; 2]; 2] = [[800.0, -300.0], [-300.0, 300.0]];
-/// Of the sine, s.
+/// Period of the sine \[s\].
 const PERIOD: f64 = 2.0;
 const CYCLES: u32 = 5;
-/// Of a continuous run.
+/// Time scale of a continuous run.
 const SCALE: f64 = 40.0;
 
-/// Every floor goes along A sin ωt, whatever is read.
+/// Every floor follows A sin ωt, independent of the readings.
 struct Sine {
     per_cycle: u32,
     state: FrameState,
@@ -95,7 +95,7 @@ impl Stepped for &mut Sine {
     }
 }
 
-/// Of each axis after every step, and what a procedure would make results of.
+/// Monitor values of each axis after every step, from which a procedure forms its results.
 fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>>, Followed) {
     let mut plan = struck_frame();
     plan.rig.link = Link::Virtual(link);
@@ -152,9 +152,9 @@ fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>
     (sine.kept, followed)
 }
 
-/// What the last of the cycles adds in steady state, and what it should where the floors go B sin(ωt − φ), B = gain·A. Per axis:
-/// energy error, indicator, mean square error over ½A². Along a sine read at N points, ∮ B sin(θ − φ) d(A sin θ) by the trapezoidal
-/// rule is −πAB sin φ · sin(2π/N)/(2π/N).
+/// Contribution of the last cycle in steady state, and its expected value. The floors follow B sin(ωt − φ), B = gain·A. Per axis: energy
+/// error, indicator, mean square error over ½A². For a sine read at N points, the trapezoidal rule gives ∮ B sin(θ − φ) d(A sin θ) = −πAB
+/// sin φ · sin(2π/N)/(2π/N).
 fn last_cycle(
     kept: &[Vec<Tracking>],
     per_cycle: u32,
@@ -216,8 +216,8 @@ fn list(results: &[NamedResult], name: &str) -> Vec<f64> {
     }
 }
 
-/// Each increment is missed by a share t, taken from where the actuator stands: x₁ = (1 − t)d₁ + t·x₀, whose gain on a sine is
-/// (1 − t)/(1 − t·e^(−iωΔt)), to rounding.
+/// Each increment misses its target by a fraction t, measured from the present position of the actuator: x₁ = (1 − t)d₁ + t·x₀. Its gain
+/// on a sine is (1 − t)/(1 − t·e^(−iωΔt)), to rounding.
 #[test]
 fn a_share_of_each_increment_missed_shows_as_the_closed_form_says() {
     for missed in [0.2, -0.2] {
@@ -235,8 +235,8 @@ fn a_share_of_each_increment_missed_shows_as_the_closed_form_says() {
         );
         let pairs = last_cycle(&kept, per_cycle, (gain, phase));
         assert!(worst(&pairs) < 1e-9, "{missed}: {pairs:?}");
-        // What a result says is where the run ended. Falling short, the error grows to the steady one, which is sampled; going
-        // beyond, the first is the largest.
+        // A result shows the end of the run. With undershoot, the error grows to the steady one, which is sampled. With overshoot, the
+        // first error is the largest.
         let results = followed.of_each();
         let error = (1.0 - 2.0 * gain * phase.cos() + gain * gain).sqrt();
         for floor in 0..2 {
@@ -255,7 +255,7 @@ fn a_share_of_each_increment_missed_shows_as_the_closed_form_says() {
                     < 4e-3
             );
             assert!((list(&results, "floor_nrms_error")[floor] / error - 1.0).abs() < 0.01);
-            // Of an input of 1 J.
+            // Relative to an input of 1 J.
             assert!(
                 (list(&results, "floor_tracking_energy_error")[floor] / last.energy_error - 1.0)
                     .abs()
@@ -280,8 +280,8 @@ fn a_share_of_each_increment_missed_shows_as_the_closed_form_says() {
     }
 }
 
-/// A lag τ that follows without a stop is τ/scale of virtual time: gain cos φ, φ = atan(ωτ/scale), to the order of the paths
-/// between the readings.
+/// A lag τ in continuous mode is τ/scale of simulated time: gain cos φ, φ = atan(ωτ/scale), to the order of the paths between the
+/// readings.
 #[test]
 fn a_lag_on_the_way_shows_as_the_closed_form_says() {
     let lag = 2.0;
@@ -305,7 +305,7 @@ fn a_lag_on_the_way_shows_as_the_closed_form_says() {
     assert!(fine < 1e-4 && coarse / fine > 4.0, "{coarse} and {fine}");
 }
 
-/// Held in both modes, and by the axis of the largest NRMS error where the plan asks for that.
+/// On hold in both modes, because of the axis with the largest NRMS error if the plan limits it.
 #[test]
 fn tracking_holds_a_blow_on_a_storey_in_both_modes() {
     let struck = |mode: Mode, link: VirtualLink, limit: fn(&mut Plan)| {

@@ -8,7 +8,7 @@ use crate::rig::{
 use crate::run::{Unwatched, run};
 use crate::tests::testing::{elastic_plan, number, ramp};
 
-/// What comes after some good readings.
+/// The reading that follows some valid readings.
 #[derive(Clone, Copy)]
 enum Then {
     NotANumber,

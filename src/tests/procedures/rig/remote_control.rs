@@ -1,5 +1,5 @@
-//! A served rig that watches its zeros. In: a client on a virtual rig whose cell drifts. Out: zeros before the first client and
-//! after the last, on record, and the same from the record alone; none after where a person ended it.
+//! A served rig that monitors its zeros. In: a client on a virtual rig whose cell has zero drift. Out: zeros before the first client and
+//! after the last in the run log, and the same from the run log alone. There are none after the end if the operator ended the session.
 
 use std::cell::Cell;
 
@@ -16,7 +16,7 @@ use crate::run::replay::{Header, LoggedRun};
 use crate::run::{Disconnect, Inspection, Observer};
 use crate::tests::testing::elastic_plan;
 
-/// 0.1 N/s on a cell that may drift by so much, N.
+/// 0.1 N/s on a cell that may drift by this amount \[N\].
 fn plan(force: f64, after: ZeroAfter) -> Plan {
     let mut plan = elastic_plan(1e5, Vec::new());
     plan.rig.link = crate::plan::Link::Virtual(VirtualLink {
@@ -32,7 +32,7 @@ fn plan(force: f64, after: ZeroAfter) -> Plan {
     plan
 }
 
-/// Goes out by half a millimetre, stays, and takes its leave.
+/// Moves out by half a millimetre, stays, and disconnects.
 fn client(specimen: &mut Specimen<'_, '_>) {
     let mut talk = || -> Result<(), RigFault> {
         specimen.come("127.0.0.1:1".to_owned())?;
@@ -46,7 +46,7 @@ fn client(specimen: &mut Specimen<'_, '_>) {
     specimen.close();
 }
 
-/// Wants the end, or not.
+/// Whether it requests the end.
 struct Person {
     wants: Cell<bool>,
 }
@@ -67,7 +67,7 @@ fn header() -> Header {
     }
 }
 
-/// The record of a served rig; the same from the journal alone says the same.
+/// The record of a served rig; the run log alone gives the same record.
 fn served(plan: &Plan, wants: bool) -> Record {
     let (disk, record, steps) = recorded(plan, wants);
     let again = played(plan, &disk);
@@ -76,7 +76,7 @@ fn served(plan: &Plan, wants: bool) -> Record {
     record
 }
 
-/// The record of a served rig from its journal alone.
+/// The record of a served rig from its run log alone.
 fn played(plan: &Plan, disk: &PowerLoss) -> replay::Replayed {
     let again = replay::replay(
         plan,
@@ -159,7 +159,7 @@ fn a_rig_that_does_not_say_is_not_asked() {
     assert_eq!(served(&plan, false).drift, None);
 }
 
-/// A version that read no zeros of a served rig wrote what this one writes of a rig that does not say how far they may drift.
+/// A version that read no zeros of a served rig wrote such a run log. It equals that of a rig without a stated limit of zero drift.
 #[test]
 fn a_record_without_the_zeros_that_its_plan_asks_for_is_played_back_without_them() {
     let asking = plan(5.0, ZeroAfter::Start);

@@ -13,7 +13,7 @@ use crate::uncertainty::known;
 
 const BRANCH: f64 = 1.2e5;
 const SHARE: f64 = 0.015;
-/// s
+/// \[s\]
 const TIME_CONSTANT: f64 = 1.7;
 const REFERENCE_TIME: f64 = 0.4;
 
@@ -80,8 +80,8 @@ fn value(record: &Record, name: &str) -> f64 {
     number(record, 0, name).0.unwrap()
 }
 
-/// 0.5 s of dwell after 0.2 s of move made 102.9 of 120 kN/m, and 0.677 s of 0.4 s. Exact on an ideal rig; one that lags goes as evenly as
-/// the first two moments of its motion say, so that what is left goes with the cube of lag over time constant.
+/// A dwell of 0.5 s after a move of 0.2 s gave 102.9 kN/m (expected 120) and 0.677 s (expected 0.4). The result is exact on an ideal rig.
+/// The model of a rig with lag has the first two moments of its motion. The remaining error is of third order in lag over time constant.
 #[test]
 fn the_dwell_of_settling_is_time_held() {
     for (lag, within) in [(0.0, 1e-9), (0.02, 1e-4), (0.05, 1e-3)] {
@@ -91,7 +91,7 @@ fn the_dwell_of_settling_is_time_held() {
                 ..VirtualLink::default()
             };
             let record = run_unwatched(&solid(dwell, link()));
-            // What is left of the band as the first reading comes, of the increment: it is gone during the hold.
+            // Remaining tolerance band at the first reading, relative to the increment: it decays during the hold.
             let within = within
                 + 2.0
                     * (5e-6 / 1e-3)
@@ -105,7 +105,7 @@ fn the_dwell_of_settling_is_time_held() {
             assert!(
                 (value(&record, "time_constant") / TIME_CONSTANT - 1.0).abs() < 5.0 * within + 1e-7
             );
-            // A few lags after its move a rig still creeps, which no fit tells from a law as quick as this one.
+            // A few lags after its move a rig still creeps. No fit can distinguish this from a relaxation law of the same speed.
             if dwell < 10.0 * lag {
                 continue;
             }
@@ -126,7 +126,7 @@ fn the_dwell_of_settling_is_time_held() {
     }
 }
 
-/// U holds what noise leaves, on a rig that lags and waits.
+/// U covers the error from noise, on a rig that lags and waits.
 #[test]
 fn noisy_holds_of_a_rig_that_settles_are_held() {
     for (name, truth, plan) in [
@@ -154,13 +154,13 @@ fn noisy_holds_of_a_rig_that_settles_are_held() {
             let parts = &record.procedures[0].result(name).unwrap().contributions;
             (value(&record, name) - truth).abs() <= known(parts, &record).unwrap().expanded()
         });
-        // Of sixty 95.45 % are 57.3; three binomial deviations are 4.8.
+        // 95.45 % of sixty are 57.3; three binomial standard deviations are 4.8.
         let held = held.count();
         assert!(held >= 53, "{name}: {held} of 60");
     }
 }
 
-/// The parts of a hold add up to the time between its readings, and the move is the one that the rig made.
+/// The parts of a hold add up to the time between its readings. The move equals the move of the rig.
 #[test]
 fn a_hold_tells_when_the_rig_moved() {
     let record = run_unwatched(&solid(0.5, VirtualLink::default()));

@@ -9,8 +9,8 @@ use crate::plan::{
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
 use crate::uncertainty::{Contribution, Source, combined};
 
-/// A striker that sticks to a frame of one storey is the impact of one degree of freedom, and as uncertain: the same
-/// contributions of the same inputs, drawn errors too.
+/// A plastic impact on a frame of one storey equals the impact on one degree of freedom, including its uncertainty. The contributions of
+/// the inputs are equal, and those of the simulated reading errors.
 #[test]
 fn one_storey_has_the_uncertainty_of_one_degree_of_freedom() {
     const STIFFNESS: f64 = 327.65;
@@ -125,8 +125,8 @@ fn times(a: Matrix, x: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Two elastic storeys on ground that jumps to 1 m/s² and stays: Ẍ + A X = −ι, A = M⁻¹D_f K D_d⁻¹ with the factors of the
-/// cells and of the transducers, so that X = −g(A)ι, g(λ) = (1 − cos √λ t)/λ, by its two modes (Sylvester's formula). Largest
+/// Two elastic storeys on ground that jumps to 1 m/s² and stays: Ẍ + A X = −ι, A = M⁻¹D_f K D_d⁻¹ with the factors of the cells and of
+/// the transducers. Then X = −g(A)ι, g(λ) = (1 − cos √λ t)/λ, by its two modes (Sylvester's formula). Compared are the largest
 /// displacements, drifts and base shear over 0.2 s.
 fn two_storeys(
     masses: [f64; 2],
@@ -240,7 +240,7 @@ fn two_elastic_storeys_have_the_uncertainty_of_their_modes() {
             ];
             for (source, expected) in cases {
                 let (found, within) = (from(&parts, source), 2e-3 * 0.01 * value);
-                // Where both sides of a trifle differ, the larger is told.
+                // If the two one-sided differences of a small effect disagree, the larger is reported.
                 let rough = parts
                     .iter()
                     .any(|part| part.source == source && !part.smooth);
@@ -257,12 +257,12 @@ fn two_elastic_storeys_have_the_uncertainty_of_their_modes() {
             }
         }
         let scale = from(&parts, Source::GroundScale(0));
-        // Told between the ends of steps, where the value is told at one.
+        // The contribution includes peaks between the ends of steps; the value is that at the end of a step.
         assert!(
             (scale / (0.02 * value) - 1.0).abs() < 1e-4,
             "{name}[{place}] of the ground: {scale}"
         );
-        // What does next to nothing may well do it to either side.
+        // The one-sided differences of a negligible effect may disagree.
         let rough = parts
             .iter()
             .filter(|part| !part.smooth && part.amount.abs() > 1e-3 * value);
@@ -330,7 +330,7 @@ fn periods_have_the_uncertainty_of_masses_and_stiffnesses() {
             }
         }
     }
-    // Undamped, the measured forces are all there is: a stated stiffness is no input of the motion.
+    // Undamped, the motion depends on the measured forces only: a stated stiffness is not an input.
     let (value, parts) = entry(&record, "max_drift", 0);
     assert!(
         from(
@@ -345,7 +345,7 @@ fn periods_have_the_uncertainty_of_masses_and_stiffnesses() {
     );
 }
 
-/// Nothing uncertain, nothing told.
+/// Without uncertain inputs, no uncertainty is reported.
 #[test]
 fn an_exact_frame_has_the_uncertainty_of_its_time_step() {
     for plan in [

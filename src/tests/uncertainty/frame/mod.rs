@@ -19,7 +19,7 @@ pub(crate) fn storey(mass: f64, stiffness: f64) -> Storey {
     Storey::new(mass, stiffness, Behaviour::Elastic { stiffness })
 }
 
-/// A frame on ground that begins to move at once, with these accelerations 10 ms apart.
+/// A frame on ground that moves from the start, with these accelerations 10 ms apart.
 pub(crate) fn shaken(storeys: Vec<Storey>, accelerations: Vec<f64>, time_step: f64) -> Plan {
     let shake = Shake {
         specimen: 0,

@@ -9,9 +9,9 @@ use crate::uncertainty::{Source, combined};
 
 const RUNS: u32 = 150;
 
-/// The virtual rig run `RUNS` times with inputs as they may be, against what one run of `doubtful` foretells. The standard
-/// deviation of a standard deviation of normal numbers is 1/√(2(n − 1)) of it, and that of the foretold one 1/√(2·64) where it
-/// is drawn: three of both together.
+/// The virtual rig runs `RUNS` times with random inputs; the scatter is compared with the prediction of one run of `doubtful`. The
+/// relative standard deviation of a standard deviation of normal numbers is 1/√(2(n − 1)). For a Monte Carlo prediction it is 1/√(2·64).
+/// The limit is three times both combined.
 fn scatters_as_predicted(
     doubtful: &Plan,
     names: &[(&str, usize)],
@@ -32,7 +32,7 @@ fn scatters_as_predicted(
     for (values, (name, place)) in found.iter().zip(names) {
         let (_, parts) = entry(&told, name, *place);
         let (scatter, u) = (scatter(values), combined(&parts).unwrap());
-        // Where the record leaves open how the storeys go on, the most of what they may do is told, and marked.
+        // If the measured path does not determine the motion of the storeys, the largest possible effect is reported and marked.
         let sure = parts
             .iter()
             .all(|part| part.smooth || part.amount.abs() < 0.1 * u);
@@ -56,7 +56,7 @@ fn yielding(mass: f64, stiffness: f64, yield_force: f64) -> Storey {
     }
 }
 
-/// Two storeys that yield forth and back on shaking ground, with masses, damping and the factor of the ground as they may be.
+/// Two storeys that yield in both directions under ground motion, with random masses, damping and ground factor.
 #[test]
 fn repeated_ground_motion_tests_scatter_as_predicted() {
     let ground: Vec<f64> = (0..150)
@@ -99,7 +99,7 @@ fn repeated_ground_motion_tests_scatter_as_predicted() {
     });
 }
 
-/// A blow on the upper of two storeys that yield.
+/// An impact on the upper of two storeys that yield.
 #[test]
 fn repeated_impacts_on_a_storey_scatter_as_predicted() {
     let with = |mass: f64, velocity: f64, striker: f64| {
@@ -147,7 +147,7 @@ fn repeated_impacts_on_a_storey_scatter_as_predicted() {
     });
 }
 
-/// Noise of the cells of an elastic frame: runs that differ in nothing but the seed.
+/// Noise of the cells of an elastic frame: runs that differ only in the seed.
 #[test]
 fn noise_of_the_load_cells_scatters_as_predicted() {
     let with = |seed: u64| {
@@ -172,8 +172,8 @@ fn noise_of_the_load_cells_scatters_as_predicted() {
     scatters_as_predicted(&with(1), &names, true, &mut |_, run| with(run + 1));
 }
 
-/// Of a long record with many inputs the floors' and the axes' are drawn together: what they come to is the same, as far as so
-/// many draws tell, and a study costs no more.
+/// For a long record with many inputs, the trials perturb all floors together and all axes together. The result is the same within the
+/// scatter of the trials, at the same cost.
 #[test]
 fn inputs_perturbed_together_have_the_sum_of_their_variances() {
     let plan = |duration: f64| {
@@ -188,7 +188,7 @@ fn inputs_perturbed_together_have_the_sum_of_their_variances() {
         shake(&mut plan).duration = Some(constant(duration));
         rebuilt(plan)
     };
-    // 16 inputs, moved twice each at least, are 32 runs: of 300 steps of 8 floors one may have so many, of 2200 one may not.
+    // 16 inputs, perturbed at least twice each, need 32 runs. This number is allowed for 300 steps of 8 floors, and not for 2200.
     for (duration, together) in [(0.3, false), (2.2, true)] {
         let record = run_unwatched(&plan(duration));
         let (value, parts) = entry(&record, "max_displacement", 7);

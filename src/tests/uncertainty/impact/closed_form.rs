@@ -8,8 +8,8 @@ use crate::plan::{Impact, Link, ProcedureKind, VirtualLink};
 use crate::tests::testing::{elastic_plan, impact, number, ramp, result_of, run_unwatched};
 use crate::uncertainty::{Contribution, Source, combined};
 
-/// X = `Ms·V0/√(K(M + Ms))`, t = π/2·√((M + Ms)/K), ½KX²; K goes with the factor of the force over that of the
-/// displacement, and a force F₀ that was read too low moves X by −F₀/K.
+/// X = `Ms·V0/√(K(M + Ms))`, t = π/2·√((M + Ms)/K), ½KX². K is proportional to the factor of the force over that of the displacement. A
+/// force F₀ that was read too low changes X by −F₀/K.
 #[test]
 fn an_elastic_impact_has_the_uncertainty_of_its_closed_form() {
     let record = run_unwatched(&all_uncertain(plan(sticking(1e-3))));
@@ -53,13 +53,13 @@ fn an_elastic_impact_has_the_uncertainty_of_its_closed_form() {
             );
         }
     }
-    // ½KX² + F₀X = E: dX = −F₀/K. And the energy stays what the blow left.
+    // ½KX² + F₀X = E: dX = −F₀/K. The energy is still that after the impact.
     let zero = from(&record, "max_displacement", Source::ForceZero(0));
     assert!(
         (zero + 0.2 / STIFFNESS).abs() < 0.01 * 0.2 / STIFFNESS,
         "{zero}"
     );
-    // What depends on the striker alone is exact, and what depends on nothing uncertain has no uncertainty.
+    // A result that depends on the striker only is exact. A result without uncertain inputs has no uncertainty.
     assert!((from(&record, "striker_energy", Source::StrikerVelocity(0)) - 0.1).abs() < 1e-12);
     assert!((number(&record, 0, "striker_energy").1.unwrap() - 0.05 * 5.0_f64.sqrt()).abs() < 1e-9);
     assert_eq!(number(&record, 0, "time_step").1, None);
@@ -77,8 +77,8 @@ fn an_elastic_impact_has_the_uncertainty_of_its_closed_form() {
     );
 }
 
-/// Δtc = (2π/10)√(M/K) of a K that a ramp told: half of its relative error, by the same source, and half of that of M; and so of the
-/// critical step of every blow of a row.
+/// Δtc = (2π/10)√(M/K) with K from a ramp: half of its relative uncertainty, from the same source, and half of that of M. The same
+/// applies to the critical step of every impact of a series.
 #[test]
 fn the_critical_time_step_has_the_uncertainty_of_the_ramp() {
     let blow = Impact {
@@ -127,7 +127,7 @@ fn the_critical_time_step_has_the_uncertainty_of_the_ramp() {
     );
 }
 
-/// Nothing uncertain, nothing told but of the time step.
+/// Without uncertain inputs, only the uncertainty of the time step is reported.
 #[test]
 fn an_exact_impact_has_the_uncertainty_of_its_time_step() {
     let record = run_unwatched(&plan(impact(constant(STIFFNESS))));
@@ -167,7 +167,7 @@ fn a_run_may_ask_for_no_uncertainty() {
     }
 }
 
-/// Half the difference converges with the square of the move, here halved four times from a tenth of V0 and M.
+/// Half the difference converges with the square of the perturbation. The perturbation is halved four times from a tenth of V0 and M.
 #[test]
 fn the_size_of_the_perturbation_converges() {
     let of = |share: f64| {

@@ -1,4 +1,4 @@
-//! Impacts whose uncertainty is shared, large or not determined.
+//! Impacts whose uncertainty is correlated, large or not determined.
 
 use super::{
     MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, plan, sticking,
@@ -11,7 +11,7 @@ use crate::plan::{
 use crate::tests::testing::{elastic_plan, every, impact, number, result_of, run_unwatched};
 use crate::uncertainty::combined;
 
-/// A contact that yields at 60 N is struck a step sooner or later as the speed rises: the indentation jumps.
+/// A contact that yields at 60 N is hit a step earlier or later as the velocity increases: the indentation jumps.
 #[test]
 fn a_discontinuous_result_is_not_treated_as_smooth() {
     let summary = |velocity: f64| {
@@ -40,7 +40,7 @@ fn a_discontinuous_result_is_not_treated_as_smooth() {
     assert!(rough > 0, "none of them jumps");
 }
 
-/// A run that does not lead to what is recorded of it tells no uncertainty, and why.
+/// A re-run that does not reproduce its record reports no uncertainty, and states the reason.
 #[test]
 fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
     use crate::plan::formula::ProcedureId;
@@ -102,7 +102,8 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
     assert_eq!(results, before);
 }
 
-/// The limit is kept by 3 %: with 1 % of uncertainty that passes, with 2 % nothing is decided, and with 1 % a limit missed by 3 % fails.
+/// The limit is met with a margin of 3 %. With 1 % of uncertainty the result passes, with 2 % it is inconclusive. With 1 %, a limit
+/// exceeded by 3 % fails.
 #[test]
 fn a_guard_band_decides_nothing_where_the_impact_is_uncertain() {
     use crate::plan::{Comparison, Condition, DecisionRule, Requirement, Test};
@@ -150,7 +151,7 @@ fn a_guard_band_decides_nothing_where_the_impact_is_uncertain() {
     assert_eq!(verdict(1.03, 0.02, DecisionRule::Simple), Verdict::Pass);
 }
 
-/// Two blows of one striker and one cell share velocity and calibration, and no error of their readings.
+/// Two impacts of one striker and one cell share velocity and calibration, but not the errors of their readings.
 #[test]
 fn impacts_of_one_striker_share_its_uncertainty() {
     use crate::plan::{Between, Escalate};
@@ -189,7 +190,7 @@ fn impacts_of_one_striker_share_its_uncertainty() {
             })
             .map(|result| &result.contributions)
             .collect::<Vec<_>>();
-        // The list of all blows is as uncertain as they are.
+        // The list of all impacts has the same uncertainties as the impacts.
         let listed = record.procedures[0]
             .result("absorbed_energies")
             .unwrap()
@@ -214,7 +215,7 @@ fn impacts_of_one_striker_share_its_uncertainty() {
         (of_blows, u("absorbed_energy"), u("max_displacement"))
     };
     let (of_blows, (total, u), (largest, largest_u)) = run(0.01, 0.0);
-    // 1 % of V0 is 1 % of every speed, and so 2 % of every energy: the sum of the two, not its root of squares.
+    // 1 % of V0 is 1 % of every velocity, and so 2 % of every energy: the linear sum of both, not the root of the sum of squares.
     assert!(
         (u.unwrap() - (of_blows[0] + of_blows[1])).abs() < 1e-9
             && (u.unwrap() / total.unwrap() - 0.02).abs() < 1e-4
@@ -227,8 +228,8 @@ fn impacts_of_one_striker_share_its_uncertainty() {
     );
 }
 
-/// Explicit steps just below 2/ω are stable; of a cell that reads 2 % more, for a step of 2.01/ω, they are not, and what such a
-/// cell would make of the results is no uncertainty of them. A tenth of that is.
+/// Explicit steps just below 2/ω are stable. For a cell that reads 2 % more, the step is 2.01/ω, which is unstable. The effect of such a
+/// cell is not an uncertainty of the results. A tenth of this error gives a valid uncertainty.
 #[test]
 fn a_diverging_path_is_reported_as_such() {
     let with = |force_uncertainty: f64| {

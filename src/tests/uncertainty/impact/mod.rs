@@ -18,7 +18,7 @@ pub(super) fn constant(value: f64) -> Formula {
     Formula::Constant(value)
 }
 
-/// Perfectly plastic contact, so that the closed form is exact: both go on with V = `Ms·V0/(M + Ms)`.
+/// Perfectly plastic contact, so that the closed form is exact: both bodies continue with V = `Ms·V0/(M + Ms)`.
 pub(super) fn sticking(time_step: f64) -> Impact {
     Impact {
         contact: Contact::Restitution {
@@ -44,7 +44,7 @@ pub(super) fn contributions<'a>(
         .contributions
 }
 
-/// Contributions of all but the time step.
+/// All contributions except that of the time step.
 pub(super) fn without_the_time_step(parts: &[Contribution]) -> Vec<Contribution> {
     parts
         .iter()
@@ -53,7 +53,7 @@ pub(super) fn without_the_time_step(parts: &[Contribution]) -> Vec<Contribution>
         .collect()
 }
 
-/// What a source contributes to a result.
+/// Contribution of a source to a result.
 pub(super) fn from(record: &Record, name: &str, source: Source) -> f64 {
     let parts = contributions(record, 0, name);
     parts
@@ -62,7 +62,7 @@ pub(super) fn from(record: &Record, name: &str, source: Source) -> f64 {
         .map_or(0.0, |part| part.amount)
 }
 
-/// Every source at once, 1 % each but for the zero.
+/// Every source simultaneously, 1 % each except the zero error.
 pub(super) fn all_uncertain(mut plan: Plan) -> Plan {
     plan.strikers[0].mass_uncertainty = 0.01 * STRIKER;
     plan.strikers[0].velocity_uncertainty = 0.01;

@@ -8,8 +8,8 @@ use crate::tests::testing::{
 };
 use crate::uncertainty::Source;
 
-/// The rig itself, run again with inputs as they may be, against what one recorded run foretells: a specimen that yields and
-/// comes back with a permanent set. A cell whose newtons are off by a factor makes it stronger by that factor.
+/// The rig runs again with random inputs; the scatter is compared with the prediction of one recorded run. The specimen yields and
+/// unloads with a residual displacement. A cell with a force factor error makes the specimen stronger by that factor.
 #[test]
 fn repeated_runs_scatter_as_predicted() {
     const RUNS: u32 = 200;
@@ -55,7 +55,7 @@ fn repeated_runs_scatter_as_predicted() {
     for (values, name) in found.iter().zip(names) {
         let scatter = scatter(values);
         let u = number(&told, 0, name).1.unwrap();
-        // The standard deviation of a standard deviation of normal numbers is 1/√(2(n − 1)) of it: three of them.
+        // The relative standard deviation of a standard deviation of normal numbers is 1/√(2(n − 1)); the limit is three times this.
         assert!(
             (scatter / u - 1.0).abs() < 3.0 / (2.0 * f64::from(RUNS - 1)).sqrt(),
             "{name}: {scatter} of runs, {u} foretold"
@@ -63,7 +63,7 @@ fn repeated_runs_scatter_as_predicted() {
     }
 }
 
-/// Noise of the cell: runs that differ in nothing but the seed.
+/// Noise of the cell: runs that differ only in the seed.
 #[test]
 fn noise_scatters_repeated_runs_as_its_trials_predict() {
     const RUNS: u64 = 100;
@@ -86,7 +86,7 @@ fn noise_scatters_repeated_runs_as_its_trials_predict() {
         })
         .collect();
     let scatter = scatter(&values);
-    // Both are sampled: 1/√(2·99) and 1/√(2·64), three standard deviations of their ratio.
+    // Both are Monte Carlo estimates: 1/√(2·99) and 1/√(2·64), three standard deviations of their ratio.
     assert!(
         (scatter / u - 1.0).abs() < 3.0 * (1.0 / 198.0_f64 + 1.0 / 128.0).sqrt(),
         "{scatter} of runs, {u} foretold"
@@ -100,7 +100,7 @@ fn noise_scatters_repeated_runs_as_its_trials_predict() {
     assert_eq!(parts.len(), 64);
 }
 
-/// K of a ramp and X of a blow read on one cell: what the cell's factor does to K·X is what it does to either together.
+/// K of a ramp and X of an impact, read on one cell: the factor of the cell affects K·X through both together.
 #[test]
 fn readings_of_one_rig_share_its_calibration() {
     let blow =
@@ -122,7 +122,7 @@ fn readings_of_one_rig_share_its_calibration() {
         Box::new(result_of(1, "max_displacement")),
     );
     let found = product.evaluate(&record, None).unwrap();
-    // K·X goes with the root of the factor: ½ %, and not √(1 + ¼) %.
+    // K·X is proportional to the root of the factor: ½ %, and not √(1 + ¼) %.
     assert!(
         (found.uncertainty.unwrap() / found.value - 0.005).abs() < 1e-5,
         "{found:?}"

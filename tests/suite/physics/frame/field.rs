@@ -29,8 +29,7 @@ fn solve(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
     b
 }
 
-/// On a linear specimen α-OS with `K_I` = K is the implicit HHT-α, solved here for the
-/// displacement with dense matrices of its own:
+/// On a linear specimen α-OS with `K_I` = K is the implicit HHT-α, solved here for the displacement with separate dense matrices:
 /// M a₁ + (1+α)(C v₁ + K d₁) − α(C v₀ + K d₀) = (1+α)f₁ − αf₀.
 #[test]
 fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
@@ -165,7 +164,7 @@ fn a_missed_target_feeds_or_drains_a_run_as_published() {
     let beyond_from_place: Miss = |_, place, target| target + 0.1 * (target - place);
     let exact: Miss = |_, _, target| target;
     for (what, found, expected, digit) in [
-        // Its steps no longer meet the very peak: the period has grown by 0.13 % in ten cycles.
+        // Its steps no longer meet the exact peak: the period has increased by 0.13 % in ten cycles.
         ("exact", amplitude(splitting, false, exact), 0.9989, 5e-5),
         (
             "10 % short",
@@ -248,8 +247,8 @@ fn growth(
 const SHORT: fn(f64, f64) -> f64 = |before, target| target - 0.1 * (target - before);
 const BEYOND: fn(f64, f64) -> f64 = |before, target| target + 0.1 * (target - before);
 
-/// Four axes that know nothing of each other, of four masses, each with an error of its own: the published factors side by side,
-/// to the bit those of four systems of one degree of freedom. I-modification corrects each axis by its own stiffness.
+/// Four uncoupled axes with four masses, each with its own error: the published factors. They are bit-identical to those of four systems
+/// of one degree of freedom. I-modification corrects each axis with its own stiffness.
 #[test]
 fn a_diagonal_frame_grows_axis_by_axis_as_its_single_degrees_of_freedom() {
     let omega = 2.0 * std::f64::consts::PI / 0.5;
@@ -296,9 +295,9 @@ fn a_diagonal_frame_grows_axis_by_axis_as_its_single_degrees_of_freedom() {
     }
 }
 
-/// Two equal storeys let go in the shape of their first mode, T = 0.5 s: errors in proportion to that shape keep it, and both floors
-/// grow by the factor of one degree of freedom. I-modification by the whole K makes of any error, different in each axis too,
-/// the run without one: a correction axis by axis would leave what the axes do to each other.
+/// Two equal storeys released in the shape of their first mode, T = 0.5 s. Errors in proportion to that shape keep it, and both floors
+/// grow by the factor of one degree of freedom. For any error, also a different one in each axis, I-modification by the whole K gives the
+/// run without error. A correction axis by axis would leave the coupling of the axes.
 #[test]
 fn a_coupled_frame_grows_mode_by_mode_and_is_corrected_by_its_whole_stiffness() {
     let omega = 2.0 * std::f64::consts::PI / 0.5;

@@ -1,5 +1,5 @@
-//! Frames on ground that moves: a harmonic motion against its exact solution, and an elastic–plastic building under a record
-//! against exact arcs between yields and unloadings.
+//! Frames on ground that moves. A harmonic motion is compared with its exact solution. An elastic–plastic building under a record is
+//! compared with exact arcs between yielding and unloading.
 
 use psd::physics::integrator::input::FrameInput;
 use psd::physics::integrator::solver::FrameSolver;
@@ -49,7 +49,7 @@ fn steady(storeys: usize, time: f64) -> Vec<f64> {
     sum
 }
 
-/// After `end` the start is forgotten to 1e-7: of 20 storeys the first mode takes longest.
+/// After `end` the effect of the start is below 1e-7: for 20 storeys the first mode decays slowest.
 #[test]
 fn a_harmonic_ground_motion_ends_in_the_exact_steady_state() {
     for (storeys, end, steps) in [(2, 60.0, 12_000), (5, 60.0, 12_000), (20, 130.0, 72_000)] {
@@ -83,11 +83,11 @@ const MASSES: [f64; 2] = [2000.0, 1500.0];
 const STIFFNESSES: [f64; 2] = [3e6, 2e6];
 const YIELDS: [f64; 2] = [12e3, 8e3];
 const HARDENING: [f64; 2] = [0.05, 0.1];
-/// Between samples of the record, s.
+/// Between samples of the record \[s\].
 const SAMPLE: f64 = 0.02;
 const SAMPLES: u32 = 300;
 
-/// m/s², at sample `index`: a few sines under an envelope.
+/// \[m/s²\] at sample `index`: a few sines under an envelope.
 fn sample(index: u32) -> f64 {
     let time = f64::from(index) * SAMPLE;
     let envelope = (time / 1.5).min(1.0) * (-(time - 1.5).max(0.0) / 2.5).exp();
@@ -124,8 +124,8 @@ fn yielding_frame() -> FrameMatrices {
     }
 }
 
-/// The exact motion: while no storey changes its branch the frame is linear and the load a straight line, so that the state
-/// [x, v, 1, t] follows by the exponential of a constant matrix, summed as a series.
+/// The exact motion. While no storey changes its branch, the frame is linear and the load a straight line. The state [x, v, 1, t] then
+/// follows from the exponential of a constant matrix, summed as a series.
 struct Exact {
     damping: [[f64; 2]; 2],
     state: [f64; 6],
@@ -216,7 +216,7 @@ impl Exact {
         })
     }
 
-    /// On through `duration` within one sample of the record, from event to event.
+    /// Continues through `duration` within one sample of the record, from event to event.
     fn advance(&mut self, duration: f64, load: (f64, f64)) {
         let mut left = duration;
         while left > 0.0 {
@@ -266,7 +266,7 @@ impl Exact {
             state: [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
             branches: [rest; 2],
         };
-        // Branches are looked at four times a millisecond: no event begins and ends between two looks.
+        // Branches are checked four times a millisecond: no event begins and ends between two checks.
         let looks = 80;
         (0..SAMPLES)
             .map(|index| {
@@ -281,7 +281,7 @@ impl Exact {
     }
 }
 
-/// Largest difference from the exact motion over all floors and samples, m, with so many steps a sample.
+/// Largest difference from the exact motion over all floors and samples \[m\], for this number of steps per sample.
 fn worst(integrator: Integrator, tangents: Tangents, steps: u32, exact: &[[f64; 2]]) -> f64 {
     let frame = yielding_frame();
     let time_step = SAMPLE / f64::from(steps);
@@ -344,7 +344,7 @@ fn a_yielding_building_converges_to_the_exact_motion() {
         );
         assert!(fine < 2e-5 * peak, "{integrator:?}: {fine} of {peak} m");
     }
-    // The tangent form predicts the force by K_t: with K0 on a yielding storey it errs in every step and is of first order.
+    // The tangent form predicts the force by K_t. With K0 on a yielding storey it has an error in every step and is of first order.
     let stale = [64, 128].map(|steps| worst(Integrator::Tangent, Tangents::Initial, steps, &exact));
     assert!(
         ((stale[0] / stale[1]).log2() - 1.0).abs() < 0.1,

@@ -31,7 +31,7 @@ fn strike(input: &Struck) -> (Vec<ImpactState>, FrameImpactSolver, f64) {
     (states, solver, worst)
 }
 
-/// A frame and what strikes it.
+/// A frame and its striker.
 struct Struck<'a> {
     frame: FrameInput<'a>,
     setup: ImpactSetup,
@@ -59,8 +59,8 @@ fn single(mass: f64, stiffness: f64) -> FrameMatrices {
     }
 }
 
-/// Every number of every step of both is bit-identical for every contact law and integrator, with a damper and a weight that falls
-/// before it hits.
+/// Every number of every step of both is bit-identical for every contact law and integrator. This includes a damper and a weight that
+/// falls before the impact.
 #[test]
 fn one_floor_is_one_degree_of_freedom() {
     let hertz = |loss, force_limit| ContactLaw::Hertz {
@@ -130,7 +130,7 @@ fn one_floor_is_one_degree_of_freedom() {
     }
 }
 
-/// A first impact dissipates ½(1 − e²)μu² with μ of the struck floor's own mass, whatever it carries.
+/// A first impact dissipates ½(1 − e²)μu², with μ from the mass of the struck floor only.
 #[test]
 fn a_blow_on_one_floor_meets_that_floor_s_mass() {
     let frame = uniform(5, 4.0, 3e4);

@@ -1,4 +1,4 @@
-//! Modes of uniform shear buildings against their closed form (a chain of equal masses, fixed below and free above).
+//! Modes of uniform shear buildings, compared with their closed form (a chain of equal masses, fixed below and free above).
 
 use psd::physics::structure::modes;
 

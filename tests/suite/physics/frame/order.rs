@@ -98,7 +98,7 @@ fn explicit_newmark_is_stable_up_to_the_shortest_period_over_pi() {
     assert!(above > 1e10, "{above}");
 }
 
-/// Without a limit where `K_I` ≥ `K_t`; with `K_I` = ¾ `K_t` up to 2√(M/(`K_t` − `K_I`)) = 4/ω.
+/// Without a limit if `K_I` ≥ `K_t`; with `K_I` = ¾ `K_t` up to 2√(M/(`K_t` − `K_I`)) = 4/ω.
 #[test]
 fn splitting_is_stable_at_any_step_while_its_operator_is_stiff_enough() {
     let splitting = Integrator::AlphaOs { alpha: 0.0 };
@@ -153,7 +153,7 @@ fn the_energy_balance_of_a_linear_frame_closes_to_rounding() {
     }
 }
 
-/// What explicit Newmark's balance leaves swings and does not grow; it shrinks with Δt².
+/// The residual of explicit Newmark's balance oscillates and does not grow; it decreases with Δt².
 #[test]
 fn the_error_of_the_explicit_balance_shrinks_with_the_square_of_the_step() {
     let frame = uniform(5, 1500.0, 2e6);
@@ -173,7 +173,7 @@ fn the_error_of_the_explicit_balance_shrinks_with_the_square_of_the_step() {
     assert!((order - 2.0).abs() < 0.05, "order {order}");
 }
 
-/// Tangents of exact readings of a linear frame are its stiffness: the same run, to the last bit.
+/// Tangents from exact readings of a linear frame equal its stiffness: the run is bit-identical.
 #[test]
 fn storey_tangents_of_a_linear_frame_change_no_bit() {
     let frame = uniform(20, 1500.0, 2e6);

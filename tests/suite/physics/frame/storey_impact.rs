@@ -130,8 +130,8 @@ fn a_struck_chain_is_its_modal_solution_to_second_order() {
     }
 }
 
-/// Hertz between free masses, of which a stiff contact on a soft frame is one: F = k^(2/5) (5/4 μu²)^(3/5), duration 2.943 δ/u,
-/// and the whole of the elastic energy given back.
+/// Hertz between free masses, also approximated by a stiff contact on a soft frame: F = k^(2/5) (5/4 μu²)^(3/5), duration 2.943 δ/u. All
+/// elastic energy is released.
 #[test]
 fn a_hertz_blow_on_a_floor_is_that_of_free_masses() {
     const STIFFNESS: f64 = 1e9;

@@ -7,7 +7,7 @@ use psd::physics::integrator::tangents::Tangents;
 use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::plan::Integrator;
 
-/// Storeys of one mass (kg) and one stiffness (N/m), undamped.
+/// Storeys of one mass \[kg\] and one stiffness \[N/m\], undamped.
 pub fn uniform(storeys: usize, mass: f64, stiffness: f64) -> FrameMatrices {
     FrameMatrices {
         mass: SymmetricBand::diagonal(&vec![mass; storeys]),
