@@ -58,7 +58,7 @@ pub fn session(
         talk(connection, specimen, stiffness, &mut words, &mut begun).unwrap_or_else(|ended| ended);
     if words > 0 && matches!(ended, Ended::Limit(_) | Ended::Rig(_) | Ended::Stopped) {
         specimen.hold();
-        // Whatever stops this too has nothing to add to why the session ended.
+        // A further failure adds nothing to the reason why the session ended.
         let _ = bid_farewell(connection, specimen, words, &begun);
     }
     ended
@@ -110,7 +110,7 @@ fn talk(
         begun.clear();
         let first = connection.read(&mut message[..1], specimen, None)?;
         if message[0] == SETTING {
-            // The rest of it goes past; the action of any other message begins with a zero.
+            // The rest of it is skipped; the action of any other message begins with a zero.
             let mut rest = [0; SETTING_MESSAGE - 1];
             connection.read_all(&mut rest, specimen)?;
             if settings == 0 {

@@ -33,7 +33,7 @@ const LOOK: Duration = Duration::from_millis(100);
 /// The protocol of the client.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Protocol {
-    /// With the names of its control points, one an axis; none: of one axis, and any name is it.
+    /// With the names of its control points, one per axis; none: one axis, and any name is accepted.
     Nees { control_points: Vec<String> },
     /// With the constant stiffness that it receives \[N/m\]: for n axes n·n numbers, row by row.
     GenericClient { stiffness: Vec<f64> },

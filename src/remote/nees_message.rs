@@ -68,7 +68,7 @@ pub enum Why {
     Limit = 1,
     /// Not understood, or more than this rig has.
     Message = 2,
-    /// Not now: no session, another transaction, still moving.
+    /// Not possible now: no session, another transaction, still moving.
     Order = 3,
     /// The rig failed.
     Rig = 4,
@@ -114,7 +114,7 @@ pub fn place_of(names: &[String], name: &str) -> Option<usize> {
 /// twice. Empty if it is for auxiliary devices alone. `place_of` finds a control point.
 ///
 /// # Errors
-/// The part that cannot be done, for the client.
+/// The invalid part, for the client.
 pub fn wishes<'a>(
     points: &[Point<'a>],
     place_of: impl Fn(&str) -> Option<usize>,
