@@ -1,5 +1,5 @@
 //! psd's own time per step of an impact on a real rig, without waiting for replies and without a disk. Also the time of the
-//! uncertainty study after the last step, and round trips of a reading over a pseudo-terminal and over TCP. Items are steps or
+//! uncertainty study after the last step. Also round trips of a reading over a pseudo-terminal and over TCP. Items are steps or
 //! round trips. The time of the rig emulator in the first is measured separately and must be subtracted.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};

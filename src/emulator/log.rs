@@ -4,8 +4,8 @@
 //! ```text
 //! 0.012000 actuator > >MOVE 41 17 1.250000 0.500000*6858\n          bytes from the host
 //! 0.012000 actuator < <ACK 41 7F3A MOVING*1F01\n                    bytes to the host
-//! 0.012000 bench move 17 to 0.00125 m at 0.0005 m/s                 or `move -` where the dialect has no numbers
-//! 0.012000 bench move 17 to 0.00125 m, -0.002 m at 0.0005 m/s       of several rams
+//! 0.012000 bench move 17 to 0.00125 m at 0.0005 m/s                 or `move -` if the protocol has no numbers
+//! 0.012000 bench move 17 to 0.00125 m, -0.002 m at 0.0005 m/s       with several actuators
 //! 9.000000 bench outside 0.0300000 m                                a target outside the limits
 //! 9.500000 actuator (hung up)
 //! 9.600000 end: 1 target outside the limits: FAILED                 or `end: 12 moves, all within the limits: ok`

@@ -1,12 +1,12 @@
 //! The socket of OpenSees' `genericClient` element and of `expControl GenericTCP`: a header of sizes, then messages of one
-//! length both ways, 64-bit floats in the machine's order. In: a client's connection. Out: motion through the guard, forces
-//! to the client.
+//! length in both directions. They contain 64-bit floats in the machine's byte order. In: a client's connection. Out: motion
+//! through the guard, forces to the client.
 //!
-//! The protocol has no error message. OpenSees (tested with 3.7.1) does not notice that its server has disconnected: after
-//! a `close`, a `shutdown` and a reset alike it waits in its read for ever, at full load. It does notice a force that is
-//! not finite: an iteration does not converge, and `analyze` fails at that step; an explicit or linear analysis runs to the
-//! end of its steps with NaN, which cannot be mistaken for a result, and sends its 99. So any fault holds the rig, and from
-//! then on every question is answered with NaN, until the client disconnects, is silent or has sent all its messages.
+//! The protocol has no error message. OpenSees (tested with 3.7.1) does not notice that its server has disconnected. After a
+//! `close`, a `shutdown` or a reset it waits in its read for ever, at full processor load. It does notice a force that is not
+//! finite: an iteration does not converge, and `analyze` fails at that step. An explicit or linear analysis continues to the
+//! end of its steps with NaN and sends its 99. NaN cannot be mistaken for a result. Therefore any fault holds the rig. Every
+//! later request is answered with NaN, until the client disconnects, is silent or has sent all its messages.
 //!
 //! A trial is sent more than once: only a target that differs from the last one moves the rig. Between moves the specimen
 //! is at rest: velocity and acceleration are zero, and so are damping and mass, which belong to the client; both

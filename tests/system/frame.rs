@@ -150,7 +150,7 @@ fn ideal_of(stage: &Stage) -> Vec<(String, f64)> {
     results(&stage.path("ideal"))
 }
 
-/// All results of a run equal those of the ideal rig, within `far`, which depends on the name and size of the result.
+/// All results of a run equal those of the ideal rig, within `far` of the name and size of the result.
 fn same_but_for(real: &[(String, f64)], ideal: &[(String, f64)], far: impl Fn(&str, f64) -> f64) {
     assert!(real.len() == ideal.len() && real.len() > 8);
     for ((name, real), (_, ideal)) in real.iter().zip(ideal) {

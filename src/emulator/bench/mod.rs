@@ -23,7 +23,7 @@ pub struct BenchSettings {
     /// Zero offset of a raw converter: the count at zero force.
     pub zero_count: f64,
     pub seed: u64,
-    /// The emulator logs a target outside as a failure of the host.
+    /// Limits of the target. The emulator logs a target outside them as a failure of the host.
     pub limits: Interval,
     /// Maximum speed \[m/s\].
     pub top_speed: f64,

@@ -22,7 +22,7 @@ pub struct RamSettings {
     pub noise: f64,
     /// Quantization step of the displacement reading \[m\]; 0: none.
     pub resolution: f64,
-    /// The emulator logs a target outside as a failure of the host \[m\].
+    /// Limits of the target \[m\]. The emulator logs a target outside them as a failure of the host.
     pub limits: Interval,
 }
 
