@@ -24,10 +24,10 @@ const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 /// nothing, because no other client is admitted meanwhile.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Bytes that a client may have sent ahead, and that are looked through for its leave.
+/// Maximum number of bytes sent ahead that are searched for the end of the session.
 const SENT_AHEAD: usize = 1 << 16;
 
-/// Why there is nothing more to read or write.
+/// The reason why nothing more can be read or written.
 #[derive(Debug)]
 pub enum Broken {
     HungUp,

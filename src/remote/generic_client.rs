@@ -43,11 +43,11 @@ mod action {
 const SETTING: u8 = 2;
 const SETTING_MESSAGE: usize = 16_385;
 
-/// Longest that a client which was refused is still answered, and longest that it may be silent meanwhile.
+/// Maximum time during which a refused client is still answered, and maximum time that it can be silent meanwhile.
 const FAREWELL: Duration = Duration::from_secs(30);
 const SILENCE: Duration = Duration::from_secs(1);
 
-/// Serves a client until one of the two has enough.
+/// Serves a client until one of the two ends the session.
 pub fn session(
     connection: &mut Connection<'_>,
     specimen: &mut Specimen<'_, '_>,

@@ -27,7 +27,7 @@ use crate::run::remote_control::Specimen;
 use connection::{Broken, Connection};
 pub use nees::usual_names;
 
-/// How often a wait looks whether it is to end.
+/// Interval at which a wait checks whether it must end.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// The protocol of the client.
@@ -65,7 +65,7 @@ impl Ended {
         }
     }
 
-    /// Whether another client may connect: not after a stop by a limit or a fault of the rig.
+    /// Whether another client can connect: not after a stop by a limit or a fault of the rig.
     const fn allows_another(&self) -> bool {
         matches!(
             self,
