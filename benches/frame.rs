@@ -1,5 +1,6 @@
-//! Cost of a step of a shear building of n storeys with Rayleigh damping under a ground motion, specimen and energy balance
-//! included. Items are steps: goals of 60, 80 and 100 times OpenSees for n = 10, 100, 1000 elastic, 30, 25 and 25 bilinear.
+//! Cost of a step of a shear building of n storeys with Rayleigh damping under a ground motion. The step includes specimen and
+//! energy balance. Items are steps. The goals for n = 10, 100, 1000 are multiples of OpenSees: 60, 80 and 100 elastic, and 30,
+//! 25 and 25 bilinear.
 
 use std::hint::black_box;
 
@@ -37,7 +38,7 @@ fn building(storeys: usize) -> FrameMatrices {
     })
 }
 
-/// The run goes on from one measurement to the next: 10 m/s² at 2 Hz, steps of 2 ms.
+/// The run continues from one measurement to the next: 10 m/s² at 2 Hz, steps of 2 ms.
 fn steps<S: RestoringForce + Copy>(
     bencher: Bencher,
     storeys: usize,
@@ -108,7 +109,7 @@ fn elastic_followed(bencher: Bencher, storeys: usize) {
     );
 }
 
-/// Yields at 10 mm of drift.
+/// Yields at a storey drift of 10 mm.
 #[divan::bench(args = STOREYS)]
 fn bilinear(bencher: Bencher, storeys: usize) {
     steps(

@@ -1,4 +1,4 @@
-//! Writing and reading the journal: a record to memory, to a file, to a file made durable; and a journal read back.
+//! Writing and reading the run log: a record to memory, to a file, and to a file with sync; reading a run log.
 
 use std::io;
 
@@ -26,7 +26,7 @@ const SAMPLE: Sample = Sample {
     text: "settled 3",
 };
 
-/// Takes everything and keeps nothing.
+/// Accepts all bytes and stores none.
 struct Nowhere;
 
 impl Storage for Nowhere {

@@ -23,7 +23,7 @@ const CANTILEVER: &str = include_str!("../plans/02_units_and_parameters.psd");
 
 const SMALL: &str = include_str!("../plans/01_first_blow.psd");
 
-/// The small plan with many more blows and requirements, about `lines` long.
+/// The small plan with many more impacts and requirements, about `lines` lines long.
 fn long_plan(lines: usize) -> String {
     let mut text = SMALL.to_owned();
     for blow in 0..lines / 9 {
@@ -74,7 +74,7 @@ fn format_two_thousand_lines(bencher: divan::Bencher) {
     bencher.bench(|| psd::language::syntax::format(divan::black_box(&ast), &text));
 }
 
-/// What a study does for each of its runs: other values of the parameters, and no text.
+/// The work of a study for each of its runs: other values of the parameters, without parsing.
 #[divan::bench]
 fn bind_parameters_of_a_small_plan(bencher: divan::Bencher) {
     let mut parsed = ParsedPlan::parse("plan.psd", CANTILEVER, &NoFiles, &Options::default());
@@ -84,7 +84,7 @@ fn bind_parameters_of_a_small_plan(bencher: divan::Bencher) {
     bencher.bench(|| parsed.bind(divan::black_box(&values)).is_ok());
 }
 
-/// The same plan from its text, with the value as `--set` gives it.
+/// The same plan from its text, with the value as given by `--set`.
 #[divan::bench]
 fn check_the_same_plan_from_its_text(bencher: divan::Bencher) {
     let options = Options {

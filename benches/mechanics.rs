@@ -1,4 +1,4 @@
-//! Cost of a step: example 1 at 1 µs for 100,000 steps, bare, recorded, and step by step as a rig has it. Items are steps.
+//! Cost of a step: example 1 at 1 µs for 100,000 steps, bare, recorded, and step by step as with a rig. Items are steps.
 
 use std::hint::black_box;
 
@@ -44,7 +44,7 @@ fn bare(bencher: Bencher) {
         .bench_local(|| simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut ()));
 }
 
-/// Into columns used again: the price of memory is paid once, before the first measurement.
+/// Into reused columns: memory is allocated once, before the first measurement.
 #[divan::bench]
 fn recorded(bencher: Bencher) {
     let input = example_1();
@@ -58,7 +58,7 @@ fn recorded(bencher: Bencher) {
     });
 }
 
-/// The reading handed over by the caller.
+/// The caller supplies the reading.
 #[divan::bench]
 fn interactive(bencher: Bencher) {
     let input = example_1();

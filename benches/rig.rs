@@ -1,6 +1,6 @@
-//! psd's own time per step of an impact on a real rig, with no reply to wait for and no disk; what the study of its
-//! uncertainty adds after the last step; and round trips of a reading over a pseudo-terminal and over TCP. Items are steps,
-//! or round trips. The stand-in's own share of the first is a bench of its own, to be taken off.
+//! psd's own time per step of an impact on a real rig, without waiting for replies and without a disk. Also the time of the
+//! uncertainty study after the last step. Also round trips of a reading over a pseudo-terminal and over TCP. Items are steps or
+//! round trips. The time of the rig emulator in the first is measured separately and must be subtracted.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::TcpListener;
@@ -72,12 +72,12 @@ impl Loader for NoFiles {
     }
 }
 
-/// Nothing of it is uncertain, so that no study follows its steps.
+/// All its inputs are exact, so that no study follows its steps.
 fn plan() -> Plan {
     checked_plan(PLAN)
 }
 
-/// Its readings are resolved to a micrometre: the run is studied.
+/// Its readings have a resolution of a micrometre, so that the run is studied.
 fn resolved_plan() -> Plan {
     checked_plan(&PLAN.replace("rate        =", "resolution  = 1 um\n  rate        ="))
 }
@@ -111,16 +111,16 @@ fn device(plan: &Plan, port: Box<dyn Port>, clock: Box<dyn Clock>) -> Box<dyn De
     )
 }
 
-/// A stand that answers as soon as it is asked, and a time that passes while someone waits.
+/// A stand that answers immediately. Its time passes while the host waits.
 #[derive(Clone)]
 struct AtOnce(Arc<Mutex<Shared>>);
 
 struct Shared {
     stand: Stand,
-    /// s
+    /// \[s\]
     now: f64,
     coming: Vec<u8>,
-    /// What was sent, and when, s.
+    /// The sent bytes and their times \[s\].
     sent: Vec<(f64, Vec<u8>)>,
 }
 
@@ -140,7 +140,7 @@ impl AtOnce {
     }
 }
 
-/// What the stand says to some bytes a millisecond after it heard them: by then it is where it was sent.
+/// Answer of the stand to some bytes a millisecond after it received them: by then it has reached its target.
 fn answer(stand: &mut Stand, now: f64, bytes: &[u8], answer: &mut Vec<u8>) {
     stand.advance(now);
     stand.give(0, bytes);
@@ -200,7 +200,7 @@ impl Clock for AtOnce {
     }
 }
 
-/// Takes everything and keeps nothing.
+/// Accepts all bytes and stores none.
 struct Nowhere;
 
 impl Storage for Nowhere {
@@ -218,7 +218,7 @@ impl Storage for Nowhere {
     }
 }
 
-/// The plan on a rig that answers at once, recorded to memory.
+/// Runs the plan on a rig that answers immediately, recorded to memory.
 fn run(plan: &Plan, line: &AtOnce) -> Record {
     let actuator = device(plan, Box::new(line.clone()), Box::new(line.clone()));
     let mut rig = RealRig::open(
@@ -246,14 +246,14 @@ fn steps(record: &Record) -> usize {
     }
 }
 
-/// Everything of a step: prediction, guard, intent, move, settling, reading, sample, integration, record.
+/// All parts of a step: prediction, guard, intent, move, settling, reading, sample, integration, record.
 #[divan::bench]
 fn step(bencher: Bencher) {
     whole_run(bencher, &plan());
 }
 
-/// The same with the study of its uncertainty: 64 runs of the recorded way with drawn errors of the readings, shared out
-/// among threads. The rig is at rest by then.
+/// The same with the uncertainty study: 64 runs along the recorded path with simulated reading errors, divided among threads.
+/// The rig is at rest during the study.
 #[divan::bench]
 fn step_and_study(bencher: Bencher) {
     whole_run(bencher, &resolved_plan());
@@ -267,7 +267,7 @@ fn whole_run(bencher: Bencher, plan: &Plan) {
         .bench_local_values(|line| steps(&run(plan, &line)));
 }
 
-/// The part of `step` that is the stand-in's: the same bytes at the same times.
+/// The part of `step` in the rig emulator: the same bytes at the same times.
 #[divan::bench]
 fn step_of_the_stand_in_alone(bencher: Bencher) {
     let plan = plan();
@@ -299,7 +299,7 @@ fn round_trip(bencher: Bencher, mut device: Box<dyn Device>) {
         .bench_local(|| device.sample().expect("a reading"));
 }
 
-/// One reading over a pseudo-terminal. The stand-in does not nap.
+/// One reading over a pseudo-terminal. The rig emulator does not sleep.
 #[divan::bench]
 fn reading_over_a_pseudo_terminal(bencher: Bencher) {
     let folder = tempfile::tempdir().expect("a folder");

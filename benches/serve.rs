@@ -1,5 +1,5 @@
-//! Cost of one step of OpenSees over loopback: its messages of 256 words, four of them answered, Nagle's delay left on as
-//! it leaves it, the specimen moved at every step. Items are steps.
+//! Cost of one step of OpenSees over loopback: messages of 256 words, four of them answered. Nagle's delay stays on as in
+//! OpenSees, and the specimen moves at every step. Items are steps.
 
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
@@ -20,7 +20,7 @@ fn main() {
     divan::main();
 }
 
-/// A server on its own thread, and a client of it.
+/// A server on its own thread, and its client.
 fn connected() -> (TcpStream, JoinHandle<()>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port is free");
     let address = listener.local_addr().expect("it is bound");

@@ -1,4 +1,4 @@
-//! The whole of `psd run` on example 1 as one process: text to certificate, tables and figures.
+//! A complete `psd run` on example 1 in one process: from the text to report, tables and figures.
 
 use std::process::Command;
 

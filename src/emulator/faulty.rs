@@ -1,5 +1,5 @@
-//! A controller whose line misbehaves: stands between a firmware and the line, and does what the script says. In: bytes
-//! from the host, time. Out: bytes for the host when they are due, and whether the line still stands. It knows no dialect.
+//! A controller with line faults. It is between a firmware and the line, and follows the script. In: bytes from the host, time.
+//! Out: bytes for the host when they are due, and whether the line is still open. It knows no protocol.
 
 use rand::RngExt as _;
 use rand_pcg::Pcg64;
@@ -8,36 +8,36 @@ use rand_pcg::rand_core::SeedableRng as _;
 use super::script::{Fault, LineFault, Place, ReplyFault, What, When};
 use super::{Bench, Firmware};
 
-/// Between the pieces of a split reply, and between a reply and hanging up after it, s.
+/// Time between the parts of a split reply, and between a reply and the hang-up after it \[s\].
 const GAP: f64 = 0.02;
 
-/// A firmware, and all that goes wrong around it.
+/// A firmware with the faults of its line.
 pub struct Faulty {
     firmware: Box<dyn Firmware>,
     faults: Vec<Armed>,
     generator: Pcg64,
-    /// Replies of the firmware so far, lost ones too.
+    /// Replies of the firmware, including the lost ones.
     replies: u64,
     previous: Vec<u8>,
     outgoing: Vec<Outgoing>,
-    /// What came while it was frozen.
+    /// Bytes received while the firmware was frozen.
     unheard: Vec<u8>,
     frozen_until: f64,
     deaf: bool,
     hung_up: bool,
 }
 
-/// A fault that has not yet done all it is to do.
+/// A fault that is still active.
 struct Armed {
     fault: Fault,
-    /// Replies it still befalls; None: all.
+    /// Remaining number of replies that it affects; None: all.
     left: Option<u64>,
 }
 
 struct Outgoing {
     /// s
     due: f64,
-    /// None: the line is hung up then.
+    /// None: the line is closed at that time.
     bytes: Option<Vec<u8>>,
 }
 
@@ -51,7 +51,7 @@ impl Faulty {
             } else {
                 Some(1)
             };
-            // A chance never runs out.
+            // A random fault never ends.
             let left = if matches!(fault.when, When::EachReply(_)) {
                 None
             } else {
@@ -73,13 +73,13 @@ impl Faulty {
         }
     }
 
-    /// Bytes from the host; the bench stands at the present time.
+    /// Receives bytes from the host. The bench is already at the present time.
     pub fn receive(&mut self, bytes: &[u8], bench: &mut Bench) {
         if bench.time() < self.frozen_until {
             self.unheard.extend_from_slice(bytes);
             return;
         }
-        // Byte by byte, so that each answer is one reply and the moment of a fault is exact.
+        // One byte at a time: each answer is then one reply, and the time of a fault is exact.
         for byte in bytes {
             self.strike_what_is_due(bench);
             let said = self.firmware.receive(std::slice::from_ref(byte), bench);
@@ -100,7 +100,7 @@ impl Faulty {
         self.say(said, bench);
     }
 
-    /// The next piece that is due at `time` (s).
+    /// Returns the next part of a reply that is due at `time` \[s\].
     pub fn take(&mut self, time: f64) -> Option<Vec<u8>> {
         let due = self
             .outgoing
@@ -117,19 +117,19 @@ impl Faulty {
         bytes
     }
 
-    /// Whether it takes bytes from the line.
+    /// Whether it reads bytes from the line.
     #[must_use]
     pub const fn reads(&self) -> bool {
         !self.deaf
     }
 
-    /// Whether it hung up on its host.
+    /// Whether it closed the line.
     #[must_use]
     pub const fn hung_up(&self) -> bool {
         self.hung_up
     }
 
-    /// A host is there again: what was on its way to the last one is gone, the controller is as it was.
+    /// A host connects again. Replies to the previous host are lost; the controller keeps its state.
     pub fn reconnect(&mut self) {
         self.outgoing.clear();
         self.hung_up = false;
@@ -140,7 +140,7 @@ impl Faulty {
         self.hung_up = true;
     }
 
-    /// Whether the moment of a fault has come.
+    /// Whether a fault is due.
     fn due(when: When, replies: u64, bench: &Bench) -> bool {
         match when {
             When::At(time) => bench.time() >= time,
@@ -151,7 +151,7 @@ impl Faulty {
         }
     }
 
-    /// Faults of bench and line; those of replies wait for a reply.
+    /// Starts the faults of bench and line that are due. Faults of replies wait for a reply.
     fn strike_what_is_due(&mut self, bench: &mut Bench) {
         let replies = self.replies;
         let mut due = Vec::new();
@@ -184,7 +184,7 @@ impl Faulty {
         }
     }
 
-    /// The faults that befall the next reply.
+    /// Returns the faults of the next reply.
     fn befalling(&mut self, bench: &Bench) -> Vec<ReplyFault> {
         let mut found = Vec::new();
         for armed in &mut self.faults {
@@ -253,7 +253,7 @@ impl Faulty {
             }
         }
         if ends {
-            // A reply that is still on its way when a terminal hangs up does not arrive.
+            // A reply that is not yet sent when a terminal hangs up is lost.
             self.outgoing.push(Outgoing {
                 due: due + GAP,
                 bytes: None,
@@ -288,7 +288,7 @@ mod tests {
     use super::super::testing::bench;
     use super::*;
 
-    /// Says what it heard at every line feed, and goes 1 mm on at every `m`.
+    /// Returns its input at every line feed, and moves 1 mm at every `m`.
     #[derive(Default)]
     struct Echo(Vec<u8>);
 
@@ -315,7 +315,7 @@ mod tests {
         }
     }
 
-    /// What comes back for each line sent, one second after the other, in the pieces it came in.
+    /// Returns the answer to each line, sent one per second, in the parts in which it came.
     fn talk(script: &str, lines: &[&str]) -> Vec<Vec<String>> {
         let mut faulty = Faulty::new(
             Box::new(Echo::default()),

@@ -1,5 +1,5 @@
-//! The log of a simulated rig: what went over its lines and where its bench was sent, so that it can be held against
-//! the journal of who drove it. In: bytes and moves with their times. Out: text, one event a line.
+//! The log of an emulated rig: the bytes on its lines and the moves of its bench. It can be compared with the run log of the
+//! host. In: bytes and moves with their times. Out: text, one event per line.
 //!
 //! ```text
 //! 0.012000 actuator > >MOVE 41 17 1.250000 0.500000*6858\n          bytes from the host
@@ -18,9 +18,9 @@ use super::Bench;
 /// Writes the events of one stand.
 pub struct Log {
     sink: Option<Box<dyn Write + Send>>,
-    /// The first failure to write, kept until someone asks.
+    /// The first write error, kept until it is read.
     failure: Option<io::Error>,
-    /// Moves and violations of the bench that are written.
+    /// Number of moves and violations of the bench that are already written.
     moves: usize,
     violations: usize,
 }
@@ -36,7 +36,7 @@ impl Log {
         }
     }
 
-    /// A log nobody reads.
+    /// A log without an output.
     #[must_use]
     pub const fn none() -> Self {
         Self {
@@ -57,12 +57,12 @@ impl Log {
         self.event(time, format_args!("{line} < {}", bytes.escape_ascii()));
     }
 
-    /// Anything else that happened to a line.
+    /// Any other event of a line.
     pub fn happened(&mut self, time: f64, line: &str, what: &str) {
         self.event(time, format_args!("{line} ({what})"));
     }
 
-    /// Moves and violations since the last call.
+    /// Writes the moves and violations since the last call.
     pub fn follow(&mut self, bench: &Bench) {
         for sent in &bench.moves()[self.moves..] {
             let id = sent.id.map_or_else(|| "-".to_owned(), |id| id.to_string());
@@ -86,7 +86,7 @@ impl Log {
         (self.moves, self.violations) = (bench.moves().len(), bench.violations().len());
     }
 
-    /// The result, and whether it is a good one.
+    /// Writes the result. Returns whether it is a pass.
     pub fn end(&mut self, bench: &Bench) -> bool {
         self.follow(bench);
         let (moves, violations) = (bench.moves().len(), bench.violations().len());
@@ -110,14 +110,14 @@ impl Log {
         violations == 0
     }
 
-    /// What kept it from being written, if anything.
+    /// Returns the write error, if there was one.
     pub const fn failure(&mut self) -> Option<io::Error> {
         self.failure.take()
     }
 
     fn event(&mut self, time: f64, what: std::fmt::Arguments<'_>) {
         let Some(sink) = &mut self.sink else { return };
-        // At once: who kills the simulator still finds all that happened.
+        // Written immediately: the log is complete even after the emulator is killed.
         if let Err(error) = writeln!(sink, "{time:.6} {what}").and_then(|()| sink.flush()) {
             self.failure = Some(error);
             self.sink = None;

@@ -1,6 +1,5 @@
-//! Rig emulators: what a controller answers to the bytes that it receives, with a virtual specimen
-//! behind it. In: bytes and time. Out: bytes. It shares no parsing code with the drivers in `rig`,
-//! so that neither hides an error of the other.
+//! Rig emulators: the answers of a controller to the bytes that it receives, with an emulated specimen. In: bytes and time.
+//! Out: bytes. It shares no parsing code with the drivers in `rig`, so that neither hides an error of the other.
 
 mod bench;
 mod faulty;
@@ -27,14 +26,14 @@ pub use of_plan::{NoStandIn, of_plan};
 pub use script::Script;
 pub use stand::Stand;
 
-/// What a controller's firmware does. It owns its dialect; the [`Bench`] owns motion, specimen and sensors.
+/// The firmware of a controller. It owns its protocol; the [`Bench`] owns motion, specimen and sensors.
 pub trait Firmware: Send {
-    /// Bytes came from the host, in pieces of any size. The bench's time has been brought up to now.
+    /// Handles bytes from the host, in parts of any size. The bench is already at the present time.
     fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8>;
 
-    /// Time has passed: what the controller says or does by itself (streams, watchdogs).
+    /// Handles elapsed time: unsolicited output and actions of the controller (streams, watchdogs).
     fn tick(&mut self, bench: &mut Bench) -> Vec<u8>;
 
-    /// Power was cycled: everything it remembered is gone.
+    /// Handles a power cycle: the controller loses its whole state.
     fn reboot(&mut self, bench: &mut Bench) -> Vec<u8>;
 }

@@ -1,5 +1,5 @@
-//! A checked plan → the stand that is in place of its real rig. In: the plan, a script of faults. Out: a [`Stand`] whose
-//! controllers speak what the plan's rig speaks, on a bench with the plan's specimen, limits and noise. It opens no line.
+//! Makes a stand that replaces the real rig of a checked plan. In: the plan, a script of faults. Out: a [`Stand`] with
+//! controllers for the rig's protocols, on a bench with the plan's specimen, limits and noise. It opens no line.
 
 use super::firmware::{
     Grbl, Hx711, Indicator, Instron, Mark10, Mark10Gauge, Modbus, Native, NativeSettings, Nees,
@@ -10,21 +10,21 @@ use super::script::Script;
 use super::{Bench, BenchSettings, Firmware, Log, RamSettings, Stand};
 use crate::plan::{Behaviour, Behind, Datum, Dialect, Interval, Plan, RealLink, Specimen};
 
-/// How a simulated controller says that it is one.
+/// The identity of an emulated controller.
 const SIMULATED: &str = "PSD-SIM";
-/// Counts of a converter with a sign in 24 bits.
+/// Counts of one polarity of a 24-bit converter.
 const COUNTS: f64 = 8_388_608.0;
-/// What a cell carries of which nothing is said, N.
+/// Default capacity of a load cell \[N\].
 const CAPACITY: f64 = 100_000.0;
-/// What a console's transducer spans of which nothing is said, m.
+/// Default span of a console's transducer \[m\].
 const STROKE: f64 = 1.0;
 /// Conversions a second of an HX711.
 const HX711_RATE: f64 = 80.0;
 
-/// Where a Grbl stands by its own count when it has been homed, m: it pulls off its end switch, whose place is 0 (`$27`).
+/// Position of a Grbl after homing, in machine coordinates \[m\]: it moves off its limit switch, which is at 0 (`$27`).
 const PULLED_OFF: f64 = -1e-3;
 
-/// Why there is nothing to stand in for the rig.
+/// The reason why the rig has no emulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoStandIn {
     #[error("the rig of this plan is a virtual one: it needs no stand-in")]
@@ -37,11 +37,11 @@ pub enum NoStandIn {
     NoOwnDevice { axis: usize },
 }
 
-/// The stand in place of the plan's rig; its lines are the actuator's and, where it has one of its own, the load cell's.
-/// `boot` is the word of this power-up; None: drawn from the seed.
+/// Returns the stand that replaces the plan's rig. Its lines are the actuator's and the separate load cell's, if there is one.
+/// `boot` is the boot identifier of this power-up; None: random, from the seed.
 ///
 /// # Errors
-/// The plan's rig is virtual, or its specimen has no behaviour.
+/// The plan's rig is a simulated one, or its specimen has no restoring-force model.
 pub fn of_plan(
     plan: &Plan,
     script: &Script,
@@ -87,7 +87,7 @@ pub fn of_plan(
     Ok(Stand::of(bench, log, script, controllers))
 }
 
-/// Where each ram stands when it is switched on, m.
+/// Initial position of each actuator \[m\].
 fn starts(plan: &Plan, link: &RealLink, script: &Script) -> Vec<f64> {
     let mut starts = vec![0.0; plan.rig.axes().unwrap_or(1)];
     for behind in link
@@ -108,7 +108,8 @@ fn starts(plan: &Plan, link: &RealLink, script: &Script) -> Vec<f64> {
     starts
 }
 
-/// Limits of displacement as a ram has them that stands at `start` (m): those of a plan whose zero is there go with it.
+/// Displacement limits of an actuator with the initial position `start` \[m\]. If the plan's zero is at that position, the
+/// limits move with it.
 fn places_at_rig(link: &RealLink, sign: f64, limits: Interval, start: f64) -> Interval {
     let Interval { low, high } = at_rig(sign, limits);
     if link.datum == Datum::Machine {
@@ -139,7 +140,7 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Benc
         top_speed: plan.limits.speed.high,
     };
     if let Some(frame) = &specimen.frame {
-        // The storeys stand in place of it.
+        // The storeys replace it.
         let nothing = Behaviour::Elastic { stiffness: 0.0 };
         let rams: Vec<RamSettings> = (0..frame.degrees_of_freedom())
             .map(|axis| ram(plan, link, axis, starts.get(axis).copied().unwrap_or(0.0)))
@@ -159,7 +160,7 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Benc
     Ok(Bench::new(settings(behaviour)).with_friction(specimen.coulomb))
 }
 
-/// The ram of a frame's floor.
+/// Returns the actuator of a frame's floor.
 fn ram(plan: &Plan, link: &RealLink, axis: usize, start: f64) -> RamSettings {
     let (sign, readings) = (plan.rig.sign_of(axis), link.readings_of(axis));
     let limits = places_at_rig(
@@ -176,12 +177,12 @@ fn ram(plan: &Plan, link: &RealLink, axis: usize, start: f64) -> RamSettings {
     }
 }
 
-/// The specimen that the first procedure names.
+/// Returns the specimen that the first procedure names.
 fn specimen(plan: &Plan) -> Option<&Specimen> {
     plan.specimen_on_the_rig()
 }
 
-/// What the cell carries, N.
+/// Returns the capacity of the load cell \[N\].
 fn capacity(link: &RealLink) -> f64 {
     let of_axis = |axis| {
         let Interval { low, high } = link.readings_of(axis).force_range;
@@ -195,7 +196,7 @@ fn capacity(link: &RealLink) -> f64 {
     }
 }
 
-/// The rig's own directions may be the other way round than the plan's.
+/// Converts an interval to the polarity of the rig.
 fn at_rig(sign: f64, interval: Interval) -> Interval {
     if sign < 0.0 {
         Interval {
@@ -216,7 +217,7 @@ fn controller(
 ) -> Box<dyn Firmware> {
     let firmware = firmware(plan, link, behind, bench, boot);
     match behind.axes.first() {
-        // What has one channel knows one ram.
+        // A device with one channel knows one actuator.
         Some(axis) if *axis > 0 && behind.link.dialect.most_channels() == 1 => Box::new(OfRam {
             ram: *axis,
             firmware,
@@ -363,7 +364,7 @@ move to_half {
         InProcess::new(of_plan(plan, &Script::default(), Log::none(), 1, None).expect("a stand"))
     }
 
-    /// All that comes within a second.
+    /// Returns all bytes received within a second.
     fn heard(shared: &InProcess, line: usize, sent: &[u8]) -> String {
         let mut port = shared.port(line);
         port.write(sent, Duration::from_secs(1)).expect("sent");

@@ -1,9 +1,9 @@
-//! The controller of one ram of several. In: what its line says, time. Out: what a controller of one ram makes of it, with the
-//! bench seen from that ram. It knows no dialect.
+//! The controller of one of several actuators. In: the bytes of its line, time. Out: the answers of a controller of one
+//! actuator, with the bench seen from that actuator. It knows no protocol.
 
 use super::{Bench, Firmware};
 
-/// A firmware that knows one ram, and which that is.
+/// A firmware that knows one actuator, and the index of this actuator.
 pub(super) struct OfRam {
     pub(super) ram: usize,
     pub(super) firmware: Box<dyn Firmware>,

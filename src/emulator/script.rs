@@ -1,10 +1,10 @@
-//! A script of faults: text → what goes wrong, and when. In: lines such as `after 12 moves: drop replies 3`. Out: a
-//! [`Script`], or the line and the reason why there is none. It makes nothing go wrong itself.
+//! Parses a script of faults. In: lines such as `after 12 moves: drop replies 3`. Out: a [`Script`], or the first invalid line
+//! and the reason. It starts no fault itself.
 //!
-//! A line is `WHEN: WHAT`; `#` begins a comment. WHEN is `at 4.5 s`, `after 12 moves`, `after 20 readings`, `after 3
-//! replies`, `each reply` or `each reading`; the last two may end with a probability, `with 0.01`. WHAT may begin with
-//! `load cell`, which is then the line it befalls, and that or `actuator` with `of axis 2` where an axis has one of its own; or
-//! with `axis 2`, which is then the ram, of what befalls one. WHAT is one of
+//! A line is `WHEN: WHAT`; `#` begins a comment. WHEN is `at 4.5 s`, `after 12 moves`, `after 20 readings`, `after 3 replies`,
+//! `each reply` or `each reading`; the last two can end with a probability, `with 0.01`. WHAT can begin with `load cell` or
+//! `actuator`, the affected line. `of axis 2` follows if an axis has its own device. WHAT can also begin with `axis 2`, the
+//! actuator of a fault of one actuator. WHAT is one of
 //!
 //! ```text
 //! drop REPLIES                     split REPLIES at 5 bytes        split REPLIES every 1 bytes
@@ -20,39 +20,39 @@
 //! drift displacement 0.001 mm/s    fracture at 3 mm to 10 %
 //! ```
 //!
-//! A line without WHEN, `stands at 3 mm` or `axis 2 stands at 3 mm`, says where a ram stands from the first, by its controller, with
-//! its specimen not bent.
+//! A line without WHEN, `stands at 3 mm` or `axis 2 stands at 3 mm`, sets the initial position of an actuator in the
+//! coordinates of its controller. The specimen is undeformed there.
 //!
-//! Above, REPLIES is `reply`, `replies 3` or `replies for ever`. What is counted in moves or readings befalls the reply
-//! to the last of them; `after 3 replies` befalls the fourth.
+//! Above, REPLIES is `reply`, `replies 3` or `replies for ever`. A fault after a number of moves or readings affects the reply
+//! to the last of them; `after 3 replies` affects the fourth.
 
 use super::bench::fault::BenchFault;
 
-/// What is to go wrong, in the order of its lines.
+/// The faults, in the order of their lines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Script {
     pub faults: Vec<Fault>,
-    /// Rams by place, and where they stand from the first, m.
+    /// Indices of actuators and their initial positions \[m\].
     pub starts: Vec<(usize, f64)>,
 }
 
 /// One line of a script.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// On the line of the load cell rather than of the actuator.
+    /// On the line of the load cell, and not of the actuator.
     pub on_load_cell: bool,
-    /// On the line of the device that this axis, by its place, has of its own.
+    /// Index of the axis whose own device has the faulty line.
     pub own_of: Option<usize>,
-    /// Place of the ram it befalls, where it befalls one; 0: the first.
+    /// Index of the affected actuator, for a fault of one actuator; 0: the first.
     pub ram: usize,
     pub when: When,
     pub what: What,
 }
 
-/// When it strikes.
+/// The start of a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// s since power-up.
+    /// Time since power-up \[s\].
     At(f64),
     AfterMoves(u64),
     AfterReadings(u64),
@@ -64,24 +64,24 @@ pub enum When {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum What {
-    /// This many replies, or all from then on.
+    /// Affects this number of replies, or all from then on.
     Replies(ReplyFault, Option<u64>),
     Line(LineFault),
     Bench(BenchFault),
 }
 
-/// What befalls a reply on its way.
+/// A fault of a reply on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplyFault {
     Drop,
-    /// In two pieces, the first of this many bytes.
+    /// In two parts, the first of this many bytes.
     SplitAt(usize),
     SplitEvery(usize),
-    /// Only its first bytes come.
+    /// Only its first bytes arrive.
     CutAt(usize),
     /// The bit, counted from the first of the reply; None: any.
     FlipBit(Option<usize>),
-    /// So many bytes more: of this value, or of any.
+    /// Adds this number of bytes, of this value or random.
     Garbage {
         count: usize,
         byte: Option<u8>,
@@ -102,18 +102,18 @@ pub enum Place {
     After,
 }
 
-/// What befalls a line or its controller.
+/// A fault of a line or of its controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LineFault {
     HangUp,
     Reboot,
-    /// Takes no byte any more.
+    /// Reads no more bytes.
     StopReading,
-    /// Does nothing for this long, s; what came meanwhile is heard afterwards.
+    /// Does nothing for this time \[s\]; bytes received meanwhile are handled afterwards.
     FreezeFirmware(f64),
 }
 
-/// Why a text is no script.
+/// The reason why a script is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {reason}")]
 pub struct ScriptError {
@@ -123,10 +123,10 @@ pub struct ScriptError {
 }
 
 impl Script {
-    /// Reads a script.
+    /// Parses a script.
     ///
     /// # Errors
-    /// The first line that says nothing known.
+    /// The first invalid line.
     pub fn parse(text: &str) -> Result<Self, ScriptError> {
         let mut script = Self::default();
         for (at, line) in text.lines().enumerate() {
@@ -200,7 +200,7 @@ fn fault(line: &str) -> Result<Fault, String> {
 }
 
 impl Fault {
-    /// The one of these controllers that it befalls: None where there is no such one.
+    /// Returns the index of the affected controller; None if there is no such controller.
     #[must_use]
     pub fn place_among(&self, names: &[String]) -> Option<usize> {
         let role = if self.on_load_cell {
@@ -403,7 +403,7 @@ fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> 
     }
 }
 
-/// The words of half a line that are not yet read.
+/// The unread words of half a line.
 struct Words<'a>(std::collections::VecDeque<&'a str>);
 
 impl<'a> Words<'a> {
@@ -445,7 +445,7 @@ impl<'a> Words<'a> {
         word.parse().map_err(|_| format!("`{word}` is no count"))
     }
 
-    /// The place of an axis, which is counted from 1.
+    /// The index of an axis, from its number (from 1).
     fn axis(&mut self) -> Result<usize, String> {
         let word = self.next()?;
         word.parse::<usize>()
@@ -476,7 +476,7 @@ impl<'a> Words<'a> {
             .ok_or_else(|| format!("`{word}` is no number"))
     }
 
-    /// A number with its one unit.
+    /// A number with its required unit.
     fn amount(&mut self, unit: &str) -> Result<f64, String> {
         let value = self.number()?;
         self.expect(unit)?;

@@ -1,10 +1,10 @@
-//! A stand: one bench, and the controllers that hang on it, each on a line of its own. In: bytes of a line, time. Out:
-//! bytes of a line. It does not know whether its time is real, nor what carries the bytes.
+//! A stand: one bench and its controllers, each on a separate line. In: bytes of a line, time. Out: bytes of a line. It knows
+//! neither whether its time is real nor the transport of the bytes.
 
 use super::script::{Fault, Script};
 use super::{Bench, Faulty, Firmware, Log};
 
-/// Everything behind the ports of a simulated rig.
+/// Everything behind the ports of an emulated rig.
 pub struct Stand {
     bench: Bench,
     lines: Vec<Line>,
@@ -29,8 +29,8 @@ impl Stand {
         }
     }
 
-    /// A stand with its controllers, each with its name, the actuators first. A fault befalls the one that its line names, of a load
-    /// cell that says no axis the first of them, and else the first.
+    /// A stand with its controllers, each with its name, the actuators first. A fault affects the controller that its line
+    /// names. For a load cell without an axis this is the first load cell, otherwise the first controller.
     #[must_use]
     pub fn of(
         bench: Bench,
@@ -62,18 +62,18 @@ impl Stand {
         &self.bench
     }
 
-    /// For a test that makes something go wrong by hand.
+    /// For a test that starts a fault by hand.
     pub const fn bench_mut(&mut self) -> &mut Bench {
         &mut self.bench
     }
 
-    /// How many lines it has; they are numbered from 0.
+    /// The number of lines, which are numbered from 0.
     #[must_use]
     pub fn lines(&self) -> usize {
         self.lines.len()
     }
 
-    /// Brings everything to a later moment, s since power-up.
+    /// Advances everything to a later time since power-up \[s\].
     pub fn advance(&mut self, to: f64) {
         self.bench.advance(to);
         for line in &mut self.lines {
@@ -82,7 +82,7 @@ impl Stand {
         self.follow();
     }
 
-    /// Bytes from the host of a line. Those on a line that is hung up are lost.
+    /// Receives bytes from the host of a line. They are lost if the line is hung up.
     pub fn give(&mut self, line: usize, bytes: &[u8]) {
         let line = &mut self.lines[line];
         if line.controller.hung_up() || bytes.is_empty() {
@@ -93,7 +93,7 @@ impl Stand {
         self.follow();
     }
 
-    /// What a line has for its host now: one piece.
+    /// Returns one block of bytes that a line has for its host now.
     pub fn take(&mut self, line: usize) -> Option<Vec<u8>> {
         let time = self.bench.time();
         let piece = self.lines[line].controller.take(time);
@@ -104,7 +104,7 @@ impl Stand {
         piece
     }
 
-    /// Whether a line takes bytes.
+    /// Whether a line reads bytes.
     #[must_use]
     pub fn reads(&self, line: usize) -> bool {
         self.lines[line].controller.reads()
@@ -123,18 +123,18 @@ impl Stand {
         self.log.happened(self.bench.time(), &line.name, "opened");
     }
 
-    /// The host of a line went away.
+    /// The host of a line disconnected.
     pub fn host_left(&mut self, line: usize) {
         self.log
             .happened(self.bench.time(), &self.lines[line].name, "host left");
     }
 
-    /// The log's end, and whether every target lay within the limits.
+    /// Writes the end of the log. Returns whether every target was within the limits.
     pub fn end(&mut self) -> bool {
         self.log.end(&self.bench)
     }
 
-    /// What kept the log from being written, if anything.
+    /// Returns the write error of the log, if there was one.
     pub const fn log_failure(&mut self) -> Option<std::io::Error> {
         self.log.failure()
     }

@@ -1,4 +1,4 @@
-//! What the tests of this folder share: one plain bench.
+//! A plain bench for the tests of this folder.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use super::{Bench, BenchSettings};
 use crate::plan::{Behaviour, Interval};
 
-/// 100 kN/m without noise, −1 … 10 mm, 10 mm/s; 0.01 N a count, 1000 counts at no force.
+/// 100 kN/m without noise, −1 … 10 mm, 10 mm/s; 0.01 N per count, zero offset 1000 counts.
 pub fn bench() -> Bench {
     Bench::new(BenchSettings {
         behaviour: Behaviour::Elastic { stiffness: 1e5 },
@@ -24,7 +24,7 @@ pub fn bench() -> Bench {
     })
 }
 
-/// Text that is written in one place and read in another.
+/// A text shared between a writer and a reader.
 #[derive(Clone, Default)]
 pub struct SharedText(Arc<Mutex<Vec<u8>>>);
 

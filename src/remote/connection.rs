@@ -20,14 +20,14 @@ use crate::run::remote_control::Specimen;
 /// A client that accepts no bytes for this long is disconnected.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A client that has begun a message and does not complete it for this long is disconnected, and so is one that connects
-/// and sends nothing: no other client is admitted meanwhile.
+/// A client with an incomplete message is disconnected after this time. The same applies to a client that connects and sends
+/// nothing, because no other client is admitted meanwhile.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Bytes that a client may have sent ahead, and that are looked through for its leave.
+/// Maximum number of bytes sent ahead that are searched for the end of the session.
 const SENT_AHEAD: usize = 1 << 16;
 
-/// Why there is nothing more to read or write.
+/// The reason why nothing more can be read or written.
 #[derive(Debug)]
 pub enum Broken {
     HungUp,
@@ -92,11 +92,11 @@ impl<'a> Connection<'a> {
         })
     }
 
-    /// Waits for bytes and gives their number, at least one. Between two messages a client may wait as long as it likes;
-    /// `owed_since` is the start of an incomplete message.
+    /// Waits for bytes and returns their number, at least one. The time between two messages is not limited; `owed_since` is
+    /// the start of an incomplete message.
     ///
     /// # Errors
-    /// None will be received.
+    /// No more bytes will be received.
     pub fn read(
         &mut self,
         buffer: &mut [u8],

@@ -30,10 +30,11 @@ fn served<T: Send>(limits: Limits, client: impl FnOnce(SocketAddr) -> T + Send) 
     served_on(&mut rig, &protocol, limits, client)
 }
 
-/// As OpenSees sends them for two degrees of freedom.
+/// The values of OpenSees for two degrees of freedom.
 const TWO: [i32; 11] = [2, 2, 2, 0, 1, 0, 0, 0, 2, 0, 256];
 
-/// Explicit Newmark of the client on ground that is shaken, against psd's own: the same displacements to the last bits.
+/// Explicit Newmark of the client under a ground motion, compared with psd's own: equal displacements except for rounding
+/// errors.
 #[test]
 fn an_explicit_newmark_of_the_client_is_that_of_psd() {
     const STEP: f64 = 2e-3;
@@ -88,7 +89,7 @@ fn an_explicit_newmark_of_the_client_is_that_of_psd() {
         found
     });
     assert_eq!(session.ended, Ended::Closed);
-    // The first of its targets is where the frame stands: nothing moves for it.
+    // The first of its targets is the present position of the frame: it causes no motion.
     assert_eq!(session.driven.targets, 199);
     let (mut load, mut force, mut largest) = ([0.0; 2], [0.0; 2], 0.0_f64);
     for (step, found) in (1..).zip(&found) {
@@ -120,7 +121,7 @@ fn a_vector_is_answered_by_a_vector_and_a_stiffness_by_a_matrix() {
         element.send(&[99.0]);
         answers
     });
-    // V₂ = 2 MN/m · 2 mm, V₁ = 3 MN/m · 1 mm; the farther way of 3 mm takes 3 s.
+    // V₂ = 2 MN/m · 2 mm, V₁ = 3 MN/m · 1 mm; the longer move of 3 mm takes 3 s.
     let near = |found: &[f64], expected: &[f64]| {
         let padded = expected.iter().chain(std::iter::repeat(&0.0));
         for (found, expected) in found.iter().zip(padded) {
@@ -139,7 +140,7 @@ fn a_vector_is_answered_by_a_vector_and_a_stiffness_by_a_matrix() {
     assert_eq!(session.ended, Ended::Closed);
 }
 
-/// A limit on one floor's target moves neither floor; a force of one floor beyond its limit ends the session.
+/// If a limit refuses the target of one floor, no floor moves. If the force of one floor exceeds its limit, the session ends.
 #[test]
 fn what_stands_in_the_way_of_one_floor_stands_in_the_way_of_all() {
     for targets in [[0.001, 0.021], [0.021, 0.001], [0.001, f64::NAN]] {

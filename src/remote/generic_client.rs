@@ -1,12 +1,12 @@
 //! The socket of OpenSees' `genericClient` element and of `expControl GenericTCP`: a header of sizes, then messages of one
-//! length both ways, 64-bit floats in the machine's order. In: a client's connection. Out: motion through the guard, forces
-//! to the client.
+//! length in both directions. They contain 64-bit floats in the machine's byte order. In: a client's connection. Out: motion
+//! through the guard, forces to the client.
 //!
-//! The protocol has no error message. OpenSees (tested with 3.7.1) does not notice that its server has disconnected: after
-//! a `close`, a `shutdown` and a reset alike it waits in its read for ever, at full load. It does notice a force that is
-//! not finite: an iteration does not converge, and `analyze` fails at that step; an explicit or linear analysis runs to the
-//! end of its steps with NaN, which cannot be mistaken for a result, and sends its 99. So any fault holds the rig, and from
-//! then on every question is answered with NaN, until the client disconnects, is silent or has sent all its messages.
+//! The protocol has no error message. OpenSees (tested with 3.7.1) does not notice that its server has disconnected. After a
+//! `close`, a `shutdown` or a reset it waits in its read for ever, at full processor load. It does notice a force that is not
+//! finite: an iteration does not converge, and `analyze` fails at that step. An explicit or linear analysis continues to the
+//! end of its steps with NaN and sends its 99. NaN cannot be mistaken for a result. Therefore any fault holds the rig. Every
+//! later request is answered with NaN, until the client disconnects, is silent or has sent all its messages.
 //!
 //! A trial is sent more than once: only a target that differs from the last one moves the rig. Between moves the specimen
 //! is at rest: velocity and acceleration are zero, and so are damping and mass, which belong to the client; both
@@ -43,11 +43,11 @@ mod action {
 const SETTING: u8 = 2;
 const SETTING_MESSAGE: usize = 16_385;
 
-/// Longest that a client which was refused is still answered, and longest that it may be silent meanwhile.
+/// Maximum time during which a refused client is still answered, and maximum time that it can be silent meanwhile.
 const FAREWELL: Duration = Duration::from_secs(30);
 const SILENCE: Duration = Duration::from_secs(1);
 
-/// Serves a client until one of the two has enough.
+/// Serves a client until one of the two ends the session.
 pub fn session(
     connection: &mut Connection<'_>,
     specimen: &mut Specimen<'_, '_>,
@@ -58,7 +58,7 @@ pub fn session(
         talk(connection, specimen, stiffness, &mut words, &mut begun).unwrap_or_else(|ended| ended);
     if words > 0 && matches!(ended, Ended::Limit(_) | Ended::Rig(_) | Ended::Stopped) {
         specimen.hold();
-        // Whatever stops this too has nothing to add to why the session ended.
+        // A further failure adds nothing to the reason why the session ended.
         let _ = bid_farewell(connection, specimen, words, &begun);
     }
     ended
@@ -110,7 +110,7 @@ fn talk(
         begun.clear();
         let first = connection.read(&mut message[..1], specimen, None)?;
         if message[0] == SETTING {
-            // The rest of it goes past; the action of any other message begins with a zero.
+            // The rest of it is skipped; the action of any other message begins with a zero.
             let mut rest = [0; SETTING_MESSAGE - 1];
             connection.read_all(&mut rest, specimen)?;
             if settings == 0 {

@@ -22,7 +22,7 @@ pub struct Layout {
 /// Reads the first message, for a rig with this number of axes.
 ///
 /// # Errors
-/// Why it cannot be served.
+/// The reason why it cannot be served.
 pub fn parse(bytes: &[u8; HEADER], axes: usize) -> Result<Layout, String> {
     let number = |at: usize| {
         i32::from_le_bytes([
@@ -45,7 +45,7 @@ pub fn parse(bytes: &[u8; HEADER], axes: usize) -> Result<Layout, String> {
         ));
     }
     let sizes: [i32; 10] = std::array::from_fn(number);
-    // A time is one word, every other quantity none or one per axis.
+    // The time is one word. Every other quantity has no words or one per axis.
     let most = |at: usize| {
         if at % 5 == 4 {
             Some(1)

@@ -27,13 +27,13 @@ use crate::run::remote_control::Specimen;
 use connection::{Broken, Connection};
 pub use nees::usual_names;
 
-/// How often a wait looks whether it is to end.
+/// Interval at which a wait checks whether it must end.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// The protocol of the client.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Protocol {
-    /// With the names of its control points, one an axis; none: of one axis, and any name is it.
+    /// With the names of its control points, one per axis; none: one axis, and any name is accepted.
     Nees { control_points: Vec<String> },
     /// With the constant stiffness that it receives \[N/m\]: for n axes n·n numbers, row by row.
     GenericClient { stiffness: Vec<f64> },
@@ -65,7 +65,7 @@ impl Ended {
         }
     }
 
-    /// Whether another client may connect: not after a stop by a limit or a fault of the rig.
+    /// Whether another client can connect: not after a stop by a limit or a fault of the rig.
     const fn allows_another(&self) -> bool {
         matches!(
             self,

@@ -2,8 +2,8 @@
 //! answer per line. A target outside a limit is refused when it is proposed, before anything moves.
 //!
 //! Every axis is a control point with a name, of the form `MDL-00-01` or `MDL-00-01:floor`; a rig of one axis accepts any
-//! name. One proposal may name several: they are proposed, refused, moved and settled together, and an axis that it does
-//! not name keeps its last target. Control points of cameras and the like (`MDL-AUX`) move nothing. Names and directions
+//! name. One proposal can name several: they are proposed, refused, moved and settled together. An axis that it does not name
+//! keeps its last target. Control points of auxiliary devices such as cameras (`MDL-AUX`) move nothing. Names and directions
 //! are echoed as they were written; answers have the line ending of the client.
 
 use std::time::Instant;

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-/// Auxiliary devices (cameras, loggers) have control points that begin so; they move nothing.
+/// Auxiliary devices (cameras, loggers) have control points with this prefix; they move nothing.
 const AUXILIARY: &str = "MDL-AUX";
 
 /// A request. Texts are the client's own.
@@ -18,7 +18,7 @@ pub enum Request<'a> {
     Execute {
         transaction: &'a str,
     },
-    /// The transaction may be `dummy`.
+    /// The transaction can be `dummy`.
     GetControlPoint {
         transaction: &'a str,
         point: &'a str,
@@ -37,7 +37,7 @@ pub struct Point<'a> {
 }
 
 impl Point<'_> {
-    /// Whether it is a camera or the like.
+    /// Whether it is an auxiliary device, such as a camera.
     #[must_use]
     pub fn is_auxiliary(&self) -> bool {
         self.name.starts_with(AUXILIARY)
@@ -61,14 +61,14 @@ pub struct Refusal<'a> {
     pub reason: String,
 }
 
-/// The code of a refusal; the protocol names none, these are ours.
+/// The code of a refusal. The protocol defines none; these are psd's own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Why {
     /// A limit is exceeded.
     Limit = 1,
     /// Not understood, or more than this rig has.
     Message = 2,
-    /// Not now: no session, another transaction, still moving.
+    /// Not possible now: no session, another transaction, still moving.
     Order = 3,
     /// The rig failed.
     Rig = 4,
@@ -114,7 +114,7 @@ pub fn place_of(names: &[String], name: &str) -> Option<usize> {
 /// twice. Empty if it is for auxiliary devices alone. `place_of` finds a control point.
 ///
 /// # Errors
-/// The part that cannot be done, for the client.
+/// The invalid part, for the client.
 pub fn wishes<'a>(
     points: &[Point<'a>],
     place_of: impl Fn(&str) -> Option<usize>,
@@ -173,7 +173,7 @@ pub fn parse(line: &str) -> Result<Request<'_>, Refusal<'_>> {
     }
 }
 
-/// `MDL-00-01 (axis kind value)+ [MDL-… …]`. Axis and kind may be in either order.
+/// `MDL-00-01 (axis kind value)+ [MDL-… …]`. Axis and kind can be in either order.
 fn points<'a>(wanted: &[&'a str]) -> Result<Vec<Point<'a>>, String> {
     let mut points: Vec<Point<'a>> = Vec::new();
     let mut left = wanted;

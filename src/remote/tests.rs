@@ -1,4 +1,4 @@
-//! Whole sessions over loopback, against clients that are written here from the layouts.
+//! Whole sessions over loopback, with clients that are written here from the message layouts.
 
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
@@ -38,12 +38,12 @@ fn spring() -> VirtualRig {
     VirtualRig::new(VirtualLink::default(), settle, Some(&specimen), 1.0)
 }
 
-/// One control point, whatever it is called.
+/// One control point with any name.
 const NEES: Protocol = Protocol::Nees {
     control_points: Vec::new(),
 };
 
-/// Serves the spring once while `client` talks, and gives what both say.
+/// Serves the spring once while `client` runs, and returns the results of both.
 #[expect(clippy::needless_pass_by_value, reason = "each test makes its own")]
 fn served<T: Send>(
     protocol: Protocol,
@@ -189,7 +189,7 @@ fn an_explicit_newmark_of_the_client_finds_the_largest_displacement() {
 
 #[test]
 fn every_question_of_the_protocol_has_an_answer() {
-    // psd gives displacement, velocity, acceleration, force and time.
+    // psd returns displacement, velocity, acceleration, force and time.
     let (answers, session) = served(generic(), LIMITS, |address| {
         let mut element = Element::connect(address, [1, 0, 0, 0, 0, 1, 1, 1, 1, 1, 8]);
         element.send(&[3.0, -0.002]);
@@ -273,7 +273,7 @@ fn garbage_moves_nothing_and_a_client_may_hang_up_anywhere() {
         let (closed, session) = served(generic(), LIMITS, |address| {
             let mut stream = TcpStream::connect(address).unwrap();
             stream.write_all(bytes).unwrap();
-            // The server may have hung up by now.
+            // The server can have closed the connection by now.
             stream.shutdown(std::net::Shutdown::Write).ok();
             !matches!(stream.read(&mut [0; 8]), Ok(1..))
         });
@@ -320,7 +320,7 @@ fn a_second_client_is_turned_away_and_the_first_goes_on() {
     assert_eq!(session.ended, Ended::Closed);
 }
 
-/// Sends lines one after the other, each after the answer to the one before.
+/// Sends lines one after the other, each after the answer to the previous one.
 fn coordinator(address: SocketAddr, lines: &[&str]) -> Vec<String> {
     use std::io::BufRead as _;
     let mut stream = TcpStream::connect(address).unwrap();
@@ -423,7 +423,7 @@ fn a_nees_reading_beyond_a_limit_is_told_and_ends_the_session() {
 fn a_line_without_end_is_not_gathered_for_ever_and_what_is_no_message_is_answered() {
     let (closed, session) = served(NEES, LIMITS, |address| {
         let mut stream = TcpStream::connect(address).unwrap();
-        // The other side may close before all is written.
+        // The other side can close before all is written.
         let _ = stream.write_all(&vec![b'A'; 100_000]);
         !matches!(stream.read(&mut [0; 8]), Ok(1..))
     });
@@ -449,7 +449,7 @@ fn a_line_without_end_is_not_gathered_for_ever_and_what_is_no_message_is_answere
     );
 }
 
-/// How a session ends whose client sends this and then nothing more.
+/// Returns how a session ends if its client sends these bytes and then nothing more.
 fn ended_in_silence(protocol: &Protocol, sent: &[u8]) -> Ended {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! The plan is another one when the run is to go on: refused with both digests, or on record as a deviation.
+//! The plan changes before a run is resumed: psd refuses it with both digests, or logs it as a deviation.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use rustix::process::Signal;
 
 use crate::stage::{Stage, finish, signal, start, wait};
 
-/// A run that a person has stopped after some moves.
+/// A run that the operator stopped after some moves.
 fn stopped() -> Stage {
     let stage = Stage::new();
     let run = start(&mut stage.run_with(&["--yes"]));

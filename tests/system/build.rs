@@ -1,4 +1,4 @@
-//! The program's own name, as `docs/record.md` has anybody reckon it from the sources.
+//! The identifier of the program, calculated from the sources as `docs/record.md` describes.
 
 use std::fs;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! The certificate on paper, read by programs that did not write it: `qpdf` checks the file, `pdftotext` reads it back. Plans
-//! are run as a user runs them, on virtual rigs.
+//! The PDF of the test report, read by independent programs: `qpdf` checks the file, `pdftotext` extracts its text. The plans
+//! run as a user runs them, on simulated rigs.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::process::Command;
 use super::needs;
 use super::stage::PSD;
 
-/// Everything a text may hold that could be taken for markup, and letters that no font of the report has.
+/// All characters of a string that could be read as markup, and letters that are in no font of the report.
 const HOSTILE: &str = "#panic() $x$ *b* @a <l> [c] \\u{0} ~ // 試験";
 
 fn plan(date: &str, limit: &str) -> String {
@@ -56,7 +56,7 @@ require "stays in travel" hit.max_displacement < 20 mm
     )
 }
 
-/// Runs a plan in a place and language of its own; the bytes of its paper.
+/// Runs a plan in its own folder and language; returns the bytes of its PDF.
 fn paper(place: &Path, name: &str, text: &str, environment: &[(&str, &str)]) -> Vec<u8> {
     let file = place.join("paper.psd");
     fs::write(&file, text).unwrap();

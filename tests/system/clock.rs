@@ -1,5 +1,5 @@
-//! The wall clock of the machine is set by a year, either way, while a run goes on. Durations are not of that clock; both stamps
-//! are on record, and page one tells of the jump.
+//! The wall clock of the machine changes by a year, forwards or back, during a run. Durations do not use that clock. Both time
+//! stamps are in the run log, and page one reports the jump.
 
 use std::fs;
 use std::process::Command;
@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::needs;
 use crate::stage::{PSD, Stage, finish, start};
 
-/// A run whose wall clock is set by so much at its fifteenth move.
+/// A run whose wall clock changes by this amount at its fifteenth move.
 fn jumped(by: &str) -> Stage {
     let stage = Stage::new();
     let told = stage.path("clock");

@@ -1,5 +1,5 @@
-//! The disk fails under a run: one sync that fails, no room, a limit on the size of files. The rig is held, nothing more
-//! is sent, the failed sync is never tried again, and the run goes on when there is room.
+//! The disk fails during a run: one failed sync, no disk space, a limit on the file size. The rig is held and receives no more
+//! commands. The failed sync is never repeated, and the run can be resumed when there is disk space.
 
 use std::fs;
 use std::process::Command;
@@ -9,7 +9,7 @@ use rustix::process::Signal;
 use crate::needs;
 use crate::stage::{PSD, Stage, finish, signal, start, wait};
 
-/// The last word about moving is the one to stop.
+/// The last motion command is the hold.
 fn held(stage: &Stage) {
     let requests = stage.requests();
     let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
@@ -71,7 +71,7 @@ fn a_limit_on_the_size_of_files_is_a_full_disk_and_no_signal_ends_the_program() 
     let size = fs::metadata(whole.journal()).unwrap().len();
     let stage = Stage::new();
     let mut command = Command::new("prlimit");
-    // Above the reserve that lies beside the record, which is 1 MiB, nothing would ever fail: the record is made longer.
+    // The file size limit must be below the size of the reserve beside the run log, which is 1 MiB.
     assert!(size < 1 << 20);
     command.args([&format!("--fsize={}", size / 2), PSD]);
     stage.run_arguments(&mut command, &["--yes"]);
@@ -207,7 +207,7 @@ fn a_disk_that_fills_up_holds_the_rig_and_the_run_goes_on_when_there_is_room() {
     let stage = Stage::new();
     fs::create_dir(stage.path("run")).unwrap();
     fs::create_dir(stage.path("kept")).unwrap();
-    // Enough free space to begin; a file beside the record takes it once the run moves.
+    // Enough free space to begin. A file beside the run log uses it once the run moves.
     let script = r#"set -e
 mount -t tmpfs -o size=220m tmpfs "$1/run"
 "$2" run "$1/plan.psd" --rig bench --operator "A. Tester" --yes --out "$1/run" & ran=$!
@@ -251,7 +251,7 @@ fn a_disk_with_too_little_free_space_is_found_before_anything_moves() {
     }
     let stage = Stage::new();
     fs::create_dir(stage.path("small")).unwrap();
-    // Enough for the reserve and the whole record, and less than a run needs to begin.
+    // Enough for the reserve and the whole run log, but less than a run requires to begin.
     let script = r#"set -e
 mount -t tmpfs -o size=2m tmpfs "$1/small"
 status=0; "$2" run "$1/plan.psd" --rig bench --operator "A. Tester" --yes --out "$1/small/run" || status=$?

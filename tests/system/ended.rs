@@ -1,6 +1,6 @@
-//! The program ends in the middle of what it does: an abort, or a panic where the system gives it no thread. Of an abort nobody can
-//! tell the rig, which holds by its own watchdog; the run goes on, and no target is carried out twice. A run starts its threads before
-//! its first move and after its last; that a panic between the two sends the word to hold is shown in `src/rig/safety/mod.rs`.
+//! The program ends during its work: an abort, or a panic because the system starts no thread for it. The rig cannot be
+//! informed of an abort, and holds by its own watchdog. The run is resumed, and no target is executed twice. A run starts its
+//! threads before its first move and after its last. `src/rig/safety/mod.rs` tests the hold command of a panic between the two.
 
 use std::process::Command;
 
@@ -11,7 +11,7 @@ use crate::stage::{Ended, PSD, Stage, finish, let_it_trip, signal, start, wait, 
 
 #[test]
 fn by_an_abort_in_any_phase() {
-    // In the ramp, after it, in the blow, beside each other: each has its own rig, whose watchdog is waited for.
+    // In the ramp, after it, in the impact, in parallel: each has its own rig, and waits for its watchdog.
     let phases = [(Signal::ABORT, 3), (Signal::ILL, 18), (Signal::ABORT, 30)];
     std::thread::scope(|scope| {
         phases
@@ -20,7 +20,7 @@ fn by_an_abort_in_any_phase() {
     });
 }
 
-/// The run of a watched rig ends by this signal after so many moves; the rig holds itself, and the run goes on.
+/// A signal ends the run of a watched rig after this number of moves. The rig holds itself, and the run is resumed.
 fn aborted(word: Signal, moves: usize) {
     let stage = Stage::of(watched, "");
     let run = start(&mut stage.run_with(&["--yes"]));
@@ -34,7 +34,7 @@ fn aborted(word: Signal, moves: usize) {
         run.told.lines().last()
     );
     let (done, asked) = (stage.moves().len(), stage.requests().len());
-    // What is on the line after the end of the program is nothing; the rig trips its watchdog alone.
+    // The line is silent after the end of the program; the watchdog of the rig trips.
     let_it_trip();
     assert_eq!((stage.moves().len(), stage.requests().len()), (done, asked));
     stage.goes_on(&[]);
@@ -49,7 +49,7 @@ fn aborted(word: Signal, moves: usize) {
     assert_eq!(moves.len(), count, "{moves:?}");
 }
 
-/// How many threads a run starts.
+/// The number of threads that a run starts.
 fn threads_of_a_run() -> usize {
     let stage = Stage::new();
     let told = stage.path("threads");
@@ -66,7 +66,7 @@ fn threads_of_a_run() -> usize {
         .count()
 }
 
-/// The run, where the n-th thread cannot be started: the standard library panics, but what can do without goes on.
+/// The run without its n-th thread: the standard library panics, but a run that does not need the thread continues.
 fn without_thread(stage: &Stage, number: usize) -> Ended {
     let mut command = Command::new("strace");
     command.args(["-f", "-o", "/dev/null", "-e", "trace=clone3,clone"]);
@@ -101,10 +101,10 @@ fn by_a_panic_where_a_thread_cannot_be_started() {
             before += 1;
             continue;
         }
-        // The run had ended, and its record was whole.
+        // The run had ended, and its run log was complete.
         after += 1;
         assert_eq!(stage.moves().len(), 42, "{number}");
-        // What the panic cost is made again from the record.
+        // The output lost in the panic is regenerated from the run log.
         let again = wait(
             Command::new(PSD)
                 .arg("report")

@@ -1,21 +1,21 @@
-//! Every fault that a stand-in can have, against a whole run: the manual's table says how each ends, and each ends so. In: the
-//! rows of `docs/reference/emulator-faults.md`. Out: the end of the run, its words, a sound record, a rig that is held.
+//! A whole run with every fault of a rig emulator: each run ends as the manual's table states. In: the rows of
+//! `docs/reference/emulator-faults.md`. Out: the end of the run, its messages, a valid run log, a rig in hold.
 
 use std::sync::Mutex;
 
 use crate::stage::{Stage, impatient, wait};
 
-/// At once: each waits for its rig most of the time.
+/// Number of concurrent runs: each waits for its rig most of the time.
 const AT_ONCE: usize = 4;
 
-/// One row: a line of a script, the exit code of the run, and what the run must say.
+/// One row: a line of a script, the exit code of the run, and the expected messages.
 struct Row {
     fault: String,
     code: i32,
     said: Vec<String>,
 }
 
-/// The words of a cell that stand between backticks.
+/// The words of a cell between backticks.
 fn quoted(cell: &str) -> Vec<String> {
     cell.split('`')
         .skip(1)
@@ -37,7 +37,7 @@ fn rows() -> Vec<Row> {
     });
     let row = |(fault, rest): (&str, &str)| {
         let (code, words) = rest.split_once(" | ").unwrap();
-        // Names of options and fields are no words of a run.
+        // Names of options and fields are not messages of a run.
         let name = |word: &str| {
             word.starts_with("--") || ["psd resume", "force_range", "samples"].contains(&word)
         };
@@ -54,8 +54,8 @@ fn rows() -> Vec<Row> {
     cells.map(row).collect()
 }
 
-/// Three readings a step, with a little noise. A request is given up soon only in a row that is about silence: in every other no machine is
-/// so busy that a stand-in is taken for silent.
+/// Three readings per step, with a little noise. Only a row about silence has a short time-out. In all others a busy machine
+/// must not cause a time-out.
 fn plan(plan: &str, fault: &str) -> String {
     let plan = plan.replace(
         "samples    = 1",
@@ -67,13 +67,13 @@ fn plan(plan: &str, fault: &str) -> String {
     if silent { impatient(&plan) } else { plan }
 }
 
-/// What is wrong with how a row ended, if anything.
+/// The error in the end of a row's run, if there is one.
 fn fault_of(row: &Row) -> Option<String> {
     let mut stage = Stage::of(|text| plan(text, &row.fault), &row.fault);
     let ran = wait(&mut stage.run_with(&["--yes"]));
     let verified = stage.verify();
     let requests = stage.requests();
-    // Fails by itself where a target lay outside the limits.
+    // Fails if a target was outside the limits.
     stage.power_down();
     let unsaid: Vec<&String> = row
         .said
@@ -127,7 +127,7 @@ fn every_fault_of_the_manual_ends_as_the_manual_says() {
     );
 }
 
-/// No kind of fault is left out of the manual's table: each word that begins one stands there.
+/// The manual's table has a row for every kind of fault: each keyword that begins a fault appears there.
 #[test]
 fn every_kind_of_fault_has_its_row() {
     let rows = rows();

@@ -1,5 +1,5 @@
-//! Frames on real rigs of several axes, as processes: psd as coordinator of control points over TCP, and psd as the rig whose
-//! floors a coordinator or a finite-element program drives. In: plans of two storeys. Out: the virtual run, or K·u.
+//! Frames on real rigs of several axes, as processes. psd is the coordinator of control points over TCP, or the rig whose
+//! floors a coordinator or a finite-element program drives. In: plans of two storeys. Out: the simulated run, or K·u.
 
 use std::fs;
 use std::io::{Read as _, Write as _};
@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::served::{Coordinator, Served};
 use crate::stage::{Stage, wait};
 
-/// The shaken plan's own text, for two seconds, on a rig that speaks NEES at an address of its own.
+/// The text of the ground-motion plan, for two seconds, on a NEES rig at its own address.
 fn over_tcp(address: &str) -> String {
     let sine = include_str!("../../plans/two_storeys_sine.psd");
     let bench = include_str!("../../plans/lib/two_actuator_frame.psd");
@@ -32,7 +32,7 @@ fn over_tcp(address: &str) -> String {
         .replace(step, "  time_step     = 10 ms\n  duration      = 1 s")
 }
 
-/// The column of a table, numbers.
+/// The numbers in a column of a table.
 fn column(path: &Path, name: &str) -> Vec<f64> {
     let text = fs::read_to_string(path).unwrap();
     let at = text
@@ -76,7 +76,7 @@ fn a_frame_over_control_points_is_the_virtual_run() {
         ]);
         wait(command.arg(stage.path(out)))
     };
-    // The requirements are of the steady motion, which a second is too short for.
+    // The requirements apply to the steady motion. A second is too short for it.
     for (rig, out) in [("ideal", "virtual"), ("bench", "run")] {
         let ended = run(rig, out);
         assert_eq!(ended.code, Some(1), "{}", ended.told);
@@ -98,7 +98,7 @@ fn a_frame_over_control_points_is_the_virtual_run() {
         let largest = ideal
             .iter()
             .fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        // A nanometre is what the rig resolves; rounding adds up over the steps.
+        // The resolution of the rig is a nanometre; rounding errors accumulate over the steps.
         let differs = ideal
             .iter()
             .zip(&real)
@@ -122,7 +122,7 @@ fn a_frame_over_control_points_is_the_virtual_run() {
     );
 }
 
-/// K = [500, −200; −200, 200] kN/m, on a controller of two axes, the upper of which counts the other way round.
+/// K = [500, −200; −200, 200] kN/m, on a controller of two axes; the upper one has the opposite polarity.
 const FRAME: &str = r#"
 specimen frame {
   storeys = [
@@ -163,7 +163,7 @@ fn frame() -> Stage {
     )
 }
 
-/// Places and forces as a coordinator is told, m and N.
+/// Positions and forces as reported to a coordinator \[m, N\].
 fn floor(client: &mut Coordinator, point: &str) -> (f64, f64) {
     let answer = client.ask(&format!("get-control-point\tdummy\t{point}"));
     let words: Vec<&str> = answer.split('\t').collect();
@@ -191,7 +191,7 @@ fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
     );
     is(floor(&mut client, "MDL-00-01"), 1e-3, -100.0);
     is(floor(&mut client, "MDL-00-02:roof"), 3e-3, 400.0);
-    // The lower floor is not named, and stays.
+    // The proposal does not name the lower floor, which keeps its position.
     assert_eq!(
         [
             client.ask("propose\tt2\tMDL-00-02\tx\tdisplacement\t1.0E-3"),
@@ -203,7 +203,7 @@ fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
     is(floor(&mut client, "MDL-00-02"), 1e-3, 0.0);
     let moved = served.stage.moves().len();
     assert_eq!(moved, gate + 2);
-    // The lower axis has a limit of its own; what is refused of one moves neither.
+    // The lower axis has its own limit. A refused target of one axis moves neither.
     for (wish, said) in [
         (
             "MDL-00-01\tx\tdisplacement\t0.0101\tMDL-00-02\tx\tdisplacement\t0",

@@ -1,5 +1,5 @@
-//! A frame of two storeys on a rig of two axes: whole runs as processes over a pseudo-terminal. In: a plan of its own. Out:
-//! the results of the virtual run, a record that proves itself, and after a kill the same end with no target twice.
+//! A frame of two storeys on a rig of two axes: whole runs as processes over a pseudo-terminal. In: a separate plan. Out: the
+//! results of the simulated run and a verified run log. After a kill: the same end, and no target twice.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use rustix::process::Signal;
 
 use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, wait};
 
-/// Elastic, so that a force is that of its place to the last digit, whatever the clock cuts the way into.
+/// Elastic, so that the force depends on the position only, even if timing divides the path differently.
 const PLAN: &str = r#"plan "Two storeys on two axes" {
   edition     = 1
   specimen_id = "SYS-2"
@@ -71,7 +71,7 @@ report {
 
 const GROUND: &str = "time_s,acceleration_m_per_s2\n0,0\n0.1,2\n0.2,-3\n0.3,2\n0.4,0\n";
 
-/// The stage of a plan, with its ground beside it.
+/// The stage of a plan, with its ground-motion file.
 fn stage_of(plan: &str, ground: &str) -> Stage {
     let with_its_port = |text: &str| {
         let port = text
@@ -85,7 +85,7 @@ fn stage_of(plan: &str, ground: &str) -> Stage {
     Stage::of(with_its_port, "")
 }
 
-/// The plan with other words in place of some that stand in it.
+/// The plan with some of its words replaced.
 fn plan_with(changes: &[(&str, &str)]) -> String {
     changes
         .iter()
@@ -95,7 +95,7 @@ fn plan_with(changes: &[(&str, &str)]) -> String {
         })
 }
 
-/// Every number among the results of the shake, with the name of its result.
+/// All numbers in the results of the ground-motion test, with the names of their results.
 fn results(folder: &Path) -> Vec<(String, f64)> {
     let summary: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.join("summary.json")).unwrap()).unwrap();
@@ -117,7 +117,7 @@ fn results(folder: &Path) -> Vec<(String, f64)> {
     named.collect()
 }
 
-/// The same plan, of which the floors do not stop: a step takes 2.4 s, beside which what a busy machine is late is little.
+/// The same plan with continuous motion. A step takes 2.4 s, so that the delays of a busy machine are small.
 fn gliding() -> Stage {
     let mode = "  time_step     = 10 ms\n  mode          = continuous(time_scale: 240)";
     let plan = plan_with(&[("  time_step     = 10 ms", mode), SHORT]);
@@ -130,7 +130,7 @@ fn gliding() -> Stage {
 /// Ten steps of forty.
 const SHORT: (&str, &str) = ("0.4 s\n}", "0.1 s\n}");
 
-/// The same plan with a meter of two channels on a port of its own.
+/// The same plan with a meter of two channels on its own port.
 fn metered() -> Stage {
     let link = "  link        = serial(port: \"PORT\", dialect: native, reply_timeout: 2 s)\n";
     let meter = "  load_cell   = serial(port: \"PORT-meter\", dialect: scpi([25 kN, -12.5 kN]), reply_timeout: 2 s)\n";
@@ -138,7 +138,7 @@ fn metered() -> Stage {
     stage_of(&plan_with(&[(link, &devices), SHORT]), GROUND)
 }
 
-/// Results of the plan on an ideal rig, held beside the run of the stage.
+/// Results of the plan on an ideal rig, for comparison with the run of the stage.
 fn ideal_of(stage: &Stage) -> Vec<(String, f64)> {
     let mut virtual_run = std::process::Command::new(PSD);
     virtual_run
@@ -150,7 +150,7 @@ fn ideal_of(stage: &Stage) -> Vec<(String, f64)> {
     results(&stage.path("ideal"))
 }
 
-/// All results of a run are those of the ideal rig, but for `far` of each, of its name and size.
+/// All results of a run equal those of the ideal rig, within `far` of the name and size of the result.
 fn same_but_for(real: &[(String, f64)], ideal: &[(String, f64)], far: impl Fn(&str, f64) -> f64) {
     assert!(real.len() == ideal.len() && real.len() > 8);
     for ((name, real), (_, ideal)) in real.iter().zip(ideal) {
@@ -161,7 +161,7 @@ fn same_but_for(real: &[(String, f64)], ideal: &[(String, f64)], far: impl Fn(&s
     }
 }
 
-/// The run of a stage is killed after so many moves.
+/// The run of a stage is killed after this number of moves.
 fn killed(stage: &Stage, moves: usize) {
     let mut running = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(moves);
@@ -170,7 +170,7 @@ fn killed(stage: &Stage, moves: usize) {
     finish(running);
 }
 
-/// A run that is killed after so many moves goes on to the end of one that was not.
+/// A run that is killed after this number of moves is resumed. It has the same end as an uninterrupted run.
 fn killed_it_goes_on(cut_off: &Stage, moves: usize, whole: &Stage) {
     killed(cut_off, moves);
     cut_off.goes_on(&[]);
@@ -207,8 +207,8 @@ fn a_meter_apart_gives_the_virtual_runs_results_and_killed_it_goes_on() {
     killed_it_goes_on(&metered(), 9, &whole);
 }
 
-/// Continuous in real time over a pseudo-terminal: a reading comes a little behind its target, and the force of an elastic frame
-/// is corrected to it, so that the motion is that of the virtual run as near as the wire tells forces and places.
+/// Continuous in real time over a pseudo-terminal. A reading is slightly behind its target, and the force of an elastic frame
+/// is corrected to it. The motion equals that of the simulated run, within the resolution of forces and positions on the line.
 #[test]
 fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on() {
     let whole = gliding();
@@ -233,7 +233,7 @@ fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on(
 
     let cut_off = gliding();
     killed(&cut_off, 13);
-    // Nobody tells it where to go on: at the end of its way it holds by itself.
+    // It receives no next target: it holds automatically at the end of its path.
     std::thread::sleep(std::time::Duration::from_secs(6));
     cut_off.goes_on(&[]);
     same(&cut_off);
@@ -270,7 +270,7 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
             "{told} is not on the certificate"
         );
     }
-    // The wire resolves 1 nm and 1 mN; the energy error, nothing on an ideal rig, is a share of the input.
+    // The resolution of the line is 1 nm and 1 mN. The energy error, zero on an ideal rig, is relative to the input energy.
     same_but_for(
         &results(&whole.path("run")),
         &ideal_of(&whole),

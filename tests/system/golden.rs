@@ -1,4 +1,4 @@
-//! The reports of `psd test`, read by their standard readers: JUnit by an XML parser, TAP by `prove`.
+//! The reports of `psd test`, read by their standard programs: JUnit by an XML parser, TAP by `prove`.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -9,7 +9,7 @@ const PLAN: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffn
     stiffness ramp k0 {\n  displacements = 1 mm .. 5 mm step 1 mm\n}\n\n\
     require \"stiff <&> \\\"sound\\\"\" k0.stiffness > 1 N/m\n\nreport {\n  figures = []\n  formats = [csv]\n}\n";
 
-/// Plans `as` and `moved`, both blessed; the second then gives another number.
+/// Plans `as` and `moved`, both with accepted results. The second one then gives a different number.
 fn two_plans() -> tempfile::TempDir {
     let folder = crate::stage::folder();
     std::fs::create_dir(folder.path().join("plans")).unwrap();
@@ -99,6 +99,6 @@ fn tap_is_read_by_prove() {
         !good && told.contains("Failed 1/2 subtests") && told.contains("Failed test:  2"),
         "{told}"
     );
-    // Parsed without a complaint of its own: the plan of the protocol and its lines agree.
+    // Parsed without an error: the TAP plan and its lines agree.
     assert!(!told.contains("Parse errors"), "{told}");
 }

@@ -1,5 +1,5 @@
-//! A rig by hand: `psd rig monitor` and `jog` against a stand-in behind a pseudo-terminal. What moves is what the log of every
-//! byte says, and what was done is proven by `psd verify`.
+//! Manual operation of a rig: `psd rig monitor` and `jog` with a rig emulator behind a pseudo-terminal. The emulator's log of
+//! all bytes shows the motion, and `psd verify` verifies the run log.
 
 use std::io::{BufRead as _, BufReader};
 use std::process::Stdio;
@@ -21,7 +21,7 @@ fn a_monitor_ends_with_its_reader_and_with_each_signal() {
     let mut lines = BufReader::new(monitor.stdout.take().unwrap()).lines();
     let three: Vec<String> = lines.by_ref().take(3).map(Result::unwrap).collect();
     assert_eq!(three[0], "time_s,displacement_m,force_n");
-    // As `| head -n 3` leaves it.
+    // As with `| head -n 3`.
     drop(lines);
     assert_eq!(code(&mut monitor), Some(0));
     for sent in [Signal::INT, Signal::TERM, Signal::HUP] {
@@ -56,7 +56,7 @@ fn a_rig_that_falls_silent_ends_the_monitor_and_is_told() {
 
 #[test]
 fn a_place_beyond_a_limit_is_refused_before_any_byte_asks_for_it() {
-    // Ten increments would be inside the limit and the eleventh beyond it: none is gone.
+    // Ten increments would be inside the limit and the eleventh beyond it: none is executed.
     let stage = Stage::of(
         |plan| {
             plan.replace(
@@ -161,7 +161,7 @@ fn a_jog_counts_from_the_zero_of_the_run_that_loaded_the_specimen() {
     );
     let loaded = stage.path("loaded");
     std::fs::rename(stage.path("run"), &loaded).unwrap();
-    // Its limits would go with a zero that it has while it carries load.
+    // The zero reading under load would shift its limits.
     let refused = wait(&mut stage.recorded_tool("jog", &["--to", "0 mm", "--yes"]));
     assert!(
         refused.code == Some(2) && refused.told.contains("the specimen carries 50.00 N"),
@@ -204,7 +204,7 @@ fn only_the_word_moves_and_the_end_of_the_input_is_none() {
             terminal.shown()
         );
         assert!(stage.proven().contains("all 0 came out again"));
-        // What was done by hand is no run that can be gone on with.
+        // Manual operation is not a run that can be resumed.
         let resumed = wait(&mut stage.resume_with(&[]));
         assert!(
             resumed.code == Some(2) && resumed.told.contains("done by hand"),
@@ -259,7 +259,7 @@ fn a_rig_that_falls_silent_ends_the_sitting_and_the_record_is_sound() {
 
 #[test]
 fn ctrl_c_holds_a_jog_whose_move_may_be_over_first() {
-    // A tenth of a second: on its way a jog is held in `signals`.
+    // A tenth of a second. `signals` tests the hold of a jog during its motion.
     let stage = Stage::of(
         |plan| plan.replace("samples    = 1", "samples    = 1\n  resolution = 1 um"),
         "",

@@ -1,4 +1,4 @@
-//! The program is killed at each of its writes to the record, its syncs, and its words to the rig: the run goes on to
+//! The program is killed at each of its writes to the run log, its syncs, and its commands to the rig. The run is resumed to
 //! the same end, and no target is executed twice.
 
 use std::process::Command;
@@ -8,10 +8,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::needs;
 use crate::stage::{PSD, Stage, wait};
 
-/// Runs under way at once: nearly all of their time is waiting.
+/// Number of concurrent runs: nearly all of their time is waiting.
 const AT_ONCE: usize = 16;
 
-/// Where a kill strikes.
+/// The event at which the program is killed.
 #[derive(Clone, Copy, Debug)]
 enum At {
     Write,
@@ -19,7 +19,7 @@ enum At {
     Word,
 }
 
-/// An uninterrupted run: its results, its moves, and how often each place is passed.
+/// An uninterrupted run: its results, its moves, and the number of events of each kind.
 struct Whole {
     results: String,
     moves: Vec<String>,
@@ -35,7 +35,7 @@ fn whole() -> Whole {
     }
 }
 
-/// The run under strace, killed when it is at a place for the `count`-th time. False: it came to its end before.
+/// Runs under strace, killed at the `count`-th event of a kind. False: it ended before.
 fn killed(stage: &Stage, at: At, count: usize) -> bool {
     let (call, path) = match at {
         At::Write => ("write", stage.journal()),
@@ -54,14 +54,14 @@ fn killed(stage: &Stage, at: At, count: usize) -> bool {
     stage.run_arguments(&mut command, &["--yes"]);
     let ended = wait(&mut command);
     match ended.code {
-        // strace ends as the program does, or says so as a shell would.
+        // strace ends as the program does, or with the exit code of a shell.
         None | Some(137) => true,
         Some(0) => false,
         _ => panic!("{at:?} {count}: {}", ended.told),
     }
 }
 
-/// One kill, and what comes after. False: there was nothing left to kill.
+/// One kill, and the resumed run. False: the run had already ended.
 fn one(whole: &Whole, at: At, count: usize) -> bool {
     let stage = Stage::new();
     if !killed(&stage, at, count) {
@@ -69,7 +69,7 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
     }
     let resumed = wait(&mut stage.resume_with(&[]));
     if stage.moves().is_empty() {
-        // Before the record knew the rig there is nothing to go on with, and it is said.
+        // Before the run log contains the rig, the run cannot be resumed, and a message says so.
         assert_eq!(resumed.code, Some(3), "{at:?} {count}: {}", resumed.told);
         assert!(
             resumed.told.contains("error:"),
@@ -78,7 +78,7 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
         );
         return true;
     }
-    // Only the last words of a run that is over can be cut off without anything being left to do.
+    // Only the final records of a finished run can be cut off without any work left.
     let over = resumed.told.contains("there is nothing to go on with");
     assert!(
         resumed.code == Some(0) || over,
@@ -111,7 +111,7 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
     true
 }
 
-/// Every `step`-th place until the run comes to its end unharmed; how many there were.
+/// Kills at every `step`-th event until the run ends without a kill. Returns the number of kills.
 fn everywhere(at: At, step: usize) -> usize {
     let whole = whole();
     let (next, kills) = (AtomicUsize::new(1), AtomicUsize::new(0));
@@ -165,7 +165,7 @@ fn at_syncs_of_the_record() {
 #[test]
 fn at_words_to_the_rig() {
     if needs::strace() {
-        // How often a settling rig is read is a matter of the machine's speed: a loaded one says fewer words.
+        // The number of readings of a settling rig depends on the machine's speed: a busy one sends fewer commands.
         let kills = everywhere(At::Word, 7);
         assert!(kills > 30, "{kills}");
     }

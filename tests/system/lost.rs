@@ -1,5 +1,5 @@
-//! The rig goes away: it hangs up, starts anew, or takes no byte any more. The program ends by itself, soon and without
-//! burning time, the target in doubt is on record, and the run goes on when the rig is back.
+//! The rig disappears: it hangs up, restarts, or reads no more bytes. The program ends soon without using processor time. The
+//! target of unknown state is in the run log, and the run is resumed when the rig is back.
 
 use rustix::process::{Signal, WaitOptions, waitpid};
 
@@ -16,13 +16,13 @@ fn it_hangs_up() {
         let stage = Stage::of(str::to_owned, script);
         let ran = wait(&mut stage.run_with(&["--yes"]));
         assert_eq!(ran.code, Some(3), "{script}: {}", ran.told);
-        // It is not waited for, nor asked again.
+        // psd neither waits for it nor polls it again.
         assert!(
             ran.told.contains("the line is gone") && !ran.told.contains("no usable answer"),
             "{script}: {}",
             ran.told
         );
-        // The same rig, still on: it hung up the line only.
+        // The same rig, not power-cycled: only its line was closed.
         stage.goes_on(&[]);
         let mut moves = stage.moves();
         let count = moves.len();
@@ -49,7 +49,7 @@ fn one_that_started_anew_since_must_be_referenced_first() {
 
 #[test]
 fn a_rig_that_was_referenced_again_goes_on_where_it_stands() {
-    // Not released: at rest and at zero, where a rig that starts anew stands too.
+    // Without motion enable: at rest and at zero, the position after a restart of the rig too.
     let mut stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
     terminal.answer(RELEASE, "n\n");

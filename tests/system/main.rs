@@ -1,6 +1,6 @@
-//! Whole runs as processes: `psd` against `psd rig simulate` over real pseudo-terminals, killed, starved, frozen and
-//! talked at. What needs a program of the system is skipped without it, and fails where `PSD_REQUIRE_SYSTEM=1`, also where
-//! the machine forbids what the program does.
+//! Whole runs as processes: `psd` with `psd rig simulate` over real pseudo-terminals, killed, without resources, frozen and
+//! with invalid input. A test that requires a program of the system is skipped without it. It fails with
+//! `PSD_REQUIRE_SYSTEM=1`, also if the machine does not permit the program's action.
 
 mod amended;
 mod book;

@@ -1,11 +1,11 @@
-//! Who runs a test on a real rig has a name. Without one nothing is opened: the rig has not heard a word.
+//! A test on a real rig requires the operator's name. Without a name nothing is opened: the rig receives no byte.
 
 use std::process::Command;
 
 use crate::stage::{Stage, code, wait};
 use crate::terminal::{RELEASE, Terminal};
 
-/// The commands that may move a real rig, started without a name.
+/// The commands that can move a real rig, started without a name.
 fn unnamed(stage: &Stage, more: &[&str]) -> Vec<Command> {
     let mut run = Command::new(crate::stage::PSD);
     run.arg("run")

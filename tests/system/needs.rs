@@ -1,10 +1,10 @@
-//! What a test needs of the system. In: a program and something it must be able to do here. Out: whether it can; if
-//! not, the test says that it is skipped, and fails where `PSD_REQUIRE_SYSTEM=1` wants every test, whether the program is
-//! missing or the machine forbids what it does.
+//! The system requirements of a test. In: a program and an action that it must be able to do here. Out: whether it can. If not,
+//! the test reports that it is skipped. With `PSD_REQUIRE_SYSTEM=1` it fails, both for a missing program and for an action that
+//! the machine does not permit.
 
 use std::process::{Command, Stdio};
 
-/// Whether `strace` is here and may trace.
+/// Whether `strace` is installed and can trace.
 pub fn strace() -> bool {
     able(
         "strace",
@@ -13,7 +13,7 @@ pub fn strace() -> bool {
     )
 }
 
-/// Whether a file system of one's own can be mounted.
+/// Whether a private file system can be mounted.
 pub fn own_mounts() -> bool {
     able(
         "unshare",
@@ -22,7 +22,7 @@ pub fn own_mounts() -> bool {
     )
 }
 
-/// Whether limits of a process can be set.
+/// Whether the limits of a process can be set.
 pub fn prlimit() -> bool {
     able(
         "prlimit",
@@ -31,7 +31,7 @@ pub fn prlimit() -> bool {
     )
 }
 
-/// Whether `minisign` is here.
+/// Whether `minisign` is installed.
 pub fn minisign() -> bool {
     able(
         "minisign",
@@ -40,7 +40,7 @@ pub fn minisign() -> bool {
     )
 }
 
-/// Whether Python reads XML.
+/// Whether Python can read XML.
 pub fn python() -> bool {
     able(
         "python3",
@@ -49,7 +49,7 @@ pub fn python() -> bool {
     )
 }
 
-/// Whether `prove` is here, Perl's reader of the Test Anything Protocol.
+/// Whether `prove` is installed, Perl's reader of the Test Anything Protocol.
 pub fn prove() -> bool {
     able(
         "prove",
@@ -58,7 +58,7 @@ pub fn prove() -> bool {
     )
 }
 
-/// Whether `qpdf` and poppler's `pdftotext` are here.
+/// Whether `qpdf` and poppler's `pdftotext` are installed.
 pub fn paper() -> bool {
     let version = |program: &str, flag: &str| able(program, "run", Command::new(program).arg(flag));
     version("qpdf", "--version") && version("pdftotext", "-v")
@@ -83,7 +83,7 @@ pub fn faketime() -> bool {
     )
 }
 
-/// Whether a program can be given a terminal of its own, as a shell gives it one.
+/// Whether a program can have its own terminal, as from a shell.
 pub fn setsid() -> bool {
     able(
         "setsid",
@@ -96,7 +96,7 @@ fn able(program: &str, what: &str, proof: &mut Command) -> bool {
     lacking(program, what, proof).is_none_or(|lacking| skipped(&lacking, required()))
 }
 
-/// What stands in the way, if anything.
+/// The reason why the program cannot be used, if there is one.
 fn lacking(program: &str, what: &str, proof: &mut Command) -> Option<String> {
     match proof
         .stdin(Stdio::null())
@@ -110,12 +110,12 @@ fn lacking(program: &str, what: &str, proof: &mut Command) -> Option<String> {
     }
 }
 
-/// Whether every test is wanted.
+/// Whether every test is required.
 fn required() -> bool {
     std::env::var_os("PSD_REQUIRE_SYSTEM").is_some_and(|value| value == "1")
 }
 
-/// False: the test is not done, and says so.
+/// False: the test is not run, and a message says so.
 fn skipped(lacking: &str, required: bool) -> bool {
     println!("SKIPPED: {lacking}");
     assert!(

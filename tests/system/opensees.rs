@@ -1,5 +1,5 @@
-//! A real OpenSees drives a real rig: its `genericClient` against `psd rig serve` on a stand-in behind a pseudo-terminal. In: the
-//! script beside this file, and an OpenSees for Python. Out: the motion that its integrator has in closed form.
+//! A real OpenSees drives a real rig: its `genericClient` with `psd rig serve` and a rig emulator behind a pseudo-terminal. In:
+//! the script beside this file, and an OpenSees for Python. Out: the closed-form motion of its integrator.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -7,15 +7,15 @@ use std::process::{Command, Stdio};
 use crate::served::Served;
 use crate::stage::{Stage, wait};
 
-/// What the script integrates: kg, m/s, s; and the specimen of the stage, N/m.
+/// The constants of the script in kg, m/s, s; and the stiffness of the stage's specimen \[N/m\].
 const MASS: f64 = 20.0;
 const VELOCITY: f64 = 0.07;
 const TIME_STEP: f64 = 1e-3;
 const STEPS: usize = 30;
 const STIFFNESS: f64 = 1e5;
 
-/// A Python that has OpenSees: that of `.ci/run`, else the machine's own. Not a program of the system, so that nothing is wrong
-/// with a machine that has none.
+/// A Python with OpenSees: that of `.ci/run`, otherwise that of the machine. It is not a program of the system, so a machine
+/// without it is not an error.
 fn python() -> Option<PathBuf> {
     let of_ci = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/opensees/bin/python3");
     let can = |python: &PathBuf| {
@@ -34,9 +34,9 @@ fn python() -> Option<PathBuf> {
     found
 }
 
-/// NewmarkExplicit with γ = ½ is the central difference: u(n) = A·sin(n·ω̄·Δt) with sin(ω̄·Δt/2) = ω·Δt/2, and A such that the first
-/// step goes V·Δt, for at rest nothing pulls. A force is told with three decimals of a newton: the n-th place may be off by the
-/// acceleration of half of that over the time so far.
+/// `NewmarkExplicit` with γ = ½ is the central difference: u(n) = A·sin(n·ω̄·Δt) with sin(ω̄·Δt/2) = ω·Δt/2. A is such that the
+/// first step is V·Δt, because the force at rest is zero. A force is transmitted with three decimals of a newton. The n-th
+/// position can deviate by the acceleration of half a unit of the last decimal over the elapsed time.
 #[test]
 fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
     let Some(python) = python() else { return };
@@ -78,7 +78,7 @@ fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
         "{printed}"
     );
     served.held();
-    // What OpenSees asked for is what the rig was sent to.
+    // The targets of OpenSees are the commands that the rig received.
     let table =
         std::fs::read_to_string(served.stage.path("run").join("tables/served.csv")).unwrap();
     let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();

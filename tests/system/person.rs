@@ -1,5 +1,5 @@
-//! A person stops the run: Ctrl-C once and twice, a terminal that goes away, nobody to ask. The rig is held, the record
-//! sound, and the run goes on later.
+//! The operator stops the run: Ctrl-C once and twice, a closed terminal, no operator to answer. The rig is held, the run log is
+//! valid, and the run is resumed later.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use rustix::process::Signal;
 use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
 use crate::terminal::{GO_ON, RELEASE, Terminal};
 
-/// Held, on record, and gone on with.
+/// Held, logged, and resumed.
 fn held_and_sound(stage: &Stage, ran: &Ended) {
     stage.held_and_sound(ran);
     stage.goes_on(&[]);
@@ -16,7 +16,7 @@ fn held_and_sound(stage: &Stage, ran: &Ended) {
 
 #[test]
 fn the_second_holds_at_once() {
-    // The second step takes ten seconds at this speed: nobody waits for its end.
+    // The second step takes ten seconds at this speed: the test does not wait for its end.
     let slow = |plan: &str| {
         plan.replace(
             "speed      = 20 mm/s",
@@ -28,7 +28,7 @@ fn the_second_holds_at_once() {
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);
     signal(&run, Signal::INT);
-    // Two signals at once may count as one.
+    // Two simultaneous signals can count as one.
     std::thread::sleep(std::time::Duration::from_millis(100));
     signal(&run, Signal::INT);
     let ran = finish(run);
@@ -52,7 +52,7 @@ fn the_second_holds_at_once() {
 fn the_end_of_the_input_is_no_yes() {
     let stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
-    // The release of the rig is granted; the look at the specimen is not answered.
+    // The rig is released; the question about the specimen is not answered.
     terminal.answer(RELEASE, "RELEASE\n");
     terminal.answer(GO_ON, "\u{4}");
     let code = code(&mut terminal.child);
@@ -91,7 +91,7 @@ fn a_record_cut_short_says_so() {
     let mut cut: Vec<&str> = whole.lines().collect();
     cut.pop();
     fs::write(stage.journal(), cut.join("\n") + "\n").unwrap();
-    // Nothing but the record: the manifest would find it out anyway.
+    // Only the run log: the manifest would show the change anyway.
     fs::remove_file(stage.path("run").join("manifest.sha256")).unwrap();
     let verified = stage.verify();
     assert!(
@@ -105,7 +105,7 @@ fn a_record_cut_short_says_so() {
     assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
 }
 
-/// Waits until the run stands still: for longer than a step takes on a machine with much else to do.
+/// Waits until the run pauses for longer than a step takes on a busy machine.
 fn standing(stage: &Stage) -> usize {
     loop {
         let before = stage.moves().len();
@@ -118,7 +118,7 @@ fn standing(stage: &Stage) -> usize {
 
 #[test]
 fn the_first_key_after_the_window_got_another_size_holds_the_rig() {
-    // A step takes ten seconds at this speed: nobody waits for its end.
+    // A step takes ten seconds at this speed: the test does not wait for its end.
     let slow = |plan: &str| {
         plan.replace(
             "speed      = 20 mm/s",

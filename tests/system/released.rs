@@ -1,5 +1,5 @@
-//! Nothing lets a rig move but its word, typed after the question could be read; and who held a rig still sees it. In: what is typed ahead,
-//! keys at a held rig, a line that is lost. Out: the moves a stand-in was told, and what lies in the run folder.
+//! A rig moves only after its release word, typed after the question was visible. The operator who held a rig can still see it.
+//! In: early input, keys at a held rig, a lost line. Out: the moves of a rig emulator and the files of the run folder.
 
 use std::fs;
 
@@ -8,10 +8,10 @@ use rustix::process::Signal;
 use crate::stage::{Stage, code, signal, start, until, wait};
 use crate::terminal::{LEAVE, RELEASE, TO_RESUME, TO_UNLOAD, Terminal};
 
-/// Everything that was ever taken for a yes, and the word itself.
+/// All strings that could be read as a yes, and the release word.
 const TYPED_AHEAD: &str = "y\nyes\nxyz\nRELEASE\nRELEASE\n";
 
-/// A move takes ten seconds and more: nobody waits for its end.
+/// A move takes ten seconds and more: the test does not wait for its end.
 fn slow(plan: &str) -> String {
     plan.replace(
         "speed      = 20 mm/s",
@@ -79,7 +79,7 @@ fn what_was_typed_ahead_releases_nothing_and_a_refusal_leaves_no_report() {
                 .proven()
                 .contains("INCOMPLETE: declined by the operator")
         );
-        // What was not released can be released later.
+        // The release can be given later.
         stage.goes_on(&[]);
     }
 }
@@ -108,7 +108,7 @@ fn a_held_rig_is_stayed_with_in_lines_and_goes_on_from_there() {
     assert_eq!(stage.moves().len(), 3);
     terminal.press("r\n");
     terminal.answer("type the reason", "somebody stood too near\n");
-    // The lines of the run that goes on are those after it.
+    // The lines of the resumed run come after it.
     terminal.answer(RELEASE, "");
     assert_eq!(stage.moves().len(), 3, "a reason is no release");
     terminal.press("RELEASE\n");

@@ -1,6 +1,5 @@
-//! Going on where the rig cannot prove everything itself: it has no word of its power-up, or stands held. In: rigs that speak
-//! such dialects. Out: a run that goes on with the word of a person, which is on record, and a record that a refusal leaves as
-//! it was.
+//! Resuming on a rig that cannot verify its state: it has no boot identifier, or it is in hold. In: rigs with such protocols.
+//! Out: a run that is resumed after the operator's confirmation, which is logged. A refusal leaves the run log unchanged.
 
 use std::fs;
 use std::io::Write as _;
@@ -31,9 +30,9 @@ fn stepper(plan: &str) -> String {
         .replace("probe(0.1 mm", "probe(0.4 mm")
 }
 
-/// As a program that is dying holds the axis, or somebody else at the port.
+/// A hold as sent by a dying program, or by another program at the port.
 fn hold(stage: &Stage) {
-    // Open until it was heard: the kernel throws away what a side that closes said last.
+    // Open until it was received: at a close the kernel discards the last bytes.
     let mut port = fs::OpenOptions::new()
         .write(true)
         .open(stage.path("rig"))
@@ -47,7 +46,7 @@ fn hold(stage: &Stage) {
     });
 }
 
-/// Refused for this reason, and nothing of the record has changed.
+/// Refused for this reason, and the run log is unchanged.
 fn refused(stage: &Stage, more: &[&str], reason: &str) {
     let before = fs::read(stage.journal()).unwrap();
     let refused = wait(&mut stage.resume_with(more));
@@ -114,7 +113,7 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
         held.told
     );
     let _ = fs::remove_dir_all(stage.path("run"));
-    // Its specimen is bent: the zero is that of the run which bent it.
+    // Its specimen is loaded: the zero offset is that of the run that loaded it.
     let first = stage.path("first");
     let back = [
         "--datum",
@@ -138,7 +137,7 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
     assert!(!ran.told.contains("ignored"), "{}", ran.told);
 }
 
-/// Stopped at rest and at zero, where a console that was switched off and on again stands too.
+/// Stopped at rest and at zero, the position of a console after a power cycle too.
 fn stopped_at_zero() -> Stage {
     let console = |plan: &str| {
         let plan = plan.replace(
@@ -205,7 +204,7 @@ fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
     signal(&terminal.child, Signal::INT);
     terminal.answer(TO_UNLOAD, "u\n");
     terminal.answer(UNLOAD, "UNLOAD\n");
-    // Unloaded it is neither unloaded once more nor gone on with.
+    // After unloading it is neither unloaded again nor resumed.
     terminal.answer(LEAVE, "x\n");
     assert_eq!(
         terminal.shown().matches(TO_UNLOAD).count(),
@@ -238,7 +237,7 @@ fn a_run_that_came_to_its_end_without_its_results_has_them_made_of_its_record() 
     refused(&stage, &[], "came to its end");
     let run = stage.path("run");
     let whole = fs::read(run.join("summary.json")).unwrap();
-    // As a program leaves it that is killed while it writes them: a part of the files, the last of them not whole.
+    // The files of a program that was killed while it wrote them: some are missing, and the last one is incomplete.
     for file in ["manifest.sha256", "certificate.html"] {
         fs::remove_file(run.join(file)).unwrap();
     }

@@ -1,5 +1,5 @@
-//! A real rig that clients drive: `psd rig serve` between small clients of its two protocols and a stand-in behind a
-//! pseudo-terminal. Whatever client, rig or person do, the rig is held afterwards, and the record verifies.
+//! A real rig driven by clients: `psd rig serve` between small clients of its two protocols and a rig emulator behind a
+//! pseudo-terminal. Whatever client, rig or operator do, the rig is held afterwards, and the run log verifies.
 
 use std::io::{BufRead as _, BufReader, ErrorKind, Read as _, Write as _};
 use std::net::TcpStream;
@@ -31,7 +31,7 @@ impl Served {
         Self::start_on(Stage::of(str::to_owned, script), protocol, more)
     }
 
-    /// The rig of a stage of its own.
+    /// Starts on the rig of a separate stage.
     pub fn start_on(stage: Stage, protocol: &str, more: &[&str]) -> Self {
         let mut command = stage.recorded_tool(
             "serve",
@@ -74,7 +74,7 @@ impl Served {
         stream
     }
 
-    /// Waits until the program has said this on standard error.
+    /// Waits until the program has printed this on standard error.
     fn says(&self, words: &str) {
         until(words, || {
             std::fs::read_to_string(self.stage.path("serve.told"))
@@ -83,7 +83,7 @@ impl Served {
         });
     }
 
-    /// Its end: the code, and what it printed. The rig is held, and the record proven.
+    /// The end of the program: its exit code and output. The rig is held, and the run log verified.
     pub fn ended(&mut self) -> (Option<i32>, String) {
         let code = code(&mut self.program);
         let mut printed = String::new();
@@ -101,7 +101,7 @@ impl Served {
         );
     }
 
-    /// A person ends it.
+    /// The operator ends it.
     pub fn stop(&mut self, sent: Signal) -> (Option<i32>, String) {
         signal(&self.program, sent);
         self.ended()
@@ -148,7 +148,7 @@ impl Coordinator {
         answer.trim_end().to_owned()
     }
 
-    /// The answers to proposing a place (m), and where that was accepted to its execution.
+    /// Proposes a position \[m\] and executes it if it is accepted. Returns the answers.
     fn go(&mut self, place: f64) -> Vec<String> {
         self.transactions += 1;
         let id = format!("trans{}", self.transactions);
@@ -163,7 +163,7 @@ impl Coordinator {
         answers
     }
 
-    /// Displacement and force, m and N.
+    /// Displacement and force \[m, N\].
     fn felt(&mut self) -> (f64, f64) {
         let answer = self.ask("get-control-point\tdummy\tMDL-00-01");
         let words: Vec<&str> = answer.split('\t').collect();
@@ -197,7 +197,7 @@ impl Element {
             .unwrap();
     }
 
-    /// The force at a place, N.
+    /// The force at a position \[N\].
     fn force_at(&mut self, place: f64) -> f64 {
         self.send([3.0, place]);
         self.force()
@@ -211,7 +211,7 @@ impl Element {
     }
 }
 
-/// Whether the other side has hung up, with or without words before.
+/// Whether the other side has closed the connection, with or without bytes before.
 fn is_closed(stream: &mut TcpStream) -> bool {
     let mut buffer = [0; 1024];
     loop {
@@ -299,7 +299,7 @@ fn each_signal_in_a_session_holds_the_rig_and_keeps_the_record() {
 
 #[test]
 fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
-    // The gate makes two moves.
+    // The pre-test check makes two moves.
     let silent = || Stage::of(impatient, "after 3 moves: drop replies for ever");
     let mut served = Served::start_on(silent(), "nees", &[]);
     let mut client = Coordinator::come(&served);
@@ -325,10 +325,10 @@ fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
     served.held();
 }
 
-/// Also while it waits for a client, and while a client is silent: nobody moves a rig that is not there.
+/// Also while it waits for a client, and while a client is silent: a lost rig is noticed.
 #[test]
 fn a_rig_that_goes_away_while_nobody_asks_is_noticed() {
-    // It is heard from eight times in the time of its watchdog.
+    // It is polled eight times within its watchdog time.
     let hanging_up = || {
         Served::start_on(
             Stage::of(watched, "after 40 readings: hang up"),
@@ -373,7 +373,7 @@ fn a_client_that_goes_away_leaves_it_held_and_the_next_one_goes_on() {
     served.held();
 }
 
-/// The stage whose rig takes 400 s to where its client sends it, and 2 s for the gate's probe.
+/// The stage whose rig needs 400 s to its client's target, and 2 s for the probe of the pre-test check.
 fn endless() -> Stage {
     let slower = |plan: &str| {
         plan.replace(
@@ -391,14 +391,14 @@ fn endless() -> Stage {
 fn a_client_that_goes_away_in_the_middle_of_a_move_has_the_rig_held_at_once() {
     let mut served = Served::start_on(endless(), "generic-client", &[]);
     let mut element = Element::come(&served);
-    // Its next question is sent already, as an element sends it.
+    // Its next request is sent already, as an element sends it.
     element.send([3.0, 4e-3]);
     element.send([10.0, 0.0]);
     served.stage.after_moves(3);
     drop(element);
     served.says("session ended: the client went away without closing");
     served.held();
-    // The next one finds it where it was held, and is served.
+    // The next client finds it at its hold position, and is served.
     let mut next = Element::come(&served);
     next.send([99.0, 0.0]);
     served.says("session ended: closed by the client");
@@ -442,7 +442,7 @@ fn a_client_that_took_its_leave_before_it_went_away_has_its_last_move() {
     let mut client = Coordinator::come(&served);
     client.ask("propose\tt1\tMDL-00-01\tx\tdisplacement\t1.0E-3");
     client.send("execute\tt1\nclose-session\ttest");
-    // It says nothing more, and reads what it is answered.
+    // It sends nothing more, and reads the answers.
     client
         .lines
         .get_mut()
@@ -458,7 +458,7 @@ fn an_element_that_goes_away_in_the_middle_of_a_message_moves_nothing() {
     let mut element = Element::come(&served);
     assert_eq!(element.force_at(1e-3), 100.0);
     let moves = served.stage.moves().len();
-    // The action and three bytes of its place.
+    // The action and three bytes of its target.
     element.0.write_all(&3.0_f64.to_le_bytes()).unwrap();
     element.0.write_all(&[0, 0, 0]).unwrap();
     drop(element);
@@ -523,7 +523,7 @@ fn a_second_client_at_the_same_time_is_turned_away_and_disturbs_nothing() {
     first.go(1e-3);
     for _ in 0..3 {
         let mut second = served.connect();
-        // Who is turned away may not get rid of a word any more.
+        // A refused client can fail to send any more bytes.
         let _ = second.write_all(
             b"open-session\tother\npropose\tt\tMDL-00-01\tx\tdisplacement\t0.002\nexecute\tt\n",
         );

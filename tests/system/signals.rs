@@ -1,5 +1,5 @@
-//! A person's end of a run in every phase: INT, TERM, HUP and QUIT, and a terminal that dies. In: a moment of a run, of a jog, of a
-//! serving. Out: the rig held, exit code 4, a record that is sound and can be gone on with.
+//! The operator ends a run in every phase: INT, TERM, HUP and QUIT, and a closed terminal. In: a moment of a run, a jog, or a
+//! serve session. Out: the rig in hold, exit code 4, and a valid run log of a run that can be resumed.
 
 use std::process::Command;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use crate::terminal::{GO_ON, LEAVE, MOVE, RELEASE, Terminal};
 
 const SIGNALS: [Signal; 4] = [Signal::INT, Signal::TERM, Signal::HUP, Signal::QUIT];
 
-/// Each signal at the same moment of a run of its own; of the first the run is gone on with, where that is `quick`.
+/// Sends each signal at the same moment of a separate run. The run of the first one is resumed, if it is `quick`.
 fn each(
     plan: impl Fn(&str) -> String + Sync,
     quick: bool,
@@ -52,7 +52,7 @@ fn as_it_is(plan: &str) -> String {
     plan.to_owned()
 }
 
-/// So slow that a signal comes while it moves: the probe takes 0.4 s, a step of the ramp 2 s.
+/// Slow, so that a signal arrives during motion: the probe takes 0.4 s, a step of the ramp 2 s.
 fn slow(plan: &str) -> String {
     plan.replace(
         "speed      = 20 mm/s",
@@ -61,7 +61,7 @@ fn slow(plan: &str) -> String {
     .replace("probe(0.1 mm", "probe(0.02 mm")
 }
 
-/// So slow that nobody waits for the end of a move: the probe takes 2 s, the first step of the ramp 400 s.
+/// Too slow to wait for the end of a move: the probe takes 2 s, the first step of the ramp 400 s.
 fn endless(plan: &str) -> String {
     let slower = plan.replace(
         "speed      = 20 mm/s",
@@ -72,7 +72,7 @@ fn endless(plan: &str) -> String {
         .replace("0.1 mm .. 0.8 mm step 0.1 mm", "[4, 5, 6] mm")
 }
 
-/// How often the rig was asked for a reading.
+/// The number of readings requested from the rig.
 fn readings(stage: &Stage) -> usize {
     stage
         .requests()
@@ -81,7 +81,7 @@ fn readings(stage: &Stage) -> usize {
         .count()
 }
 
-/// Waits until nothing has gone over the line for a while.
+/// Waits until the line has been silent for a while.
 fn quiet(stage: &Stage) {
     let mut asked = usize::MAX;
     until("nothing is asked", || {
@@ -90,14 +90,15 @@ fn quiet(stage: &Stage) {
     });
 }
 
-/// So slow to settle that a signal comes before the probe: the two readings at rest take 2 s each, with a second between them.
+/// Settles slowly, so that a signal arrives before the probe: the two readings at rest take 2 s each, with a second between
+/// them.
 fn resting(plan: &str) -> String {
     plan.replace("for: 0.01 s", "for: 2 s")
         .replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm")
         .replace("duration  = 24 ms", "duration  = 2 ms")
 }
 
-/// Waits until the rig is released: the readings at rest come next.
+/// Waits until the rig is released; the readings at rest are next.
 fn released(stage: &Stage) {
     until("the release", || {
         std::fs::read_to_string(stage.journal())
@@ -131,7 +132,7 @@ fn in_the_probe_of_the_gate() {
     );
 }
 
-/// Nobody waits for the end of the move: a system that shuts down kills what has not ended after some seconds.
+/// psd does not wait for the end of the move: at shutdown the system kills the remaining programs after some seconds.
 #[test]
 fn in_the_middle_of_a_move_all_but_one_ctrl_c_hold_at_once() {
     each_of(
@@ -145,7 +146,7 @@ fn in_the_middle_of_a_move_all_but_one_ctrl_c_hold_at_once() {
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);
     signal(&run, Signal::INT);
-    // Two signals that are one to the program would be one Ctrl-C.
+    // Two signals that the program receives as one would be one Ctrl-C.
     std::thread::sleep(Duration::from_millis(200));
     signal(&run, Signal::INT);
     stage.held_and_sound(&finish(run));
@@ -217,7 +218,7 @@ fn in_a_blow() {
 
 #[test]
 fn while_it_does_not_stop() {
-    // A fifth of a step, in which targets and answers must be there, is 600 ms.
+    // Targets and answers must arrive within a fifth of a step, which is 600 ms.
     let moving = |plan: &str| {
         plan.replace(
             "  duration  = 24 ms\n  pause     = 0 s",
@@ -227,7 +228,7 @@ fn while_it_does_not_stop() {
     each(moving, true, |stage| stage.after_moves(22), |_| {});
 }
 
-/// A run that somebody sits before: what is shown and asked, and the keys.
+/// A run with an operator at the terminal: display, questions and keys.
 #[test]
 fn while_somebody_is_asked() {
     std::thread::scope(|scope| {
@@ -243,7 +244,7 @@ fn while_somebody_is_asked() {
                 }
                 terminal.answer(question, "");
                 signal(&terminal.child, sent);
-                // Who sits at the keys still looks at a rig that was released.
+                // The operator at the keys still watches a rig that was released.
                 if question == GO_ON && sent == Signal::INT {
                     terminal.answer(LEAVE, "x\n");
                 }
@@ -262,7 +263,7 @@ fn while_somebody_is_asked() {
     });
 }
 
-/// A run of half a minute, which no slow machine has ended when the key is heard.
+/// A run of half a minute: it is still active on a slow machine when the key is received.
 #[test]
 fn while_it_is_paused_by_a_key() {
     std::thread::scope(|scope| {
@@ -272,7 +273,7 @@ fn while_it_is_paused_by_a_key() {
                 let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
                 stage.after_moves(3);
                 terminal.press("p");
-                // `PAUSING` becomes `PAUSED` by the letters that differ.
+                // The screen changes `PAUSING` to `PAUSED` by the different letters only.
                 until("it pauses", || terminal.shown().contains("PAUS"));
                 quiet(&stage);
                 signal(&terminal.child, sent);
@@ -286,7 +287,7 @@ fn while_it_is_paused_by_a_key() {
     });
 }
 
-/// The screen sees by itself that its terminal is gone: no signal tells a program that is not the terminal's own.
+/// The screen detects that its terminal is closed: a program outside the terminal's session receives no signal.
 fn in_the_middle_of_a_move() {
     let stage = Stage::of(endless, "");
     let terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
@@ -296,7 +297,7 @@ fn in_the_middle_of_a_move() {
     stage.held_and_sound(&Ended { code, told: shown });
 }
 
-/// A window that is closed: its programs get HUP, and neither read nor write anything any more.
+/// A closed window: its programs get HUP, and can neither read nor write any more.
 #[test]
 fn of_a_terminal_that_dies() {
     if !needs::setsid() {
@@ -304,7 +305,7 @@ fn of_a_terminal_that_dies() {
     }
     let one = |screen: bool, yes: &[&str], moment: &(dyn Fn(&Stage, &mut Terminal) + Sync)| {
         let stage = Stage::new();
-        // The terminal is the program's own, as a shell gives it one.
+        // The program has its own terminal, as from a shell.
         let mut command = Command::new("setsid");
         command.args(["--ctty", PSD]);
         stage.run_arguments(&mut command, yes);
@@ -392,7 +393,7 @@ fn of_a_serving_in_its_gate_and_while_a_client_is_waited_for() {
             });
             scope.spawn(move || {
                 let mut served = Served::start_on(Stage::new(), "nees", &[]);
-                // Nobody came, and nothing was asked for that was not done.
+                // No client connected, and all requested actions were done.
                 assert_eq!(served.stop(sent), (Some(0), String::new()));
                 assert_eq!(served.stage.moves().len(), 2);
                 assert!(served.stage.is_held());

@@ -1,5 +1,5 @@
-//! A signed run in the hands of someone without psd: `sha256sum` and minisign's own program accept it, and refuse it once a
-//! byte is another. And back: what minisign made, psd takes.
+//! Checks of a signed run without psd: `sha256sum` and minisign's own program accept it, and refuse it once a byte is
+//! different. Conversely, psd accepts the signatures of minisign.
 
 use std::fs;
 use std::path::Path;
@@ -34,7 +34,7 @@ report {
 }
 "#;
 
-/// Whether a program ended with 0, in a folder.
+/// Whether a program ended with 0 in a folder.
 fn accepts(folder: &Path, program: &str, arguments: &[&str]) -> bool {
     let mut command = Command::new(program);
     command
@@ -149,7 +149,7 @@ fn what_minisign_signs_with_its_own_key_psd_takes() {
         &["-Sm", "run/manifest.sha256", "-s", "own.key"]
     ));
     assert!(accepts(bench, PSD, &["verify", "run"]));
-    // Good, and in none of the roles that the plan names.
+    // Valid, but for none of the roles that the plan names.
     assert!(!accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
     for role in ["Quality", "Prüfer"] {
         assert!(accepts(

@@ -1,5 +1,5 @@
-//! A stage for one run: a folder of its own, a short plan, and `psd rig simulate` behind a pseudo-terminal. In: what is
-//! to go wrong. Out: programs that have ended, and what the simulator's log says was asked of the rig.
+//! A stage for one run: a separate folder, a short plan, and `psd rig simulate` behind a pseudo-terminal. In: the faults. Out:
+//! ended programs, and the commands to the rig in the emulator's log.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ use tempfile::TempDir;
 
 pub const PSD: &str = env!("CARGO_BIN_EXE_psd");
 
-/// Longest wait for anything, far beyond what it takes: only a program that hangs reaches it.
+/// Longest wait for any event, far longer than needed: only a program that hangs reaches it.
 const PATIENCE: Duration = Duration::from_mins(3);
 
-/// Some forty steps without noise, so that two runs measure the same.
+/// About forty steps without noise, so that two runs measure the same.
 const PLAN: &str = r#"plan "A short run on a real rig" {
   edition     = 1
   specimen_id = "SYS-1"
@@ -75,13 +75,13 @@ report {
 }
 "#;
 
-/// The plan where a request is given up after 4 s, not after 16: for what is about a rig that falls silent, and nothing else. A machine
-/// with much else to do keeps a stand-in from its words for seconds.
+/// The plan with a request time-out of 4 s instead of 16 s, only for tests of a rig that becomes silent. On a busy machine the
+/// answers of a rig emulator can take seconds.
 pub fn impatient(plan: &str) -> String {
     swapped(plan, "reply_timeout: 2 s", "reply_timeout: 0.5 s")
 }
 
-/// The plan where the rig holds by itself once it has heard nothing for 8 s.
+/// The plan of a rig that holds automatically after 8 s without communication.
 pub fn watched(plan: &str) -> String {
     swapped(
         &swapped(plan, "watchdog   = 30 s", "watchdog   = 8 s"),
@@ -90,7 +90,7 @@ pub fn watched(plan: &str) -> String {
     )
 }
 
-/// Nobody speaks with a rig that is [`watched`] until it has tripped.
+/// Sends nothing to a rig that is [`watched`] until its watchdog has tripped.
 pub fn let_it_trip() {
     std::thread::sleep(Duration::from_secs(9));
 }
@@ -100,7 +100,7 @@ fn swapped(plan: &str, words: &str, others: &str) -> String {
     plan.replace(words, others)
 }
 
-/// What a program that has ended left.
+/// The output of an ended program.
 #[derive(Debug)]
 pub struct Ended {
     pub code: Option<i32>,
@@ -115,12 +115,12 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// A stage whose simulator is up.
+    /// A stage whose rig emulator is running.
     pub fn new() -> Self {
         Self::of(str::to_owned, "")
     }
 
-    /// A stage with a plan of its own, and a script of faults.
+    /// A stage with a separate plan and a script of faults.
     pub fn of(plan: impl Fn(&str) -> String, script: &str) -> Self {
         Self::laid_out(plan, script, |_| {})
     }
@@ -156,7 +156,7 @@ impl Stage {
         self.path("run").join("journal.psdj")
     }
 
-    /// Starts the simulator anew, with faults of its own: what it was told before it has forgotten.
+    /// Restarts the rig emulator with new faults: it has lost its previous state.
     pub fn power_up(&mut self, script: &str) {
         self.power_down();
         self.logs += 1;
@@ -183,7 +183,7 @@ impl Stage {
         self.path(&format!("simulator-{}.log", self.logs))
     }
 
-    /// Ends the simulator; no target may have lain outside the limits.
+    /// Ends the rig emulator; no target was outside the limits.
     pub fn power_down(&mut self) {
         if let Some(mut simulator) = self.simulator.take() {
             signal(&simulator, Signal::INT);
@@ -197,7 +197,7 @@ impl Stage {
         }
     }
 
-    /// What the simulator has logged since its last power-up.
+    /// The log of the rig emulator since its last power-up.
     pub fn log(&self) -> String {
         fs::read_to_string(self.log_path()).unwrap()
     }
@@ -213,7 +213,7 @@ impl Stage {
             .collect()
     }
 
-    /// What the host has sent since the last power-up, one request a line.
+    /// The requests of the host since the last power-up, one per line.
     pub fn requests(&self) -> Vec<String> {
         let log = self.log();
         log.lines()
@@ -222,7 +222,7 @@ impl Stage {
             .collect()
     }
 
-    /// How often a program has said the first word of a conversation.
+    /// The number of first messages of a connection.
     pub fn greetings(&self) -> usize {
         self.requests()
             .iter()
@@ -230,19 +230,19 @@ impl Stage {
             .count()
     }
 
-    /// Waits until so many moves are done.
+    /// Waits until this number of moves is done.
     pub fn after_moves(&self, count: usize) {
         until("the run moves", || self.moves().len() >= count);
     }
 
-    /// `psd run` of the stage's plan into `run`, with more arguments.
+    /// `psd run` of the stage's plan into `run`, with additional arguments.
     pub fn run_with(&self, more: &[&str]) -> Command {
         let mut command = Command::new(PSD);
         self.run_arguments(&mut command, more);
         command
     }
 
-    /// The same as a program that another program starts.
+    /// The same for a program that another program starts.
     pub fn run_arguments(&self, command: &mut Command, more: &[&str]) {
         command.arg("run").arg(self.path("plan.psd")).args([
             "--rig",
@@ -267,7 +267,7 @@ impl Stage {
         command
     }
 
-    /// `psd rig TOOL` of the stage's plan and rig, with more arguments.
+    /// `psd rig TOOL` of the stage's plan and rig, with additional arguments.
     pub fn tool(&self, tool: &str, more: &[&str]) -> Command {
         let mut command = Command::new(PSD);
         command
@@ -289,21 +289,21 @@ impl Stage {
         wait(Command::new(PSD).arg("verify").arg(self.path("run")))
     }
 
-    /// The record is whole as far as it goes, and everything in the folder came out of it.
+    /// Checks that the run log is valid, and that all files of the folder come from it.
     pub fn proven(&self) -> String {
         let verified = self.verify();
         assert_eq!(verified.code, Some(0), "{}", verified.told);
         verified.told
     }
 
-    /// Whether the last word about moving is the one to stop.
+    /// Whether the last motion command is the hold.
     pub fn is_held(&self) -> bool {
         let requests = self.requests();
         let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
         last(">STOP").max(last("!")) > last(">MOVE").max(last(">GLIDE"))
     }
 
-    /// A person stopped the run: the rig stands where it was held, and the record is sound as far as it goes.
+    /// The operator stopped the run: the rig is at its hold position, and the run log is valid.
     pub fn held_and_sound(&self, ran: &Ended) {
         assert_eq!(ran.code, Some(4), "{}", ran.told);
         assert!(self.is_held(), "not held: {:#?}", self.requests());
@@ -315,7 +315,7 @@ impl Stage {
         );
     }
 
-    /// Goes on with the run to its end, whose record is then proven.
+    /// Resumes the run to its end and verifies its run log.
     pub fn goes_on(&self, more: &[&str]) -> Ended {
         let resumed = wait(&mut self.resume_with(more));
         assert_eq!(resumed.code, Some(0), "{}", resumed.told);
@@ -328,7 +328,7 @@ impl Stage {
         resumed
     }
 
-    /// Everything the run measured and computed, without the times at which it did.
+    /// All measured and calculated results of the run, without their times.
     pub fn results(&self) -> String {
         let run = self.path("run");
         let mut text: String = ["k0", "hit"]
@@ -346,8 +346,8 @@ impl Stage {
     }
 }
 
-/// A folder of its own, in memory where that has room: on a busy disk a sync of the record, or a line of the log, takes seconds, in which
-/// program and stand-in do not hear each other.
+/// A separate folder, in memory if there is space: on a busy disk a sync of the run log or a line of the log takes seconds.
+/// Program and rig emulator cannot communicate during this time.
 pub fn folder() -> TempDir {
     const IN_MEMORY: &str = "/dev/shm";
     const ROOM: u64 = 1 << 30;
@@ -368,7 +368,7 @@ impl Drop for Stage {
     }
 }
 
-/// A table without the columns that the clock fills.
+/// A table without its columns of clock times.
 fn without_times(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap();
     let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
@@ -383,7 +383,7 @@ fn without_times(path: &Path) -> String {
     text.lines().map(kept).collect()
 }
 
-/// Starts a program whose words are kept until [`finish`].
+/// Starts a program whose output is kept until [`finish`].
 pub fn start(command: &mut Command) -> Child {
     command
         .stdin(Stdio::null())
@@ -393,7 +393,7 @@ pub fn start(command: &mut Command) -> Child {
         .unwrap()
 }
 
-/// Waits for the end of what [`start`] started.
+/// Waits for the end of a program from [`start`].
 pub fn finish(mut child: Child) -> Ended {
     let status = ended(&mut child);
     let output = child.wait_with_output().unwrap();
@@ -409,7 +409,7 @@ pub fn wait(command: &mut Command) -> Ended {
     finish(start(command))
 }
 
-/// Waits for the end of a program whose words go elsewhere.
+/// Waits for the end of a program whose output goes elsewhere.
 pub fn code(child: &mut Child) -> Option<i32> {
     ended(child).code()
 }
@@ -432,7 +432,7 @@ pub fn signal(child: &Child, signal: Signal) {
     kill_process(Pid::from_child(child), signal).unwrap();
 }
 
-/// Waits for something that is to happen.
+/// Waits for an event.
 pub fn until(what: &str, mut happened: impl FnMut() -> bool) {
     let since = Instant::now();
     while !happened() {

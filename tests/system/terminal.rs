@@ -1,5 +1,5 @@
-//! A person at a terminal, as a program sees one: a pseudo-terminal too small for the screen, or large enough. In: what is
-//! typed. Out: a program whose questions are answered, or not.
+//! An operator at a terminal: a pseudo-terminal too small for the screen, or large enough. In: the typed keys. Out: a program
+//! whose questions are answered, or not.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -16,7 +16,7 @@ use rustix::termios::{Winsize, tcsetwinsize};
 
 use crate::stage::{signal, until};
 
-/// What stands behind each question once it can be answered, in lines.
+/// The text after each question once it can be answered, in line mode.
 pub const RELEASE: &str = "type RELEASE, or n: nothing moves";
 pub const GO_ON: &str = "type RELEASE, or n: the run ends here";
 pub const UNLOAD: &str = "type UNLOAD, or n: it stays held";
@@ -31,17 +31,17 @@ pub struct Terminal {
     shown: Arc<Mutex<Vec<u8>>>,
     closed: Arc<AtomicBool>,
     reader: JoinHandle<()>,
-    /// How much of what is shown was waited for.
+    /// Length of the output that is already checked.
     read: usize,
 }
 
 impl Terminal {
-    /// Starts a program that a person sits in front of.
+    /// Starts a program with an operator at its terminal.
     pub fn start(command: &mut Command) -> Self {
         Self::of_size(0, command)
     }
 
-    /// Starts a program that has the screen to itself.
+    /// Starts a program that uses the whole screen.
     pub fn with_screen(command: &mut Command) -> Self {
         Self::of_size(
             100,
@@ -52,7 +52,7 @@ impl Terminal {
     }
 
     fn of_size(columns: u16, command: &mut Command) -> Self {
-        // No program started meanwhile keeps it open.
+        // No program started meanwhile inherits it.
         let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&keys).unwrap();
         unlockpt(&keys).unwrap();
@@ -81,7 +81,7 @@ impl Terminal {
                     Err(error) if error.kind() == ErrorKind::WouldBlock => {
                         std::thread::sleep(Duration::from_millis(2));
                     }
-                    // A terminal that nobody writes to any more ends with an error.
+                    // A terminal with no more output ends with an error.
                     Err(_) => return,
                 }
             }
@@ -96,7 +96,7 @@ impl Terminal {
         }
     }
 
-    /// Its window is closed. The program, and what it had shown by then.
+    /// Closes the window. Returns the program and its output until then.
     pub fn dies(self) -> (Child, String) {
         let shown = self.shown();
         let Self {
@@ -120,7 +120,7 @@ impl Terminal {
         self.keys.write_all(keys.as_bytes()).unwrap();
     }
 
-    /// Waits until this is drawn anew.
+    /// Waits until this text is drawn again.
     pub fn redrawn(&self, text: &str) {
         let before = self.shown().len();
         until(text, || {
@@ -130,13 +130,13 @@ impl Terminal {
         });
     }
 
-    /// Another size of the window, as a window manager gives it.
+    /// Changes the size of the window, as a window manager does.
     pub fn resize(&self, columns: u16) {
         tcsetwinsize(&self.keys, size(columns)).unwrap();
         signal(&self.child, Signal::WINCH);
     }
 
-    /// Waits for a question behind the last one, then types.
+    /// Waits for a question after the last one, then types.
     pub fn answer(&mut self, question: &str, keys: &str) {
         let behind = |shown: &str| {
             shown
@@ -149,7 +149,7 @@ impl Terminal {
         self.press(keys);
     }
 
-    /// Waits until this stands on the screen, which is drawn whole only when the window gets another size.
+    /// Waits until this text is on the screen, which is redrawn completely only after a change of its size.
     pub fn drawn(&self, text: &str) {
         let mut columns = 100;
         until(text, || {

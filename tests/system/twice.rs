@@ -1,4 +1,4 @@
-//! Two programs on one record, or on one port: the second is refused before it has said anything to the rig.
+//! Two programs on one run folder, or on one port: the second is refused before it sends anything to the rig.
 
 use std::fs;
 use std::process::Command;

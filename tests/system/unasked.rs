@@ -1,5 +1,6 @@
-//! What a rig does after a stop, and before a run goes on: nothing that nobody said yes to. In: people who stop, leave and come back,
-//! rigs that are moved by hand meanwhile or hear nothing. Out: the moves a stand-in was told, and what the person was told.
+//! A rig moves after a stop, and before a run is resumed, only with the operator's confirmation. In: operators who stop, leave
+//! and come back; rigs that are moved by hand meanwhile or receive nothing. Out: the moves of a rig emulator and the messages
+//! to the operator.
 
 use std::fs;
 use std::process::Command;
@@ -9,7 +10,7 @@ use rustix::process::Signal;
 use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
 use crate::terminal::{GO_ON, LEAVE, RELEASE, TO_UNLOAD, Terminal, UNLOAD};
 
-/// Looked at where it is bent.
+/// Inspected at its loaded position.
 fn unloading(plan: &str) -> String {
     let plan = plan.replace("safe_state = hold", "safe_state = unload");
     let plan = plan.replace(
@@ -19,7 +20,7 @@ fn unloading(plan: &str) -> String {
     plan.replace("impact hit {", "move back { to = 0 mm }\n\nimpact hit {")
 }
 
-/// A move takes ten seconds and more: nobody waits for its end.
+/// A move takes ten seconds and more: the test does not wait for its end.
 fn slow(plan: &str) -> String {
     plan.replace(
         "speed      = 20 mm/s",
@@ -28,7 +29,7 @@ fn slow(plan: &str) -> String {
     .replace("probe(0.1 mm", "probe(0.02 mm")
 }
 
-/// At the look at the specimen, with the rig where it bends it.
+/// At the inspection of the specimen, with the rig at the loaded position.
 fn at_the_look(stage: &Stage, with_screen: bool) -> Terminal {
     let command = &mut stage.run_with(&[]);
     let mut terminal = if with_screen {
@@ -53,7 +54,7 @@ fn at_the_look(stage: &Stage, with_screen: bool) -> Terminal {
     terminal
 }
 
-/// It stands where it was held, the record is sound, and the run goes on from there.
+/// It is at its hold position, the run log is valid, and the run is resumed from there.
 fn held_and_goes_on(stage: &Stage, moves: &[String], ran: &Ended) {
     assert_eq!(stage.moves(), moves, "nothing moved unasked: {}", ran.told);
     stage.held_and_sound(ran);
@@ -67,7 +68,7 @@ fn held_and_goes_on(stage: &Stage, moves: &[String], ran: &Ended) {
 
 #[test]
 fn a_rig_that_may_unload_is_held_when_nobody_says_yes() {
-    // `--yes` releases a rig; it takes no load off after a stop.
+    // `--yes` releases a rig; it does not unload after a stop.
     let stage = Stage::of(unloading, "");
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(6);
@@ -237,7 +238,7 @@ fn a_rig_that_was_moved_by_hand_is_not_gone_on_with() {
     assert!(fs::read(stage.journal()).unwrap() == journal);
 }
 
-/// `psd resume` in front of a person.
+/// `psd resume` with an operator at the terminal.
 fn resumed(stage: &Stage) -> Terminal {
     let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
     command.arg("resume").arg(stage.path("run")).args([

@@ -1,42 +1,42 @@
-//! What can go wrong with ram, specimen and sensors of a bench. In: a fault, and what should have been. Out: what is.
-//! It knows no dialect and no line.
+//! Faults of the actuator, the specimen and the sensors of a bench. In: a fault and the correct value. Out: the faulty value.
+//! It knows neither protocol nor line.
 
 use rand::RngExt as _;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng as _;
 
-/// One fault of ram, specimen or sensor. All last from the moment they strike, but a spike and a bad number, which
-/// spoil one reading.
+/// A fault of an actuator, a specimen or a sensor. A spike and an invalid number affect one reading. Every other fault lasts
+/// from its start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BenchFault {
-    /// The ram makes only this part of every way from now on; 0: it sticks.
+    /// From now on the actuator makes only this fraction of every move. At 0 it does not move.
     Reach(f64),
-    /// The ram follows its command with this time constant, s.
+    /// The actuator follows its command with this time constant \[s\].
     Lag(f64),
-    /// Force readings times this: a sign, a wrong unit.
+    /// Factor on the force readings, such as a wrong polarity or a wrong unit.
     ScaleForce(f64),
-    /// Displacement readings times this.
+    /// Factor on the displacement readings.
     ScaleDisplacement(f64),
-    /// Force readings stay within ± this, N.
+    /// Force readings stay within ± this value \[N\].
     ClipForce(f64),
     FreezeForce,
     FreezeDisplacement,
-    /// N/s on the force reading from now on.
+    /// Zero drift of the force reading from now on \[N/s\].
     Drift(f64),
-    /// m/s on the displacement reading from now on.
+    /// Zero drift of the displacement reading from now on \[m/s\].
     DriftDisplacement(f64),
-    /// N on the next force reading.
+    /// Added to the next force reading \[N\].
     Spike(f64),
-    /// This text in place of the next force reading.
+    /// This string replaces the next force reading.
     Number(String),
-    /// Once the specimen is at this displacement (m), only this part of its force is left.
+    /// From this displacement \[m\] on, only this fraction of the specimen's force remains.
     Fracture {
         displacement: f64,
         left: f64,
     },
 }
 
-/// The faults that have struck so far.
+/// The faults that have occurred.
 #[derive(Debug)]
 pub struct BenchFaults {
     pub(crate) reach: f64,
@@ -48,22 +48,22 @@ pub struct BenchFaults {
     freezes_displacement: bool,
     frozen_force: Option<f64>,
     frozen_displacement: Option<f64>,
-    /// N/s, and since when, s.
+    /// Rate \[N/s\] and start time \[s\].
     drifts: Vec<(f64, f64)>,
-    /// m/s, and since when, s.
+    /// Rate \[m/s\] and start time \[s\].
     displacement_drifts: Vec<(f64, f64)>,
     spike: f64,
     number: Option<String>,
-    /// m, and the part left beyond it.
+    /// Displacement \[m\] and the fraction of the force that remains beyond it.
     fracture: Option<(f64, f64)>,
     broken: Option<f64>,
-    /// Faults drawn for at every force reading, with their probability.
+    /// Faults that occur at random at a force reading, with their probability.
     chances: Vec<(BenchFault, f64)>,
     generator: Pcg64,
 }
 
 impl BenchFaults {
-    /// A sound bench; the seed serves the faults that come by chance.
+    /// A bench without faults. The seed is used for the random faults.
     pub(crate) fn none(seed: u64) -> Self {
         Self {
             reach: 1.0,
@@ -86,7 +86,7 @@ impl BenchFaults {
         }
     }
 
-    /// A fault strikes at `time` (s).
+    /// Starts a fault at `time` \[s\].
     pub(crate) fn strike(&mut self, fault: BenchFault, time: f64) {
         match fault {
             BenchFault::Reach(part) => self.reach = part,
@@ -110,7 +110,7 @@ impl BenchFaults {
         self.chances.push((fault, probability));
     }
 
-    /// The specimen's force with its ram at `position` (m), N.
+    /// Returns the specimen's force \[N\] with its actuator at `position` \[m\].
     pub(crate) fn specimen_force(&mut self, position: f64, sound: f64) -> f64 {
         if let Some((at, left)) = self.fracture {
             let reached = if at < 0.0 {
@@ -125,7 +125,7 @@ impl BenchFaults {
         sound * self.broken.unwrap_or(1.0)
     }
 
-    /// What the cell gives at `time` (s) for a true force, N.
+    /// Returns the reading of the load cell \[N\] at `time` \[s\] for a true force.
     pub(crate) fn read_force(&mut self, sound: f64, time: f64) -> f64 {
         let drawn: Vec<BenchFault> = {
             let Self {
@@ -152,7 +152,7 @@ impl BenchFaults {
         }
     }
 
-    /// What the transducer gives at `time` (s) for a true displacement, m.
+    /// Returns the reading of the transducer \[m\] at `time` \[s\] for a true displacement.
     pub(crate) fn read_displacement(&mut self, sound: f64, time: f64) -> f64 {
         let read = (sound + drifted(&self.displacement_drifts, time)) * self.displacement_factor;
         if self.freezes_displacement {
@@ -162,13 +162,13 @@ impl BenchFaults {
         }
     }
 
-    /// What stands in place of a force reading, if anything.
+    /// Returns the string that replaces a force reading, if there is one.
     pub(crate) const fn take_number(&mut self) -> Option<String> {
         self.number.take()
     }
 }
 
-/// What rates since their times come to at `time`, s.
+/// Returns the sum at `time` \[s\] of the zero drifts since their start times.
 fn drifted(drifts: &[(f64, f64)], time: f64) -> f64 {
     drifts
         .iter()

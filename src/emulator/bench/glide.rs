@@ -1,25 +1,25 @@
-//! Smooth ways of a bench's rams: each ends with a place and a velocity, is followed by the next without a stop, and where
-//! none follows the rams go on as fast as they are. In: ends, one a ram, and times. Out: the paths that lead there. It
-//! judges no limit: that is a controller's business.
+//! Smooth moves of a bench's actuators. Each move ends with a position and a velocity, and the next one follows without a stop.
+//! Without a next move, the actuators continue at their velocity. In: end points, one per actuator, and times. Out: the paths
+//! to these end points. It checks no limit: the controller does that.
 
 use crate::emulator::Bench;
 use crate::emulator::SentMove;
 use crate::physics::tracking::trajectory::Path;
 
-/// The end of a way: m, m/s.
+/// The end of a smooth move: position \[m\] and velocity \[m/s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayEnd {
     pub place: f64,
     pub velocity: f64,
 }
 
-/// The ways a bench has been told.
+/// The commanded smooth moves of a bench.
 #[derive(Debug, Default)]
 pub(crate) struct Glides {
-    /// When the last one that began ends, s; none where the rams go to targets.
+    /// End time of the last move that began \[s\]; none while the actuators go to targets.
     end: Option<f64>,
     ends: Vec<WayEnd>,
-    /// The one behind it, and how long that takes, s.
+    /// The next move and its duration \[s\].
     next: Option<(Vec<WayEnd>, f64)>,
 }
 
@@ -29,20 +29,20 @@ impl Glides {
     }
 }
 
-/// Why there is no way.
+/// The reason why a move is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoWay {
-    /// The rams go to targets, or one way is waiting already.
+    /// The actuators go to targets, or one move is already waiting.
     Busy,
-    /// It would have ended before now.
+    /// The move would have ended before now.
     Late,
 }
 
 impl Bench {
-    /// The paths, one a ram, of a way of `seconds` behind the last one, or from now on.
+    /// Calculates the paths, one per actuator, of a move of `seconds` after the last one, or from now on.
     ///
     /// # Errors
-    /// There is none.
+    /// The move is refused.
     pub fn paths_to(&self, ends: &[WayEnd], seconds: f64) -> Result<Vec<Path>, NoWay> {
         let path = |from: WayEnd, to: &WayEnd, seconds| Path {
             from: from.place,
@@ -81,7 +81,7 @@ impl Bench {
         }
     }
 
-    /// Takes these paths, which `paths_to` gave for these ends. How long it is to their end, s.
+    /// Follows these paths, which `paths_to` returned for these end points. Returns the time to their end \[s\].
     pub fn follow(
         &mut self,
         id: Option<u64>,
@@ -115,7 +115,7 @@ impl Bench {
         end - self.time
     }
 
-    /// How long the rams have gone on behind their last way, s; none while they are on one, or at rest.
+    /// Returns the time since the end of the last move \[s\]; none during a move or at rest.
     #[must_use]
     pub fn gone_on(&self) -> Option<f64> {
         let end = self.glides.end.filter(|_| self.glide_under_way())?;
@@ -126,7 +126,7 @@ impl Bench {
         self.rams.iter().any(super::ram::Ram::glides)
     }
 
-    /// When a way that waits begins, s.
+    /// Returns the start time of the waiting move \[s\].
     pub(crate) fn next_glide(&self) -> Option<f64> {
         self.glides.end.filter(|_| self.glides.next.is_some())
     }
@@ -204,7 +204,7 @@ mod tests {
         );
     }
 
-    /// A spring and a damper on the way: the force is that of place and velocity, whatever the ticks.
+    /// A spring and a damper: the force depends on position and velocity only, and not on the time steps.
     #[test]
     fn the_force_is_that_of_place_and_velocity() {
         let mut bench = bench();

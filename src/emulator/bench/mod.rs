@@ -1,6 +1,6 @@
-//! The mechanical part of an emulated rig: actuators of constant speed, a specimen, sensors with
-//! noise and resolution. In: targets and time. Out: position and force of each actuator, SI. It
-//! knows no protocol. A value without an axis belongs to the first one.
+//! The mechanical part of an emulated rig: actuators of constant speed, a specimen, sensors with noise and resolution. In:
+//! targets and time. Out: position and force of each actuator, SI. It knows no protocol. A value without an axis belongs to the
+//! first one.
 
 use super::bench::fault::BenchFault;
 use super::bench::glide::Glides;
@@ -8,74 +8,74 @@ use super::bench::ram::{Ram, RamSettings};
 use super::bench::structure::Structure;
 use crate::plan::{Behaviour, Frame, Interval};
 
-/// What a bench is made of.
+/// The properties of a bench.
 #[derive(Clone, Debug)]
 pub struct BenchSettings {
     pub behaviour: Behaviour,
-    /// c of c·v while it moves, N·s/m.
+    /// Damping coefficient c of the force c·v while it moves \[N·s/m\].
     pub damping: f64,
-    /// Standard deviation of a force reading, N.
+    /// Standard deviation of a force reading \[N\].
     pub noise: f64,
-    /// Quantum of the displacement reading, m; 0: none.
+    /// Quantization step of the displacement reading \[m\]; 0: none.
     pub resolution: f64,
-    /// N per count of a raw converter; its sign is the cell's.
+    /// Scale factor of a raw converter \[N per count\], with the polarity of the load cell.
     pub newtons_per_count: f64,
-    /// Count at no force.
+    /// Zero offset of a raw converter: the count at zero force.
     pub zero_count: f64,
     pub seed: u64,
-    /// Targets outside are a failure of whoever sent them.
+    /// Limits of the target. The emulator logs a target outside them as a failure of the host.
     pub limits: Interval,
-    /// Fastest it can go, m/s.
+    /// Maximum speed \[m/s\].
     pub top_speed: f64,
 }
 
-/// A move the bench was sent on.
+/// A commanded move of the bench.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SentMove {
-    /// s since power-up.
+    /// Time since power-up \[s\].
     pub time: f64,
-    /// Number of the move, where the dialect has one.
+    /// Number of the move, if the protocol has one.
     pub id: Option<u64>,
-    /// One a ram, m.
+    /// One per actuator \[m\].
     pub targets: Vec<f64>,
-    /// Of the ram with the farthest way, m/s.
+    /// Speed of the actuator with the longest move \[m/s\].
     pub speed: f64,
 }
 
-/// The physics behind a simulated controller.
+/// The physics behind an emulated controller.
 #[derive(Debug)]
 pub struct Bench {
     settings: BenchSettings,
     structure: Structure,
     pub(super) rams: Vec<Ram>,
-    /// s since power-up.
+    /// Time since power-up \[s\].
     pub(super) time: f64,
-    /// One a ram, as the specimen has it: N, without noise.
+    /// Restoring force of the specimen at each actuator \[N\], without noise.
     restoring_force: Vec<f64>,
-    /// Force readings so far; of several rams those of the first.
+    /// Number of force readings; with several actuators, those of the first.
     readings: u64,
-    /// Targets that lay outside the limits, m.
+    /// Targets outside the limits \[m\].
     violations: Vec<f64>,
-    /// Every target it was sent to, m.
+    /// Every commanded target \[m\].
     pub(super) targets: Vec<f64>,
     pub(super) moves: Vec<SentMove>,
     pub(super) glides: Glides,
-    /// The ram of which is said what is said without a place.
+    /// Index of the actuator that a value without an axis belongs to.
     view: usize,
-    /// Of each ram whose raw converter is another than the bench's: N per count, count at no force.
+    /// Scale factor \[N per count\] and zero offset of each actuator, if they differ from those of the bench.
     converters: Vec<(f64, f64)>,
 }
 
-/// The longest part of a smooth way that is taken in one piece, s: a specimen feels its turn no later.
+/// Longest time step of a smooth move \[s\]: the specimen reacts to a load reversal within this time.
 const FINELY: f64 = 1e-3;
 
-/// The seed of one ram: the bench's own for the first.
+/// Returns the seed of one actuator. The first one uses the seed of the bench.
 const fn seed_of(seed: u64, ram: u64) -> u64 {
     seed.wrapping_add(ram.wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
 impl Bench {
-    /// One ram on a specimen of one degree of freedom.
+    /// One actuator on a specimen of one degree of freedom.
     #[must_use]
     pub fn new(settings: BenchSettings) -> Self {
         let BenchSettings {
@@ -85,7 +85,7 @@ impl Bench {
             ..
         } = settings;
         let structure = Structure::of_one(&settings.behaviour, settings.damping);
-        // Such a specimen is bent in the rig's own directions.
+        // The displacement of such a specimen has the polarity of the rig.
         Self::standing(
             settings,
             structure,
@@ -98,7 +98,7 @@ impl Bench {
         )
     }
 
-    /// A ram at every floor of a frame, the lowest first. Of the settings only those for all rams count.
+    /// One actuator at every floor of a frame, the lowest first. Only the settings common to all actuators are used.
     #[must_use]
     pub fn of_frame(settings: BenchSettings, frame: &Frame, rams: &[RamSettings]) -> Self {
         Self::standing(settings, Structure::of_frame(frame), rams)
@@ -126,20 +126,20 @@ impl Bench {
         bench
     }
 
-    /// The same bench with friction on its cell, N: against the last motion, also through a pause, as a virtual rig has it.
+    /// Adds friction to the load cell \[N\]. It acts against the last motion, also during a dwell, as in the simulated rig.
     #[must_use]
     pub const fn with_friction(mut self, friction: f64) -> Self {
         self.structure.set_friction(friction);
         self
     }
 
-    /// The same bench with a raw converter for each ram: N per count, count at no force.
+    /// Adds a raw converter for each actuator: scale factor \[N per count\] and zero offset.
     #[must_use]
     pub fn with_converters(self, converters: Vec<(f64, f64)>) -> Self {
         Self { converters, ..self }
     }
 
-    /// The same bench whose rams stand at these places of their controllers, m, with the specimen not bent.
+    /// Moves the actuators to these initial positions of their controllers \[m\]; the specimen stays undeformed.
     #[must_use]
     pub fn standing_at(mut self, places: &[f64]) -> Self {
         for (ram, place) in self.rams.iter_mut().zip(places) {
@@ -148,7 +148,7 @@ impl Bench {
         self
     }
 
-    /// Something goes wrong now with the ram at this place, its specimen or its sensors.
+    /// Starts a fault of the actuator with this index, of its specimen or of its sensors.
     pub fn strike(&mut self, ram: usize, fault: BenchFault) {
         let time = self.time;
         if let Some(ram) = self.rams.get_mut(ram) {
@@ -156,7 +156,7 @@ impl Bench {
         }
     }
 
-    /// Something goes wrong at any force reading of the ram at this place, with a probability.
+    /// Adds a fault that occurs with a probability at any force reading of the actuator with this index.
     pub fn strike_by_chance(&mut self, ram: usize, fault: BenchFault, probability: f64) {
         if let Some(ram) = self.rams.get_mut(ram) {
             ram.faults.strike_by_chance(fault, probability);
@@ -168,25 +168,25 @@ impl Bench {
         &self.settings
     }
 
-    /// How many rams it has.
+    /// The number of actuators.
     #[must_use]
     pub const fn rams(&self) -> usize {
         self.rams.len()
     }
 
-    /// Where targets of the ram at this place may lie, m.
+    /// The limits for targets of the actuator with this index \[m\].
     #[must_use]
     pub fn limits_of(&self, ram: usize) -> Interval {
         self.rams[ram].settings.limits
     }
 
-    /// s since power-up.
+    /// Time since power-up \[s\].
     #[must_use]
     pub const fn time(&self) -> f64 {
         self.time
     }
 
-    /// Brings the bench to a later moment, s.
+    /// Advances the bench to a later time \[s\].
     pub fn advance(&mut self, to: f64) {
         while let Some(until) = self.next_glide().filter(|until| *until < to) {
             self.pass(until);
@@ -195,7 +195,7 @@ impl Bench {
         self.pass(to);
     }
 
-    /// Nothing is told to the rams before that moment, s.
+    /// Advances the bench to a time \[s\] before which the actuators receive no command.
     fn pass(&mut self, to: f64) {
         while self.rams.iter().any(Ram::glides) && to - self.time > FINELY {
             self.take(self.time + FINELY);
@@ -213,7 +213,7 @@ impl Bench {
             let velocities = self.velocities();
             self.structure.goes(&velocities);
         }
-        // All arrive together; a ram that lags goes all the time.
+        // All arrive simultaneously. An actuator with a lag moves the whole time.
         let going = self
             .rams
             .iter()
@@ -245,19 +245,19 @@ impl Bench {
         }
     }
 
-    /// Sets off to `target` (m) at `speed` (m/s).
+    /// Starts a move to `target` \[m\] at `speed` \[m/s\].
     pub fn go(&mut self, target: f64, speed: f64) {
         self.go_as(None, &[target], speed);
     }
 
-    /// Sets off to a target a ram (m) for a move that may have a number: all arrive together, the one with the farthest way
-    /// at `speed` (m/s).
+    /// Starts a move to one target per actuator \[m\]. The move can have a number. All arrive simultaneously, and the actuator
+    /// with the longest move has the speed `speed` \[m/s\].
     pub fn go_as(&mut self, id: Option<u64>, targets: &[f64], speed: f64) {
         let all: Vec<usize> = (0..self.rams.len()).collect();
         self.go_those(id, &all, targets, speed);
     }
 
-    /// The same of these rams alone.
+    /// Starts such a move of these actuators alone.
     pub fn go_those(&mut self, id: Option<u64>, rams: &[usize], targets: &[f64], speed: f64) {
         let speed = speed.abs().min(self.settings.top_speed);
         let way = |bench: &Self, ram: usize, to: f64| (to - bench.rams[ram].position).abs();
@@ -287,17 +287,17 @@ impl Bench {
         });
     }
 
-    /// The controller refused a target (m): it goes nowhere, but was asked to.
+    /// The controller refused a target \[m\]: no motion, but the target is logged.
     pub fn refuse(&mut self, target: f64) {
         self.judge(0, target);
     }
 
-    /// The same of the ram at this place.
+    /// The same for the actuator with this index.
     pub fn refuse_of(&mut self, ram: usize, target: f64) {
         self.judge(ram, target);
     }
 
-    /// The same of targets, one a ram.
+    /// The same for several targets, one per actuator.
     pub fn refuse_all(&mut self, targets: &[f64]) {
         for (ram, target) in (0..self.rams.len()).zip(targets) {
             self.judge(ram, *target);
@@ -310,7 +310,7 @@ impl Bench {
         }
     }
 
-    /// Stops where it stands.
+    /// Stops all actuators at their present position.
     pub fn hold(&mut self) {
         self.glides.clear();
         for ram in &mut self.rams {
@@ -318,13 +318,13 @@ impl Bench {
         }
     }
 
-    /// Whether any ram does.
+    /// Whether any actuator moves.
     #[must_use]
     pub fn moving(&self) -> bool {
         self.rams.iter().any(Ram::moving)
     }
 
-    /// Where it is commanded to be now, m: what a controller knows that counts its own steps.
+    /// The present commanded position \[m\], as a controller knows it that counts its own steps.
     #[must_use]
     pub fn commanded(&self) -> f64 {
         self.commanded_of(self.view)
@@ -335,7 +335,7 @@ impl Bench {
         self.rams[ram].position
     }
 
-    /// m, as its transducer reads it.
+    /// The reading of the displacement transducer \[m\].
     pub fn displacement(&mut self) -> f64 {
         self.displacement_of(self.view)
     }
@@ -344,7 +344,7 @@ impl Bench {
         self.rams[ram].displacement(self.time)
     }
 
-    /// N, as its cell feels it, with noise.
+    /// The reading of the load cell \[N\], with noise.
     pub fn force(&mut self) -> f64 {
         self.force_of(self.view)
     }
@@ -358,7 +358,7 @@ impl Bench {
         ram.force(at_the_cell, self.time)
     }
 
-    /// Of each ram, as the specimen has it, m/s.
+    /// The velocity of the specimen at each actuator \[m/s\].
     fn velocities(&self) -> Vec<f64> {
         self.rams
             .iter()
@@ -366,7 +366,7 @@ impl Bench {
             .collect()
     }
 
-    /// The force as a raw converter of 24 bits gives it.
+    /// The force as counts of a raw converter of 24 bits.
     pub fn counts(&mut self) -> i64 {
         let force = self.force();
         match self.converters.get(self.view) {
@@ -377,60 +377,60 @@ impl Bench {
         }
     }
 
-    /// What a raw converter of 24 bits makes of a force, N.
+    /// Converts a force \[N\] to counts of a raw converter of 24 bits.
     #[must_use]
     pub fn counts_of(&self, force: f64) -> i64 {
         in_24_bits(force / self.settings.newtons_per_count + self.settings.zero_count)
     }
 
-    /// What the controller puts where a force of the ram at this place stands: `ordinary`, unless a fault has something else
-    /// for it. To be asked once for each number sent.
+    /// The string that the controller sends for a force of the actuator with this index: `ordinary`, unless a fault replaces
+    /// it. Call it once for each number sent.
     pub fn shown_force(&mut self, ram: usize, ordinary: String) -> String {
         self.rams[ram].faults.take_number().unwrap_or(ordinary)
     }
 
-    /// The same of the ram in view.
+    /// The same for the actuator in view.
     pub fn shown(&mut self, ordinary: String) -> String {
         self.shown_force(self.view, ordinary)
     }
 
-    /// What is said without a place is said of this ram from now on; of which it was before.
+    /// From now on, values without an axis belong to this actuator. Returns the previous one.
     pub(super) const fn look_from(&mut self, ram: usize) -> usize {
         std::mem::replace(&mut self.view, ram)
     }
 
-    /// Whether any of these rams moves.
+    /// Whether any of these actuators moves.
     #[must_use]
     pub fn any_moving(&self, rams: &[usize]) -> bool {
         rams.iter().any(|ram| self.rams[*ram].moving())
     }
 
-    /// These rams stop where they stand.
+    /// Stops these actuators at their present position.
     pub fn hold_those(&mut self, rams: &[usize]) {
         for ram in rams {
             self.rams[*ram].hold();
         }
     }
 
-    /// Force readings so far; of several rams those of the first.
+    /// Number of force readings; with several actuators, those of the first.
     #[must_use]
     pub const fn readings(&self) -> u64 {
         self.readings
     }
 
-    /// Every move it was sent on, in order.
+    /// Every commanded move, in order.
     #[must_use]
     pub fn moves(&self) -> &[SentMove] {
         &self.moves
     }
 
-    /// Targets that lay outside the limits, m.
+    /// Targets outside the limits \[m\].
     #[must_use]
     pub fn violations(&self) -> &[f64] {
         &self.violations
     }
 
-    /// Every target it was sent to, m, in order; of several rams one after the other.
+    /// Every commanded target \[m\], in order; with several actuators one after the other.
     #[must_use]
     pub fn targets(&self) -> &[f64] {
         &self.targets

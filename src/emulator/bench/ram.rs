@@ -1,5 +1,6 @@
-//! One ram of a bench, with its transducer and its load cell. In: targets, time, the force that bends it. Out: where it
-//! stands and what its sensors read, in SI, with noise, quanta and faults. It knows neither the other rams nor a dialect.
+//! One actuator of a bench, with its transducer and its load cell. In: targets, time, the force on it. Out: its position and
+//! the readings of its sensors, in SI, with noise, quantization and faults. It knows neither the other actuators nor a
+//! protocol.
 
 use rand_distr::{Distribution as _, Normal};
 use rand_pcg::Pcg64;
@@ -9,19 +10,19 @@ use super::fault::BenchFaults;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::Interval;
 
-/// A target may lie this far beyond a limit and still be on it, m: the last bits of a turn from mm to m.
+/// Tolerance of a limit \[m\]: a target can exceed it by the rounding errors of the conversion from mm to m.
 const ROUNDING: f64 = 1e-12;
 
-/// What a ram and its sensors are.
+/// The properties of an actuator and its sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RamSettings {
-    /// +1 or −1: how its displacement and force count at the specimen.
+    /// Polarity (+1 or −1) of its displacement and force at the specimen.
     pub sign: f64,
-    /// Standard deviation of a force reading, N.
+    /// Standard deviation of a force reading \[N\].
     pub noise: f64,
-    /// Quantum of the displacement reading, m; 0: none.
+    /// Quantization step of the displacement reading \[m\]; 0: none.
     pub resolution: f64,
-    /// Targets outside are a failure of whoever sent them, m.
+    /// Limits of the target \[m\]. The emulator logs a target outside them as a failure of the host.
     pub limits: Interval,
 }
 
@@ -30,18 +31,18 @@ pub(crate) struct Ram {
     pub(crate) settings: RamSettings,
     generator: Pcg64,
     pub(crate) faults: BenchFaults,
-    /// Where it is commanded to be now, m.
+    /// The present commanded position \[m\].
     pub(crate) position: f64,
-    /// Where a ram without lag would be, m.
+    /// The position without lag \[m\].
     reached: f64,
-    /// Where it is, m.
+    /// The true position \[m\].
     pub(crate) at: f64,
-    /// Where it stood when the specimen was mounted, m: the specimen is bent by the way from there.
+    /// The position at which the specimen was mounted \[m\]. The specimen's displacement is measured from it.
     mounted_at: f64,
     pub(crate) target: f64,
     /// m/s
     pub(crate) speed: f64,
-    /// On a smooth way, and how long already, s.
+    /// The smooth move and the time since its start \[s\].
     course: Option<(Path, f64)>,
 }
 
@@ -62,7 +63,7 @@ impl Ram {
         }
     }
 
-    /// It stands there (m) from the first, with the specimen not bent.
+    /// Moves to this initial position \[m\] with the specimen undeformed.
     pub(crate) fn stand_at(&mut self, place: f64) {
         (
             self.position,
@@ -73,39 +74,39 @@ impl Ram {
         ) = (place, place, place, place, place);
     }
 
-    /// By how much it bends the specimen, m.
+    /// The displacement of the specimen \[m\].
     pub(crate) fn bends(&self) -> f64 {
         self.at - self.mounted_at
     }
 
-    /// Goes along a smooth way from now on; past its end as fast as there.
+    /// Follows a smooth path from now on. Past its end it keeps the final velocity.
     pub(crate) fn follow(&mut self, path: Path) {
         self.target = path.to;
         self.course = Some((path, 0.0));
     }
 
-    /// Sets off to a target (m) at a speed (m/s).
+    /// Starts a move to a target \[m\] at a speed \[m/s\].
     pub(crate) fn go(&mut self, target: f64, speed: f64) {
         (self.target, self.speed, self.course) = (target, speed, None);
     }
 
-    /// Stops where it is commanded to be.
+    /// Stops at the commanded position.
     pub(crate) fn hold(&mut self) {
         self.go(self.position, 0.0);
     }
 
-    /// Whether it is on a smooth way, or goes on behind one.
+    /// Whether it is on a smooth path, or continues after one.
     pub(crate) fn glides(&self) -> bool {
         self.course.is_some()
     }
 
-    /// Where it is on its course after `seconds` more, m.
+    /// Its position on its path after a further `seconds` \[m\].
     fn glide(&mut self, seconds: f64) {
         let Some((path, elapsed)) = &mut self.course else {
             return;
         };
         *elapsed += seconds;
-        // The end of a way is no less its end for the last bits of a sum of times.
+        // Rounding errors in the sum of the times must not change the end of the path.
         let past = *elapsed - path.seconds;
         let ended = past > -1e-9;
         self.position = if ended {
@@ -118,7 +119,7 @@ impl Ram {
         }
     }
 
-    /// `seconds` pass.
+    /// Advances the time by `seconds`.
     pub(crate) fn advance(&mut self, seconds: f64) {
         let left = self.target - self.position;
         let before = self.position;
@@ -132,7 +133,8 @@ impl Ram {
                 self.position + way.copysign(left)
             };
         }
-        // A sound ram is at its command to the last bit, which a sum of ways would not be.
+        // The position of an actuator without faults equals its command exactly. A sum of increments would have rounding
+        // errors.
         let sound = self.faults.reach == 1.0 && self.reached == before;
         self.reached = if sound {
             self.position
@@ -151,7 +153,7 @@ impl Ram {
         };
     }
 
-    /// s of the next `seconds` in which it goes on.
+    /// The part of the next `seconds` during which it moves \[s\].
     pub(crate) fn arrives_in(&self, seconds: f64) -> f64 {
         match self.target - self.position {
             _ if self.faults.lag > 0.0 || self.glides() => seconds,
@@ -164,7 +166,7 @@ impl Ram {
         self.glides() || self.position != self.target
     }
 
-    /// m/s, signed; 0 at rest.
+    /// Velocity with its sign \[m/s\]; 0 at rest.
     pub(crate) fn velocity(&self) -> f64 {
         if let Some((path, elapsed)) = &self.course {
             return path.rate(*elapsed).velocity;
@@ -176,13 +178,13 @@ impl Ram {
         }
     }
 
-    /// Whether a target (m) lies within its limits.
+    /// Whether a target \[m\] is within its limits.
     pub(crate) fn allows(&self, target: f64) -> bool {
         let Interval { low, high } = self.settings.limits;
         low - ROUNDING <= target && target <= high + ROUNDING
     }
 
-    /// m, as its transducer reads it at `time` (s).
+    /// The reading of its transducer at `time` \[s\] \[m\].
     pub(crate) fn displacement(&mut self, time: f64) -> f64 {
         let quantum = self.settings.resolution;
         let read = self.faults.read_displacement(self.at, time);
@@ -193,7 +195,7 @@ impl Ram {
         }
     }
 
-    /// N, as its cell reads a force that it feels at `time` (s).
+    /// The reading of its load cell \[N\] for a true force `felt` at `time` \[s\].
     pub(crate) fn force(&mut self, felt: f64, time: f64) -> f64 {
         let noise = Normal::new(0.0, self.settings.noise)
             .map_or(0.0, |normal| normal.sample(&mut self.generator));

@@ -1,5 +1,5 @@
-//! What stands on a bench: a specimen of one degree of freedom, or a frame with a ram at every floor. In: where the rams
-//! stand, how they went there. Out: the restoring force of each. It knows no rig and no sensor.
+//! The structure on a bench: a specimen of one degree of freedom, or a frame with an actuator at every floor. In: positions and
+//! moves of the actuators. Out: the restoring force at each. It knows no rig and no sensor.
 
 use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
@@ -16,7 +16,7 @@ pub(crate) enum Structure {
         relaxing: Box<RelaxationState>,
         force: f64,
     },
-    /// Each storey resists its drift, and has what damps it beside.
+    /// Each storey has a restoring-force model and damping.
     Storeys {
         models: Vec<SpecimenModel>,
         dampers: Vec<CellDamping>,
@@ -28,7 +28,7 @@ pub(crate) enum Structure {
 }
 
 impl Structure {
-    /// `damping`: c of c·v, N·s/m.
+    /// `damping`: c of c·v \[N·s/m\].
     pub(crate) fn of_one(behaviour: &Behaviour, damping: f64) -> Self {
         let specimen = Box::new(SpecimenModel::new(behaviour));
         let damping = CellDamping::new(damping, 0.0).with_rate_of(behaviour);
@@ -63,8 +63,8 @@ impl Structure {
         }
     }
 
-    /// Restoring forces (N) with the rams at these places (m), to which they moved by so much (m), evenly for `going` of the `seconds` and at
-    /// rest for the others.
+    /// Calculates the restoring forces \[N\] at these positions of the actuators \[m\]. The last increments \[m\] took the time
+    /// `going` at constant velocity. The actuators were at rest for the other `seconds`.
     pub(crate) fn bend(
         &mut self,
         places: &[f64],
@@ -138,7 +138,7 @@ impl Structure {
         }
     }
 
-    /// What the cells feel of `forces` (N) while the rams go at these velocities (m/s).
+    /// Calculates the forces on the load cells from `forces` \[N\] at these velocities of the actuators \[m/s\].
     pub(crate) fn felt(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
         match self {
             Self::One {
@@ -159,7 +159,7 @@ impl Structure {
             } => {
                 let mut apart = vec![0.0; velocities.len()];
                 drifts(velocities, &mut apart);
-                // What a fault took of the specimen's force is not felt again: only what is beside it is added.
+                // A fault can reduce the specimen's force. Only the forces in parallel with it are added here.
                 let relaxing = relaxing.iter().map(RelaxationState::force);
                 let storeys = dampers.iter_mut().zip(&*shear).zip(apart).zip(relaxing);
                 let beside = storeys.map(|(((damper, shear), v), relaxing)| {
@@ -177,14 +177,14 @@ impl Structure {
         }
     }
 
-    /// Friction on the cell of a specimen of one degree of freedom, N.
+    /// Sets the friction on the load cell of a specimen of one degree of freedom \[N\].
     pub(crate) const fn set_friction(&mut self, friction: f64) {
         if let Self::One { damping, .. } = self {
             damping.coulomb = friction;
         }
     }
 
-    /// The rams go at these velocities now, m/s: friction is against the last motion.
+    /// Sets the present velocities of the actuators \[m/s\]: friction acts against the last motion.
     pub(crate) fn goes(&mut self, velocities: &[f64]) {
         let mut apart = vec![0.0; velocities.len()];
         drifts(velocities, &mut apart);

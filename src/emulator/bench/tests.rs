@@ -1,4 +1,4 @@
-//! The bench: how rams move, what they feel, what faults spoil.
+//! Tests of the bench: motion of the actuators, forces on them, effect of faults.
 
 use super::*;
 use crate::emulator::testing::bench;
@@ -54,7 +54,7 @@ fn friction_stays_at_rest_and_viscous_damping_does_not() {
     );
 }
 
-/// The bench sent to 5 mm, a second after `fault` struck: displacement in mm, force in N.
+/// Sends the bench to 5 mm and reads it a second after `fault` started: displacement in mm, force in N.
 fn after(fault: BenchFault) -> (f64, f64) {
     let mut bench = bench();
     bench.strike(0, fault);
@@ -76,7 +76,7 @@ fn each_fault_spoils_what_it_names() {
     };
     near(after(BenchFault::Reach(0.4)), (2.0, 200.0));
     near(after(BenchFault::Reach(0.0)), (0.0, 0.0));
-    // A ramp of 0.5 s followed with 0.2 s: short by v τ (1 − e^(−T/τ)) at its end, less e^(−t/τ) half a second later.
+    // A ramp of 0.5 s with a lag of 0.2 s is short by v τ (1 − e^(−T/τ)) at its end, times e^(−t/τ) half a second later.
     let short = 10.0 * 0.2 * (1.0 - f64::exp(-2.5)) * f64::exp(-2.5);
     let (lagging, _) = after(BenchFault::Lag(0.2));
     assert!((lagging - (5.0 - short)).abs() < 0.01, "{lagging} mm");
@@ -149,7 +149,7 @@ fn rams_of_a_frame_arrive_together_and_feel_differences_of_storey_shears() {
     let mut bench = Bench::of_frame(settings.clone(), &frame(), &[RAM, RAM]);
     bench.go_as(Some(1), &[0.001, 0.002], 0.01);
     bench.advance(0.1);
-    // Half the way: drifts of half a millimetre, shears 1.5 N and 1 N.
+    // Half of the move: storey drifts of half a millimetre, shears 1.5 N and 1 N.
     assert!(
         (bench.commanded_of(0) - 0.0005).abs() < 1e-15
             && (bench.commanded_of(1) - 0.001).abs() < 1e-15
@@ -157,7 +157,7 @@ fn rams_of_a_frame_arrive_together_and_feel_differences_of_storey_shears() {
     assert!((bench.force_of(0) - 0.5).abs() < 1e-12 && (bench.force_of(1) - 1.0).abs() < 1e-12);
     bench.advance(0.21);
     assert!(!bench.moving());
-    // A drift of 4 mm yields at 4 N.
+    // A storey drift of 4 mm yields at 4 N.
     bench.go_as(Some(2), &[0.001, 0.005], 0.01);
     bench.advance(1.0);
     assert!((bench.force_of(0) + 1.0).abs() < 1e-12 && (bench.force_of(1) - 4.0).abs() < 1e-12);
@@ -176,7 +176,7 @@ fn rams_of_a_frame_arrive_together_and_feel_differences_of_storey_shears() {
     let mut bench = Bench::of_frame(settings, &matrix, &[RAM, turned]);
     bench.go_as(None, &[0.001, -0.005], 0.01);
     bench.advance(1.0);
-    // K = [5, −2; −2, 2] kN/m at (1, 5) mm; the second ram counts the other way round.
+    // K = [5, −2; −2, 2] kN/m at (1, 5) mm. The second actuator has the opposite polarity.
     assert!((bench.force_of(0) + 5.0).abs() < 1e-12 && (bench.force_of(1) + 8.0).abs() < 1e-12);
 }
 
@@ -190,7 +190,7 @@ fn each_ram_has_faults_and_a_noise_of_its_own() {
     assert!(bench.force_of(1) == frozen && bench.force_of(0) != bench.force_of(0));
 }
 
-/// 100 kN/m at 1 mm, beside it 50 kN/m of 2 s, after 0.1 s on the way at 10 mm/s: as a virtual rig has it, whatever the ticks.
+/// 100 kN/m at 1 mm, in parallel with 50 kN/m of 2 s, after 0.1 s at 10 mm/s: as in a simulated rig, whatever the time steps.
 #[test]
 fn what_relaxes_beside_a_specimen_is_felt_also_at_rest() {
     let of = Box::new(Behaviour::Elastic { stiffness: 1e5 });

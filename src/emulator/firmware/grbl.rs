@@ -1,6 +1,6 @@
-//! A Grbl 1.1 board with one axis that matters, X. In: lines and real-time bytes. Out: `ok`, errors, status reports.
-//! `ok` says that a line was understood. Its machine space is 0 down to −`$130`, its end switch at 0; a target beyond that is
-//! `error:15` and moves nothing.
+//! A Grbl 1.1 board with one axis in use, X. In: lines and real-time bytes. Out: `ok`, errors, status reports. `ok` confirms
+//! that a line was understood. The machine coordinates are 0 to −`$130`, with the limit switch at 0. A target beyond them gives
+//! `error:15` and no motion.
 
 use std::collections::VecDeque;
 use std::fmt::Write as _;
@@ -9,12 +9,12 @@ use crate::emulator::{Bench, Firmware};
 
 /// Longest line, bytes.
 const LONGEST: usize = 80;
-/// How far down from 0 it may go, m: `$130` as it is delivered.
+/// Travel below 0 \[m\]: the factory value of `$130`.
 const TRAVEL: f64 = 0.2;
-/// Jogs the planner takes before it lets the host wait.
+/// Number of jogs that the planner accepts before the host must wait.
 const PLANNER: usize = 15;
 
-/// A move that waits for its turn: m, m/s.
+/// A waiting move: target \[m\], speed \[m/s\].
 #[derive(Clone, Copy, Debug)]
 struct Jog {
     target: f64,
@@ -32,14 +32,14 @@ enum State {
 /// The firmware.
 #[derive(Debug)]
 pub struct Grbl {
-    /// Words of its owner, which `$I` shows.
+    /// Build information of the owner, which `$I` shows.
     owner: String,
     line: Vec<u8>,
     state: State,
     planned: VecDeque<Jog>,
-    /// Where the last planned move ends, m.
+    /// End of the last planned move \[m\].
     end: f64,
-    /// A dwell that answers once all is at rest: what is left of it, s, and since when it counts, s.
+    /// A dwell that is answered once all is at rest: remaining time \[s\] and start time \[s\].
     dwell: Option<(f64, Option<f64>)>,
 }
 
@@ -57,7 +57,7 @@ impl Grbl {
         }
     }
 
-    /// Stops, and forgets what was planned.
+    /// Stops and clears the planned moves.
     fn cancel(&mut self, bench: &mut Bench) {
         bench.hold();
         self.planned.clear();
@@ -71,7 +71,7 @@ impl Grbl {
         match byte {
             b'?' => Some(self.status(bench)),
             b'!' => {
-                // A jog is cancelled by a hold; nothing else moves here.
+                // A hold cancels a jog. The board has no other motion.
                 let at_rest = self.state == State::Idle;
                 self.cancel(bench);
                 if at_rest {
@@ -129,7 +129,7 @@ impl Grbl {
         )
     }
 
-    /// mm/min of the move under way.
+    /// Feed rate of the current move \[mm/min\].
     fn feed(bench: &Bench) -> f64 {
         bench.moves().last().map_or(0.0, |sent| sent.speed * 6e4)
     }
@@ -156,7 +156,7 @@ impl Grbl {
         text
     }
 
-    /// One line → all that is answered.
+    /// Executes one line and returns all answers.
     fn carry_out(&mut self, line: &str, bench: &mut Bench) -> String {
         let bare: String = line
             .chars()
@@ -232,7 +232,7 @@ impl Grbl {
         let target = target.ok_or(16_u32)? * millimetres / 1e3;
         let speed = feed.filter(|feed| *feed > 0.0).ok_or(22_u32)? * millimetres / 6e4;
         let target = if absolute { target } else { self.end + target };
-        // The board's numbers have 24 bits: a target on a limit is within it.
+        // The board's numbers have 24 bits: a target on a limit is within it after rounding.
         let rounding = 2e-7 * target.abs();
         if !(-TRAVEL - rounding <= target && target <= 0.0) {
             bench.refuse(target);
@@ -257,7 +257,7 @@ impl Grbl {
         Ok(())
     }
 
-    /// Begins the next planned move once the last is done.
+    /// Starts the next planned move once the last one is done.
     fn proceed(&mut self, bench: &mut Bench) {
         while self.state == State::Jog && !bench.moving() {
             match self.planned.pop_front() {
@@ -277,7 +277,7 @@ impl Firmware for Grbl {
                 said.extend(text.into_bytes());
             } else if matches!(byte, b'\n' | b'\r') {
                 let line = std::mem::take(&mut self.line);
-                // The second byte of an ending is no line of its own.
+                // The second byte of a line ending does not start a new line.
                 if !(line.is_empty() && *byte == b'\n') {
                     let text = String::from_utf8_lossy(&line).into_owned();
                     let answer = if line.len() >= LONGEST {
@@ -310,7 +310,7 @@ impl Firmware for Grbl {
         Vec::new()
     }
 
-    /// Switched on anew with `$22=1` it is locked until it has been homed.
+    /// With `$22=1` it is locked after power-up until it has been homed.
     fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
         bench.hold();
         let banner = self.reset(bench);
@@ -334,7 +334,7 @@ fn number(text: &str) -> Option<f64> {
     }
 }
 
-/// A setting has to be a number.
+/// Checks that a setting is a number.
 const fn known(value: f64) -> f64 {
     if value.is_finite() { value } else { 99_999.0 }
 }
@@ -403,7 +403,7 @@ mod tests {
                 "{beyond}"
             );
         }
-        // 0.001 mm is within the limits of whoever runs the test, the others are not.
+        // 0.001 mm is within the limits of the test, the other targets are not.
         assert_eq!((board.1.violations().len(), board.1.moves().len()), (2, 0));
         for within in ["0.000", "-1.000"] {
             assert_eq!(

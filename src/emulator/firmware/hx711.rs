@@ -1,13 +1,13 @@
-//! The sketch on an HX711 load cell: one raw count a line, at its own rate. In: nothing it listens to. Out: counts.
+//! The sketch for an HX711 load cell: one raw count per line, at its own rate. In: ignored. Out: counts.
 
 use crate::emulator::{Bench, Firmware};
 
 /// The firmware.
 #[derive(Debug)]
 pub struct Hx711 {
-    /// s between two counts.
+    /// Time between two counts \[s\].
     period: f64,
-    /// When the next is due, s.
+    /// Time of the next count \[s\].
     next: f64,
 }
 
@@ -32,7 +32,7 @@ impl Firmware for Hx711 {
         if now < self.next {
             return Vec::new();
         }
-        // After a pause the next count comes a period later: what was not converted is not made up.
+        // After a pause the next count comes one period later. Missed conversions are not sent.
         self.next = if now < self.next + self.period {
             self.next + self.period
         } else {

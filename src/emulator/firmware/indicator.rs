@@ -1,19 +1,19 @@
-//! A weighing indicator that sends its weight by itself and when asked: `ST,GS,+0001234,kg`. In: `READ`. Out: weights.
+//! A weighing indicator that sends its weight periodically and on request: `ST,GS,+0001234,kg`. In: `READ`. Out: weights.
 
 use crate::emulator::{Bench, Firmware};
 
 /// N per kg.
 const GRAVITY: f64 = 9.806_65;
-/// Between two weights, s.
+/// Time between two weights \[s\].
 const PERIOD: f64 = 0.1;
-/// Most its eight places show, kg.
+/// Largest value on its eight characters \[kg\].
 const CAPACITY: f64 = 9999.99;
 
 /// The firmware.
 #[derive(Debug, Default)]
 pub struct Indicator {
     line: Vec<u8>,
-    /// When the next weight is due, s.
+    /// Time of the next weight \[s\].
     next: f64,
 }
 

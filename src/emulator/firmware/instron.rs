@@ -1,10 +1,10 @@
 //! An Instron 8800-style console: channel 1 is position, channel 2 load, each as a fraction of its full scale. In: lines
 //! of `Q`, `C` and `P` words. Out: an answer to every query, none to a write.
 //!
-//! Where the published words leave it open, this console does so: `Q308,n` is in m and N; a reading has eight digits
-//! after the point; a query it does not know stays without an answer; status bit 12 is the watchdog's trip. A write
-//! that is not wrapped in `P909,1` and `C904,0` trips the hydraulics: the actuator is off and stays where it is, and
-//! every write is ignored, until `C23,1` comes wrapped. Only `P909` and the panic `C23,0` need no wrapping.
+//! Choices where the published commands are not specific: `Q308,n` is in m and N; a reading has eight digits after the point;
+//! an unknown query has no answer; status bit 12 is the watchdog's trip. A write that is not wrapped in `P909,1` and `C904,0`
+//! trips the hydraulics: the actuator is off and keeps its position. Every write is then ignored until `C23,1` comes wrapped.
+//! Only `P909` and the panic `C23,0` need no wrapping.
 
 use super::line_buffer::LineBuffer;
 use crate::emulator::{Bench, Firmware};
@@ -24,7 +24,7 @@ pub struct Instron {
     console: Console,
 }
 
-/// What is forgotten when the power goes.
+/// The state that is lost at power-off.
 #[derive(Debug, Default)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -44,13 +44,13 @@ struct Console {
     ramp_time: Option<f64>,
     /// Fraction of full scale, `C4,1,raw`.
     ramp_target: Option<f64>,
-    /// Where a started ramp goes, m, at which speed, m/s.
+    /// Target of a started ramp \[m\] and its speed \[m/s\].
     ramp: Option<(f64, f64)>,
     held: bool,
 }
 
 impl Instron {
-    /// A console whose position transducer and load cell span `position` (m) and `load` (N) either way.
+    /// A console with a full scale of ±`position` \[m\] and ±`load` \[N\].
     #[must_use]
     pub fn new(position: f64, load: f64) -> Self {
         Self {
@@ -133,7 +133,7 @@ impl Instron {
         }
     }
 
-    /// A write that was wrapped as it must be, on a console whose actuator is on.
+    /// Executes a correctly wrapped write on a console whose actuator is on.
     fn command(&mut self, words: &[&str], bench: &mut Bench) {
         let console = &mut self.console;
         match *words {

@@ -1,19 +1,19 @@
-//! Bytes in pieces → whole lines. It knows no dialect, only where a line ends and how long one may be.
+//! Splits received bytes into whole lines. It knows no protocol, only the line end and the maximum length.
 
-/// Longest line kept, bytes; more than that without an end is noise and is dropped.
+/// Longest line kept \[bytes\]. More bytes without a line end are noise and are dropped.
 const LONGEST: usize = 512;
 
-/// What has come of a line that has not ended.
+/// The received part of a line that has not ended.
 #[derive(Debug, Default)]
 pub struct LineBuffer {
     begun: Vec<u8>,
-    /// The line that is coming is too long: all of it is dropped.
+    /// The current line is too long: all of it is dropped.
     overflowed: bool,
 }
 
 impl LineBuffer {
-    /// Takes bytes, and gives the lines that have ended, without their ends. A line ends with CR, LF or both; an empty
-    /// one, and one that is no ASCII, is none.
+    /// Receives bytes and returns the lines that have ended, without their ends. A line ends with CR, LF or both. Empty lines
+    /// and lines that are not ASCII are dropped.
     pub fn take(&mut self, bytes: &[u8]) -> Vec<String> {
         let mut lines = Vec::new();
         for byte in bytes {
@@ -35,7 +35,7 @@ impl LineBuffer {
         lines
     }
 
-    /// Forgets what has come.
+    /// Clears the received part.
     pub fn clear(&mut self) {
         self.begun.clear();
         self.overflowed = false;

@@ -1,15 +1,15 @@
-//! A Mark-10 ESM303 stand with its gauge. In: single letters, some with digits after them, no line ends. Out: status,
-//! travel and what the gauge says. There is no "go to": in limit mode it stops exactly at the limit it was given.
+//! A Mark-10 ESM303 stand with its gauge. In: single letters, some with digits after them, no line ends. Out: status, travel
+//! and answers of the gauge. It has no "go to" command: in limit mode it stops exactly at the limit that is set.
 //!
-//! Where the published words leave it open, this stand does so: every answer ends with CR LF; `p` answers as `SM`,
-//! `UL` or `SLUL`, the parts written together; `x`, `v` and `w` answer a number without its unit, as `-12.34`; `n`, whose layout
-//! is not published, is not answered; a speed given with `e` counts from `o` on, until then the panel's speed does;
-//! letters between `/` and `\` go to the gauge, whose command ends with CR or with `\`; a speed of nothing is not taken.
+//! Choices where the published commands are not specific: every answer ends with CR LF; `p` answers as `SM`, `UL` or `SLUL`,
+//! the parts written together; `x`, `v` and `w` answer a number without its unit, as `-12.34`; `n`, whose layout is not
+//! published, is not answered; a speed given with `e` applies from `o` on, until then the panel's speed applies; letters
+//! between `/` and `\` go to the gauge, whose command ends with CR or with `\`; a speed of zero is ignored.
 
 use super::mark10_load_cell::Mark10Gauge;
 use crate::emulator::{Bench, Firmware};
 
-/// Where the stand itself ends, m either way: as far as `u` and `d` go in manual mode.
+/// Travel limits of the stand itself \[m\], in both directions: `u` and `d` end there in manual mode.
 const END_OF_TRAVEL: f64 = 0.3;
 /// Speed of the panel's knob, mm/min.
 const PANEL_SPEED: f64 = 10.0;
@@ -22,21 +22,21 @@ pub struct Mark10 {
     stand: Stand,
 }
 
-/// What is forgotten when the power goes. Lengths are in m.
+/// The state that is lost at power-off. Lengths are in m.
 #[derive(Debug)]
 struct Stand {
-    /// A command whose digits have not all come.
+    /// A command with missing digits.
     begun: Vec<u8>,
-    /// The command that is on its way to the gauge.
+    /// The unfinished command to the gauge.
     to_gauge: Option<String>,
     limit_mode: bool,
     inch: bool,
     /// m/s
     set_speed: f64,
     use_set_speed: bool,
-    /// m of travel, as given with `g` and `h`.
+    /// Travel limits \[m\], as set with `g` and `h`.
     limits: [Option<f64>; 2],
-    /// Where travel is zero, m of the bench.
+    /// The bench position of zero travel \[m\].
     zero: f64,
 }
 
@@ -63,7 +63,7 @@ enum Side {
 }
 
 impl Mark10 {
-    /// A stand whose gauge gives the bench's force with this sign, +1 or −1.
+    /// A stand whose gauge shows the bench's force with this polarity, +1 or −1.
     #[must_use]
     pub fn new(polarity: f64) -> Self {
         Self {
@@ -127,7 +127,7 @@ impl Stand {
         String::new()
     }
 
-    /// Another byte of `e`, `g` or `h`: four digits, a point and one; a sign, three digits, a point and two.
+    /// Adds a byte to `e`, `g` or `h`: four digits, a point and one; a sign, three digits, a point and two.
     fn digit(&mut self, byte: u8) {
         let signed = self.begun[0] != b'e';
         let (whole, decimals) = if signed { (3, 2) } else { (4, 1) };
@@ -165,7 +165,7 @@ impl Stand {
         }
     }
 
-    /// A limit (m) in the unit that is set.
+    /// A limit \[m\] in the selected unit.
     fn said_limit(&self, limit: f64) -> String {
         format!("{:.2}\r\n", limit / self.unit() * 1e3)
     }
@@ -221,7 +221,7 @@ impl Stand {
         } else {
             "S"
         };
-        // Nearer than a tenth of what the travel shows.
+        // The tolerance is a tenth of the resolution of the travel.
         let at = |limit: Option<f64>| limit.is_some_and(|limit| (here - limit).abs() < 1e-6);
         let limit = match self.limits {
             [_, upper] if self.limit_mode && at(upper) => "UL",
@@ -247,7 +247,7 @@ impl Firmware for Mark10 {
     fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
         bench.hold();
         *self = Self::new(self.polarity);
-        // Travel counts from where the power came on.
+        // Travel is zero at the position of power-up.
         self.stand.zero = bench.commanded();
         Vec::new()
     }

@@ -1,26 +1,26 @@
-//! A Mark-10 force gauge: `?` the reading, `?C` the live one, `?PT` and `?PC` the peaks, `Z` zero. In: commands ended
-//! by CR. Out: a number, a blank and its unit, CR LF; `*10` for what it does not know.
+//! A Mark-10 force gauge: `?` the reading, `?C` the live one, `?PT` and `?PC` the peaks, `Z` zero. In: commands that end with
+//! CR. Out: a number, a space and its unit, CR LF; `*10` for an unknown command.
 //!
-//! Where the published words leave it open, this gauge does so: `?` and `?C` are the same; a reading has two digits after
-//! the point and the unit N; a peak is since zero, as a size; `Z` has no answer.
+//! Choices where the published commands are not specific: `?` and `?C` are the same; a reading has two digits after the point
+//! and the unit N; a peak is the absolute value since zero; `Z` has no answer.
 
 use super::line_buffer::LineBuffer;
 use crate::emulator::{Bench, Firmware};
 
-/// A gauge that stands alone on a port.
+/// A gauge with its own port.
 #[derive(Debug)]
 pub struct Mark10Gauge {
-    /// +1 or −1: what a compression reads as.
+    /// The polarity of a compression, +1 or −1.
     polarity: f64,
     lines: LineBuffer,
-    /// N, of the bench's force.
+    /// Zero offset of the bench's force \[N\].
     zero: f64,
-    /// Largest reading to either side since zero, N.
+    /// Largest reading in each direction since zero \[N\].
     peaks: [f64; 2],
 }
 
 impl Mark10Gauge {
-    /// A gauge that gives the bench's force with this sign.
+    /// A gauge that shows the bench's force with this polarity.
     #[must_use]
     pub fn new(polarity: f64) -> Self {
         Self {
@@ -31,7 +31,7 @@ impl Mark10Gauge {
         }
     }
 
-    /// What it reads now, N.
+    /// Its present reading \[N\].
     pub(super) fn reading(&mut self, bench: &mut Bench) -> f64 {
         let reading = self.polarity * (bench.force() - self.zero);
         let [compression, tension] = &mut self.peaks;

@@ -1,10 +1,10 @@
-//! A Modbus RTU drive or transmitter with the registers of a plan's map. In: frames, whole or in pieces. Out: an answer
-//! or an exception; silence for a frame that is broken or for another unit.
+//! A Modbus RTU drive or transmitter with the register map of a plan. In: frames, whole or in parts. Out: an answer or an
+//! exception; no answer to an invalid frame or to a frame for another unit.
 //!
-//! Functions 3 and 4 read the same registers, 6 and 16 write. Where the vendors differ, this one does so: a number of 32
-//! bits is written whole or not at all (exception 3), so is a target that is no number; the move starts with the start
-//! word, or, without a command register, with the target; it starts with no target or at a speed that is not above 0 never
-//! (exception 4), without a speed register at the fastest.
+//! Functions 3 and 4 read the same registers, 6 and 16 write. Choices where the vendors differ: a number of 32 bits must be
+//! written whole, else exception 3. A target that is not a number also gives exception 3. The move starts with the start
+//! command, or, without a command register, with the target. A start without a target, or with a speed not above 0, gives
+//! exception 4. Without a speed register the maximum speed applies.
 
 use super::modbus_frame::{Assembler, Exception, Frame, reply};
 use super::modbus_registers::{decode, encode, width};
@@ -34,7 +34,7 @@ impl Modbus {
         }
     }
 
-    /// Every register there is, in no order: address and word.
+    /// All registers, in any order: address and value.
     fn registers(&self, bench: &mut Bench) -> Vec<(u16, u16)> {
         let map = self.map;
         let mut words = Vec::new();
@@ -47,7 +47,7 @@ impl Modbus {
         number(map.position, bench.displacement() / map.length_unit);
         if map.force.is_some() {
             let force = bench.force() / map.force_unit;
-            // Another number than the ordinary one is a fault's: what is none is not a number here either.
+            // A fault can replace the ordinary number. A string that is not a number becomes NaN.
             let shown = bench.shown(force.to_string()).parse().unwrap_or(f64::NAN);
             number(map.force, shown);
         }
@@ -99,7 +99,7 @@ impl Modbus {
         }
     }
 
-    /// Writes registers that lie one after the other: first whether all can be taken, then all.
+    /// Writes consecutive registers. First it checks all values, then it writes all.
     fn write(&mut self, start: u16, words: &[u16], bench: &mut Bench) -> Result<(), Exception> {
         let map = self.map;
         let (mut target, mut speed, mut command) = (None, None, None);
@@ -210,7 +210,7 @@ mod tests {
     use crate::emulator::firmware::testing::spring;
     use crate::plan::ModbusNumber;
 
-    /// µm and 0.1 N in 16 bits; mm/s × 100 of speed.
+    /// µm and 0.1 N in 16 bits; the speed in mm/s × 100.
     fn map() -> ModbusMap {
         ModbusMap {
             unit: 1,
@@ -230,7 +230,7 @@ mod tests {
         }
     }
 
-    /// Sends a frame without its checksum, and gives the answer without its own, once that is shown to be right.
+    /// Adds the checksum to a frame and sends it. Checks the checksum of the answer and returns the rest.
     fn asked(drive: &mut Modbus, bench: &mut Bench, frame: &[u8]) -> Vec<u8> {
         let mut sent = frame.to_vec();
         sent.extend(checksum(frame).to_le_bytes());
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn a_move_is_written_started_watched_and_stopped() {
         let (mut drive, mut bench) = (Modbus::new(map()), spring());
-        // 5000 µm, 250 × 10 µm/s, start: registers 10h to 12h at once.
+        // 5000 µm, 250 × 10 µm/s, start: registers 10h to 12h in one write.
         let said = asked(
             &mut drive,
             &mut bench,
@@ -335,7 +335,7 @@ mod tests {
             (&[1, 3, 0, 0, 0, 0], 0x83, 3),
             (&[1, 3, 0, 0, 0, 126], 0x83, 3),
             (&[1, 16, 0, 0x10, 0, 1, 4, 0, 1, 0, 1], 0x90, 3),
-            // Start with no target.
+            // Start without a target.
             (&[1, 6, 0, 0x12, 0, 1], 0x86, 4),
         ];
         for (frame, function, code) in cases {

@@ -1,13 +1,13 @@
-//! Modbus RTU frames as a slave sees them. In: bytes and the time they came at. Out: requests whose checksum is right;
-//! and the bytes of an answer. It knows no register.
+//! Modbus RTU frames as a slave receives them. In: bytes and their times. Out: requests with a correct checksum, and the bytes
+//! of an answer. It knows no register.
 
 /// Longest frame, bytes.
 const LONGEST: usize = 256;
-/// Silence after which what has come is no beginning any more, s. On a line it is 3.5 characters; here, where pieces
-/// are late for reasons of the machine, far more.
+/// Silence after which a partial frame is dropped \[s\]. On a line it is 3.5 characters. Here it is much longer, because the
+/// operating system delays the bytes.
 const GAP: f64 = 0.05;
 
-/// Why a request is refused.
+/// The reason why a request is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exception {
     Function = 1,
@@ -16,7 +16,7 @@ pub enum Exception {
     Failure = 4,
 }
 
-/// What is asked.
+/// A request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Frame {
     Read {
@@ -28,21 +28,21 @@ pub enum Frame {
         words: Vec<u16>,
         single: bool,
     },
-    /// Understood as far as to say what is wrong with it.
+    /// A request that is understood, but invalid.
     Bad(Exception),
 }
 
-/// What has come of a frame.
+/// The received part of a frame.
 #[derive(Debug, Default)]
 pub struct Assembler {
     begun: Vec<u8>,
-    /// When the last byte came, s.
+    /// Time of the last byte \[s\].
     last: f64,
 }
 
 impl Assembler {
-    /// Takes bytes that came at `now` (s), and gives each whole frame with its unit and function. A frame whose checksum
-    /// is wrong is dropped with all that came with it.
+    /// Receives bytes at the time `now` \[s\] and returns each whole frame with its unit and function. A frame with a wrong
+    /// checksum is dropped with all bytes received with it.
     pub fn take(&mut self, bytes: &[u8], now: f64) -> Vec<(u8, u8, Frame)> {
         if now - self.last > GAP {
             self.begun.clear();
@@ -53,7 +53,7 @@ impl Assembler {
             self.begun.push(*byte);
             let whole = match length(&self.begun) {
                 Some(length) => self.begun.len() >= length,
-                // Of a function that is not known, only the checksum tells where its frame ends.
+                // The length is unknown for an unknown function. Only a correct checksum shows the end of the frame.
                 None => self.begun.len() >= 4 && is_sound(&self.begun),
             };
             if whole {
@@ -74,7 +74,7 @@ impl Assembler {
     }
 }
 
-/// Bytes of the whole frame, where its beginning tells.
+/// Length of the whole frame \[bytes\], if its first bytes determine it.
 fn length(begun: &[u8]) -> Option<usize> {
     match *begun {
         [] | [_] | [_, 3 | 4 | 6, ..] => Some(8),
@@ -117,7 +117,7 @@ fn parse(function: u8, body: &[u8]) -> Frame {
     }
 }
 
-/// The bytes of an answer, or of the exception that stands in for it.
+/// The bytes of an answer, or of the exception that replaces it.
 pub fn reply(unit: u8, function: u8, body: Result<Vec<u8>, Exception>) -> Vec<u8> {
     let mut frame = match body {
         Ok(body) => [vec![unit, function], body].concat(),

@@ -1,4 +1,4 @@
-//! Numbers ↔ 16-bit registers. It knows no frame and no address.
+//! Converts between numbers and 16-bit registers. It knows no frame and no address.
 
 use crate::plan::ModbusNumber;
 
@@ -10,8 +10,8 @@ pub const fn width(number: ModbusNumber) -> usize {
     }
 }
 
-/// The registers of a value, rounded where they hold whole numbers; beyond their range they stay at its end, and what is
-/// no number is the lowest there is.
+/// Returns the registers of a value. Integer registers get a rounded value, limited to their range. NaN becomes the lowest
+/// value.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the cast of a float stays inside the range of its type"
@@ -36,7 +36,7 @@ pub fn encode(value: f64, number: ModbusNumber) -> Vec<u16> {
     }
 }
 
-/// The value of as many registers as a number has; NaN of any other count.
+/// Returns the value of these registers; NaN if their count does not match the number.
 pub fn decode(words: &[u16], number: ModbusNumber) -> f64 {
     match (number, words) {
         (ModbusNumber::Int16, [word]) => f64::from(word.cast_signed()),

@@ -1,11 +1,11 @@
-//! A rig that speaks the NEES "LabVIEW plugin" protocol: it listens, a coordinator proposes, executes and asks. In: lines,
-//! ended with LF or CR LF. Out: one answer a line, ended as the client ends its own; that to `execute` comes when the
+//! A rig with the NEES "LabVIEW plugin" protocol: it listens; a coordinator proposes, executes and requests readings. In: lines
+//! that end with LF or CR LF. Out: one answer per line, with the line end of the client. The answer to `execute` comes when the
 //! motion is done.
 //!
-//! Where the published words leave it open, this rig does so: nothing is answered `OK` before `open-session`, and a
-//! second `open-session` is refused; a control point may have a `:name` behind it; the axis is x; `cancel` during a
-//! motion holds the rig, its `execute` is then answered `NOT OK`; a reading may be asked for during a motion. A control point that
-//! a proposal does not name stays where it was sent.
+//! Choices where the published commands are not specific: nothing is answered `OK` before `open-session`, and a second
+//! `open-session` is refused; a control point can have a `:name` after it; the axis is x; `cancel` during a motion holds the
+//! rig, and its `execute` is then answered `NOT OK`; a reading can be requested during a motion. A control point that is absent
+//! from a proposal keeps its last target.
 
 use super::line_buffer::LineBuffer;
 use crate::emulator::{Bench, Firmware};
@@ -16,9 +16,9 @@ const AXIS: &str = "x";
 
 #[derive(Debug)]
 pub struct Nees {
-    /// One for each of its rams.
+    /// One for each of its actuators.
     control_points: Vec<String>,
-    /// The rams of the bench that are its own, by place.
+    /// The indices of its own actuators on the bench.
     rams: Vec<usize>,
     /// m/s
     speed: f64,
@@ -26,21 +26,21 @@ pub struct Nees {
     session: Session,
 }
 
-/// What is forgotten when the power goes.
+/// The state that is lost at power-off.
 #[derive(Debug, Default)]
 struct Session {
     open: bool,
-    /// The client ends its lines with CR LF.
+    /// The client's line end is CR LF.
     carriage_return: bool,
-    /// Transaction and targets (m, one a ram; None: it moves nothing).
+    /// Transaction and targets (one per actuator \[m\]; None: no motion).
     proposed: Option<(String, Option<Vec<f64>>)>,
-    /// The transaction that is being carried out.
+    /// The transaction in progress.
     executing: Option<String>,
 }
 
 impl Nees {
-    /// A rig with a control point for each ram, of which the one with the farthest way moves at `speed` (m/s). It refuses what
-    /// lies outside the bench's limits.
+    /// A rig with a control point for each actuator. The actuator with the longest move has the speed `speed` \[m/s\]. It
+    /// refuses targets outside the bench's limits.
     #[must_use]
     pub fn new(control_points: Vec<String>, rams: Vec<usize>, speed: f64) -> Self {
         Self {
@@ -133,7 +133,7 @@ impl Nees {
                 let (displacement, force) = (bench.displacement_of(ram), bench.force_of(ram));
                 let line =
                     nees_message::control_point(transaction, point, AXIS, displacement, force);
-                // The force is the last word.
+                // The force is the last field.
                 let (before, ordinary) = line.rsplit_once('\t').unwrap_or((&line, ""));
                 Ok(vec![format!(
                     "{before}\t{}",
@@ -159,7 +159,7 @@ impl Nees {
         }
     }
 
-    /// Where the proposal sends each ram, m; None: nowhere, it is for an auxiliary device.
+    /// Returns the target of each actuator \[m\]; None: the proposal is for an auxiliary device.
     fn targets(
         &self,
         points: &[Point<'_>],

@@ -1,4 +1,4 @@
-//! A meter that speaks SCPI: `*IDN?` and `READ?`. In: lines. Out: who it is; a number in its own unit.
+//! A meter with the SCPI protocol: `*IDN?` and `READ?`. In: lines. Out: its identity; a number in its own unit.
 
 use crate::emulator::{Bench, Firmware};
 
@@ -6,13 +6,13 @@ use crate::emulator::{Bench, Firmware};
 #[derive(Debug)]
 pub struct Scpi {
     serial_number: String,
-    /// The ram and the force of a unit of each channel, N.
+    /// The index of the actuator and the force of one unit \[N\], for each channel.
     channels: Vec<(usize, f64)>,
     line: Vec<u8>,
 }
 
 impl Scpi {
-    /// A meter with a channel for each of these rams, whose unit is so many N.
+    /// A meter with a channel for each of these actuators and the force of one unit \[N\].
     #[must_use]
     pub const fn new(serial_number: String, channels: Vec<(usize, f64)>) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! What the tests of firmware stand on: a bench with a spring, no noise and no quanta.
+//! The bench for the tests of firmware: a spring, without noise and quantization.
 
 use crate::emulator::{Bench, BenchSettings};
 use crate::plan::{Behaviour, Interval};

@@ -1,5 +1,5 @@
-//! A stand reached without a line and without real time, in one thread: ports and a clock for drivers under test. In:
-//! bytes with a time-out. Out: bytes. Waiting is what makes the stand's time pass.
+//! A stand in the same thread, without a line and without real time: ports and a clock for tests of drivers. In: bytes with a
+//! time-out. Out: bytes. The stand's time passes while the host waits.
 
 use std::io::{self, ErrorKind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -8,20 +8,20 @@ use std::time::Duration;
 use crate::emulator::Stand;
 use crate::rig::transport::{Clock, Emergency, Port};
 
-/// Between two looks at the controllers while time passes, s.
+/// Interval between two checks of the controllers while time passes \[s\].
 const SLICE: f64 = 0.001;
-/// Bits on the line for a byte: a start, eight, a stop.
+/// Bits on the line per byte: a start bit, eight data bits, a stop bit.
 const BITS: f64 = 10.0;
-/// Bits a second, where nothing else is said.
+/// Default bit rate \[bit/s\].
 const BAUD: f64 = 115_200.0;
-/// What a line takes in while its controller does not read, bytes.
+/// Bytes that a line stores while its controller does not read.
 const LINE_BUFFER: usize = 4096;
 
-/// A stand whose time is passed by its ports and clock.
+/// A stand whose ports and clock advance its time.
 #[derive(Clone)]
 pub struct InProcess {
     stand: Arc<Mutex<Stand>>,
-    /// Time of one byte, s: every byte takes its time, so that no loop of questions stands still.
+    /// Time of one byte \[s\]. Every byte takes time, so that time passes in a polling loop.
     byte: f64,
 }
 
@@ -34,7 +34,7 @@ impl InProcess {
         }
     }
 
-    /// The same with lines of `baud` bits a second.
+    /// The same stand with lines of `baud` bits per second.
     #[must_use]
     pub fn at_baud(self, baud: f64) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl InProcess {
         }
     }
 
-    /// Opens a line, 0 being the actuator's.
+    /// Opens a line; 0 is the actuator's.
     #[must_use]
     pub fn port(&self, line: usize) -> SimulatedPort {
         self.stand().connect(line);
@@ -60,7 +60,7 @@ impl InProcess {
         SimulatedClock(self.clone())
     }
 
-    /// The stand itself, between two calls of its ports: not to be kept.
+    /// The stand itself, between two calls of its ports. Do not keep the guard.
     pub fn stand(&self) -> MutexGuard<'_, Stand> {
         self.stand.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -87,14 +87,14 @@ impl InProcess {
 pub struct SimulatedPort {
     shared: InProcess,
     line: usize,
-    /// Taken from the stand and not yet read.
+    /// Bytes received from the stand and not yet read.
     come: Vec<u8>,
-    /// Bytes the controller has not taken.
+    /// Number of bytes that the controller has not read.
     unread: usize,
 }
 
 impl SimulatedPort {
-    /// Takes what the controller has for the host now; whether there is anything.
+    /// Gets the bytes that the controller has for the host now. Returns whether there are any.
     fn fetch(&mut self) -> bool {
         if self.come.is_empty() {
             self.come = self.shared.stand().take(self.line).unwrap_or_default();

@@ -1,5 +1,5 @@
-//! A line that looks like a serial port: a pseudo-terminal, and a link to it where a plan looks for its port. In: a
-//! path for the link. Out: a [`Carrier`]. It knows nothing of what is said.
+//! A line that looks like a serial port: a pseudo-terminal, and a link to it at the port's path in the plan. In: a path for the
+//! link. Out: a [`Carrier`]. It does not know the contents of the bytes.
 
 use std::fs::{self, File};
 use std::io::{self, Error, ErrorKind};
@@ -15,23 +15,23 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use super::real_time::Carrier;
 
-/// Where this system keeps the ends of its pseudo-terminals.
+/// The folder of this system for pseudo-terminals.
 const ENDS: &str = "/dev/pts/";
 
-/// A pseudo-terminal for one host after the other.
+/// A pseudo-terminal that serves one host after the other.
 pub struct PseudoTerminal {
     master: OwnedFd,
     /// The end a host opens.
     end: PathBuf,
-    /// What leads there, and is kept leading there.
+    /// The link to this end. It always points to the present end.
     link: PathBuf,
 }
 
 impl PseudoTerminal {
-    /// Opens one, and makes a link to it.
+    /// Opens a pseudo-terminal and makes a link to it.
     ///
     /// # Errors
-    /// There is none to be had, or something else is where the link should be.
+    /// No pseudo-terminal is available, or there is another file at the path of the link.
     pub fn linked(link: &Path) -> io::Result<Self> {
         free(link)?;
         let (master, end) = open()?;
@@ -68,7 +68,7 @@ impl Carrier for PseudoTerminal {
         nothing_is_none(rustix::io::write(&self.master, bytes))
     }
 
-    /// A new pseudo-terminal for each host: a killed one leaves its own marked as in use, and half a conversation in it.
+    /// Opens a new pseudo-terminal for each host. A killed host leaves its own marked as in use, with unread bytes in it.
     fn renew(&mut self) -> io::Result<()> {
         let (master, end) = open()?;
         let mut beside = self.link.clone().into_os_string();
@@ -76,7 +76,7 @@ impl Carrier for PseudoTerminal {
         let beside = PathBuf::from(beside);
         free(&beside)?;
         symlink(&end, &beside)?;
-        // In one stroke: a host that looks meanwhile finds the old end or the new one.
+        // The rename is atomic: a host finds the old end or the new one.
         fs::rename(&beside, &self.link)?;
         (self.master, self.end) = (master, end);
         Ok(())
@@ -91,7 +91,7 @@ impl Drop for PseudoTerminal {
     }
 }
 
-/// Both ends of a new pseudo-terminal, raw, with nobody at the host's end.
+/// Opens both ends of a new pseudo-terminal, raw, without a host.
 fn open() -> io::Result<(OwnedFd, PathBuf)> {
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
     grantpt(&master)?;
@@ -112,7 +112,7 @@ fn open() -> io::Result<(OwnedFd, PathBuf)> {
     Ok((master, PathBuf::from(name)))
 }
 
-/// Makes sure that a link can be made: what is there may only be what a killed simulator left.
+/// Checks that the link can be made: only a link of a killed emulator can be there.
 fn free(link: &Path) -> io::Result<()> {
     let Ok(found) = fs::symlink_metadata(link) else {
         return Ok(());
@@ -168,7 +168,7 @@ mod tests {
         )
     }
 
-    /// One line from the port; nothing where it hung up.
+    /// One line from the port; empty after a hang-up.
     fn line(port: &mut dyn serialport::SerialPort) -> Option<String> {
         let mut text = Vec::new();
         let mut byte = [0];
@@ -185,13 +185,13 @@ mod tests {
                 .timeout(std::time::Duration::from_secs(20))
                 .open()
         };
-        // The link may just be led to the next end.
+        // The link can be missing for a moment while it moves to the next end.
         (0..1000)
             .find_map(|_| open().map_err(|_| std::thread::yield_now()).ok())
             .expect("the port opens")
     }
 
-    /// Ends the serving when it is dropped.
+    /// Ends the serving thread when it is dropped.
     struct Ending<'a>(&'a AtomicBool);
 
     impl Drop for Ending<'_> {
@@ -223,7 +223,7 @@ mod tests {
                 drop(carriers);
                 served
             });
-            // Also where an assertion fails: the scope waits for its thread.
+            // Also after a failed assertion: the scope waits for its thread.
             let ending = Ending(&over);
             let first = fs::read_link(&link).expect("a link");
             let mut port = opened(&link);

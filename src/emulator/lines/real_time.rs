@@ -1,49 +1,49 @@
-//! A stand in real time, for a program on the other side of a real line: reads what hosts send, writes what controllers
-//! say, until it is told to stop. It knows no dialect, and of a line only what [`Carrier`] says.
+//! A stand in real time, for a program on the other side of a real line. It reads the bytes of the hosts and writes those of
+//! the controllers until it is stopped. It knows no protocol. It accesses a line only through [`Carrier`].
 
 use std::io;
 use std::time::{Duration, Instant};
 
 use crate::emulator::Stand;
 
-/// Between two looks at the lines.
+/// Interval between two checks of the lines.
 const NAP: Duration = Duration::from_millis(1);
-/// What is kept for a host that does not read, bytes; more is lost, as it is on a wire.
+/// Bytes stored for a host that does not read. Further bytes are lost, as on a wire.
 const OUTBOX: usize = 4 << 20;
 
-/// What carries the bytes of one line. No call waits.
+/// The transport of the bytes of one line. No call waits.
 pub trait Carrier: Send {
-    /// Whether a host is there now; lets in one that knocks.
+    /// Returns whether a host is connected now; accepts a waiting one.
     ///
     /// # Errors
     /// The line cannot be served any more.
     fn host(&mut self) -> io::Result<bool>;
 
-    /// Bytes that have come; 0: none.
+    /// Reads received bytes; 0: none.
     ///
     /// # Errors
-    /// The host went away.
+    /// The host disconnected.
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
 
-    /// Sends what the line takes, and says how much.
+    /// Sends the bytes that the line accepts and returns their number.
     ///
     /// # Errors
-    /// The host went away.
+    /// The host disconnected.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
 
-    /// Ends with this host, and is ready for the next.
+    /// Closes the connection to this host and prepares for the next.
     ///
     /// # Errors
     /// The line cannot be served any more.
     fn renew(&mut self) -> io::Result<()>;
 }
 
-/// When serving is over.
+/// The conditions that end the serving.
 #[derive(Clone, Copy)]
 pub struct Until<'a> {
-    /// As soon as hosts were there and the last of them is gone.
+    /// Hosts were connected and the last of them has disconnected.
     pub last_host_left: bool,
-    /// Asked again and again.
+    /// Polled periodically.
     pub stopped: &'a dyn Fn() -> bool,
 }
 
@@ -53,7 +53,7 @@ struct Served<'a> {
     outbox: Vec<u8>,
 }
 
-/// Serves a stand, one carrier a line.
+/// Serves a stand, with one carrier per line.
 ///
 /// # Errors
 /// A line cannot be served any more.
@@ -90,10 +90,10 @@ pub fn serve(
 }
 
 impl Served<'_> {
-    /// One look at a line; whether anything was there.
+    /// Checks a line once. Returns whether there were any bytes.
     fn turn(&mut self, stand: &mut Stand, at: usize) -> io::Result<bool> {
         if !self.present {
-            // Nobody hears what is said to nobody.
+            // Bytes without a host are dropped.
             while stand.take(at).is_some() {}
             self.present = self.carrier.host()?;
             if self.present {

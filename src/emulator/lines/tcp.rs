@@ -1,22 +1,22 @@
-//! A line over TCP: listens on this machine only, for one host after the other. In: an address. Out: a [`Carrier`]. It
-//! knows nothing of what is said.
+//! A line over TCP: listens on this machine only, for one host after the other. In: an address. Out: a [`Carrier`]. It does not
+//! know the contents of the bytes.
 
 use std::io::{self, Error, ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs as _};
 
 use super::real_time::Carrier;
 
-/// A listener, and the host it talks to.
+/// A listener and its connected host.
 pub struct TcpLine {
     listener: TcpListener,
     stream: Option<TcpStream>,
 }
 
 impl TcpLine {
-    /// Listens at `host:port`, which must be this machine's own loopback: a rig on a network has no lock on its door.
+    /// Listens at `host:port`. Only a loopback address of this machine is accepted, because the emulator has no access control.
     ///
     /// # Errors
-    /// The address is another machine's, or is taken.
+    /// The address is not a loopback address, or it is in use.
     pub fn at(address: &str) -> io::Result<Self> {
         let loopback = address
             .to_socket_addrs()?
@@ -35,10 +35,10 @@ impl TcpLine {
         })
     }
 
-    /// Where it listens.
+    /// Returns the address of the listener.
     ///
     /// # Errors
-    /// The listener is gone.
+    /// The listener is closed.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
     }

@@ -1,4 +1,4 @@
-//! Scripts: what each line says, and which line is none.
+//! Tests of scripts: the meaning of each line, and invalid lines.
 
 use super::*;
 

@@ -1,17 +1,17 @@
-//! `GLIDE` of the native firmware: smooth ways one behind the other. In: the words of the request. Out: how long it is to the
-//! end of the way, or the code it is refused with. The whole way is held against the limits of the run before it begins.
+//! `GLIDE` of the native firmware: consecutive smooth moves. In: the words of the request. Out: the time to the end of the
+//! move, or the code of a refusal. The whole move is compared with the limits of the run before it begins.
 
 use super::{AxisBounds, Native, decimal, of_axis};
 use crate::emulator::{Bench, NoWay, WayEnd};
 use crate::physics::tracking::trajectory::Path;
 
-/// How long it goes on behind a way that no other follows, s; then it holds.
+/// Duration of the motion after a move without a successor \[s\]; then it holds.
 const GOES_ON: f64 = 0.25;
-/// What is beyond a limit by no more is on it, mm or mm/s: the last bits of a cubic.
+/// Tolerance of a limit \[mm or mm/s\]: the rounding errors of a cubic.
 const ROUNDING: f64 = 1e-6;
 
 impl Native {
-    /// s to the end of the way.
+    /// Returns the time to the end of the move \[s\].
     pub(super) fn glide(
         &mut self,
         id: &str,
@@ -68,7 +68,7 @@ impl Native {
         Ok(bench.follow(Some(id), &paths, &ends, seconds))
     }
 
-    /// Behind a way that no other follows it goes on for a while, and no farther than its limits; then it holds.
+    /// After a move without a successor the motion continues for a short time, within its limits. Then it holds.
     pub(super) fn coast(&mut self, bench: &mut Bench) {
         let Some(gone_on) = bench.gone_on().filter(|_| self.has_all_of(bench)) else {
             return;

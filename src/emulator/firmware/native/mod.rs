@@ -9,26 +9,26 @@ use rand_pcg::rand_core::SeedableRng as _;
 use crate::emulator::{Bench, Firmware};
 use crate::plan::Interval;
 
-/// Longest frame with its ending, bytes: of one axis, of several.
+/// Longest frame with its ending \[bytes\]: with one axis, with several.
 const LONGEST: usize = 96;
 const LONGEST_OF_SEVERAL: usize = 512;
-/// Most readings of one `MEAS`.
+/// Maximum number of readings of one `MEAS`.
 const MOST_READINGS: usize = 1000;
-/// What stands for a limit there is none of: mm and mm/s, N.
+/// Value that stands for an absent limit: mm and mm/s, N.
 const NO_LIMIT_MM: f64 = 999.0;
 const NO_LIMIT_N: f64 = 99_999.0;
 
-/// What a native rig is beside its bench.
+/// Settings of a native rig in addition to its bench.
 #[derive(Clone, Debug)]
 pub struct NativeSettings {
     pub serial_number: String,
-    /// The rams that its axes are, by place; None: all of the bench.
+    /// The indices of the actuators that are its axes; None: all of the bench.
     pub rams: Option<Vec<usize>>,
-    /// One an axis, N; an axis without an entry has none.
+    /// One per axis \[N\]; an axis without an entry has no force limit.
     pub force_limits: Vec<Interval>,
-    /// Silence after which it holds, s.
+    /// Communication time-out after which it holds \[s\].
     pub watchdog: f64,
-    /// Word of its first power-up; None: drawn.
+    /// Boot identifier of its first power-up; None: random.
     pub boot: Option<u16>,
 }
 
@@ -44,7 +44,7 @@ impl Default for NativeSettings {
     }
 }
 
-/// Limits in the units of the wire.
+/// Limits in the units of the protocol.
 #[derive(Clone, Debug)]
 struct Bounds {
     axes: Vec<AxisBounds>,
@@ -60,7 +60,7 @@ struct AxisBounds {
 }
 
 impl AxisBounds {
-    /// Of the four words of an axis.
+    /// Parses the four words of an axis.
     fn of(words: &[&str]) -> Option<Self> {
         let [low, high, least, most] = words else {
             return None;
@@ -83,23 +83,23 @@ impl AxisBounds {
 #[derive(Debug)]
 pub struct Native {
     settings: NativeSettings,
-    /// Which ram each axis is.
+    /// The index of the actuator of each axis.
     rams: Vec<usize>,
     generator: Pcg64,
     boot: u16,
-    /// What has come of the line; one that fills it is no frame.
+    /// The received part of a line. A line that fills the buffer is not a frame.
     line: Vec<u8>,
-    /// Sequence number of the last request, and what was answered.
+    /// Sequence number of the last request, and the answer to it.
     last: Option<(u32, Vec<u8>)>,
     own: Bounds,
-    /// Those of the run, within its own.
+    /// The limits of the run, within those of the rig.
     run: Bounds,
-    /// Number and targets (mm) of the last move it began.
+    /// Number and targets \[mm\] of the last started move.
     last_move: Option<(u64, Vec<f64>)>,
     referenced: bool,
     held: bool,
     watchdog_tripped: bool,
-    /// When a valid frame last came, s.
+    /// Time of the last valid frame \[s\].
     heard: Option<f64>,
 }
 
@@ -175,7 +175,7 @@ impl Native {
         }
     }
 
-    /// Of a part of the bench it follows no way: another controller moves it.
+    /// Whether it controls the whole bench. Otherwise another controller moves the rest, and it follows no smooth move.
     const fn has_all_of(&self, bench: &Bench) -> bool {
         self.rams.len() == bench.rams()
     }
@@ -184,7 +184,7 @@ impl Native {
         bench.any_moving(&self.rams)
     }
 
-    /// One line without its ending → the answer, if it was a frame.
+    /// Parses one line without its ending and returns the answer, if the line was a frame.
     fn frame(&mut self, line: &[u8], bench: &mut Bench) -> Option<Vec<u8>> {
         let text = std::str::from_utf8(line.strip_prefix(b">")?).ok()?;
         let (body, stated) = text.rsplit_once('*')?;
@@ -310,7 +310,7 @@ impl Native {
         )
     }
 
-    /// All axes go, or none.
+    /// Moves all axes or none.
     fn move_to(
         &mut self,
         id: &str,
@@ -359,7 +359,7 @@ impl Native {
         Ok(())
     }
 
-    /// The medians of some readings.
+    /// Returns the medians of several readings.
     fn measure(&self, count: usize, bench: &mut Bench) -> String {
         let told = |(axis, ram): (usize, &usize)| {
             let ram = *ram;
@@ -389,7 +389,7 @@ impl Native {
         }
     }
 
-    /// Those of any axis.
+    /// The flags of all axes, combined.
     fn all_flags(&self, bench: &Bench) -> u16 {
         (0..self.run.axes.len()).fold(0, |flags, axis| flags | self.flags(axis, false, bench))
     }
@@ -399,7 +399,7 @@ impl Native {
             bench.commanded_of(self.rams[axis]) * 1e3,
             self.run.axes[axis].displacement,
         );
-        // Standing on a limit is within it, also for the last bits of a turn to mm.
+        // A position on a limit is within it. The conversion to mm has rounding errors.
         let beyond = |excess: f64| excess > 1e-6;
         let bits = [
             saturated,
@@ -474,7 +474,7 @@ impl Firmware for Native {
     }
 }
 
-/// A code with the axis it is of, from 1, where there are several.
+/// Adds the axis, from 1, to a code if there are several axes.
 fn of_axis(code: &str, axis: usize, axes: usize) -> String {
     if axes > 1 {
         format!("{code} {}", axis + 1)
@@ -483,7 +483,7 @@ fn of_axis(code: &str, axis: usize, axes: usize) -> String {
     }
 }
 
-/// A number as the wire has it: digits, at most one point with digits on both sides, no exponent.
+/// Parses a number of the protocol: digits, at most one point with digits on both sides, no exponent.
 fn decimal(word: &str) -> Option<f64> {
     let digits = word.strip_prefix('-').unwrap_or(word);
     let (whole, fraction) = digits.split_once('.').unwrap_or((digits, "0"));
@@ -500,7 +500,7 @@ fn decimal(word: &str) -> Option<f64> {
 fn crc(bytes: &[u8]) -> u16 {
     let mut crc = 0xffff_u16;
     for byte in bytes {
-        // The classical byte-wise form, other than the driver's shift register.
+        // The classical byte-wise form, different from the driver's shift register.
         let mut mixed = crc >> 8 ^ u16::from(*byte);
         mixed ^= mixed >> 4;
         crc = crc << 8 ^ mixed << 12 ^ mixed << 5 ^ mixed;
@@ -508,7 +508,7 @@ fn crc(bytes: &[u8]) -> u16 {
     crc
 }
 
-/// A request with its checksum, for tests that stand in for a host.
+/// A request with its checksum, for tests that act as a host.
 #[cfg(test)]
 pub fn sealed(body: &str) -> Vec<u8> {
     format!(">{body}*{:04X}\n", crc(body.as_bytes())).into_bytes()

@@ -1,4 +1,4 @@
-//! The native firmware against the reference's vectors and rules.
+//! Tests of the native firmware against the vectors and rules of the reference.
 
 use super::*;
 use crate::emulator::RamSettings;
@@ -18,7 +18,7 @@ fn rig() -> (Native, Bench) {
     (Native::new(settings, &bench), bench)
 }
 
-/// The words of the answer to a request.
+/// Returns the words of the answer to a request.
 fn ask(rig: &mut (Native, Bench), body: &str) -> String {
     let said = rig.0.receive(&sealed(body), &mut rig.1);
     let said = String::from_utf8(said).expect("text");
@@ -203,7 +203,7 @@ fn silence_holds_until_it_is_cleared() {
     rig.1.advance(3.0);
     rig.0.tick(&mut rig.1);
     assert!(rig.1.moving());
-    // A broken frame is no sign of life.
+    // An invalid frame does not count as a heartbeat.
     rig.0.receive(b">STAT 42*0000\n", &mut rig.1);
     rig.1.advance(3.001);
     rig.0.tick(&mut rig.1);
@@ -256,7 +256,7 @@ fn a_new_power_up_has_another_word_and_trusts_nothing() {
     assert!(ask(&mut rig, "MOVE 5 1 1.000000 1.000000").ends_with(" MOVING"));
 }
 
-/// Two rams on storeys of 3 and 2 kN/m.
+/// Two actuators on storeys of 3 and 2 kN/m.
 fn of_two() -> (Native, Bench) {
     let limits = |size: f64| RamSettings {
         sign: 1.0,
@@ -303,7 +303,7 @@ fn two_axes_are_moved_by_one_request_and_read_by_one() {
         "ACK 2 7F3A MOVING"
     );
     rig.1.advance(1.0);
-    // Half the way of both: drifts of half a millimetre.
+    // Half of both moves: storey drifts of half a millimetre.
     let reading = ask(&mut rig, "MEAS 3 1");
     assert!(
         reading.contains(" 0.500000 0.500 ") && reading.contains(" 1.000000 1.000 "),
@@ -454,7 +454,7 @@ fn a_glide_is_passed_and_gone_on_from_until_the_next_one_or_the_hold() {
 fn a_glide_is_judged_on_its_whole_way() {
     let mut rig = of_two();
     ask(&mut rig, "HELLO 1");
-    // Out to 5.12 mm and back to 4 mm: one axis may go to 5 mm, the other to 10 mm.
+    // To 5.12 mm and back to 4 mm: one axis is limited to 5 mm, the other to 10 mm.
     for (sequence, request, answer) in [
         (
             2,
@@ -476,7 +476,7 @@ fn a_glide_is_judged_on_its_whole_way() {
             "1 0.000000 0.000000 4.000000 -4.000000 3000.000",
             "ACK 5 7F3A MOVING 3000.000",
         ),
-        // Behind that one, where the other axis is at rest.
+        // After that one, where the other axis is at rest.
         (
             6,
             "1 0.000000 0.000000 4.000000 0.000000 3000.000",
