@@ -42,7 +42,7 @@ use crate::uncertainty::Source;
 use facts::{Delay, Facts, Leaves, Recorded, Tests};
 use impact::check::judge::Strikers;
 
-/// Check: the procedure that a block specifies; None after an error, and for a block that is no procedure.
+/// Check: the procedure that a block specifies; None after an error, and for a block that does not declare a procedure.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     match checker.scope.blocks[block].kind.kind {
         Kind::StiffnessRamp => stiffness_ramp::check::stiffness_ramp(checker, block),
@@ -174,7 +174,7 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
     }
 }
 
-/// Report: what is to be known of what a procedure recorded.
+/// Report: the observations on the record of a procedure.
 pub(crate) fn recorded(history: &History) -> Recorded {
     match history {
         History::Ramp(history) => stiffness_ramp::facts::recorded(history),
@@ -217,7 +217,7 @@ pub(crate) fn run(
     }
 }
 
-/// Run: gives the fitted results of a procedure their contributions, those of its own uncertainty apart.
+/// Run: gives the fitted results of a procedure their contributions, except those of its own uncertainty.
 pub(crate) fn attribute(
     kind: &ProcedureKind,
     history: &History,
@@ -310,7 +310,7 @@ pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
     }
 }
 
-/// Report: a figure and its caption; None where the record has nothing for it.
+/// Report: a figure and its caption; None if nothing is recorded for it.
 pub(crate) fn chart(
     run: &Run<'_>,
     procedure: &ProcedureRecord,

@@ -1,15 +1,16 @@
-//! How fast a load may grow before a portal leaves its mechanism. In: a portal under one load that says what its members weigh. Out: the
-//! load up to which no hinge forms but those of the mechanism. What comes after (hinges that travel, waves) it does not know.
+//! The largest load for which a dynamically loaded portal stays in its mechanism. In: a portal under one load, with the masses of its
+//! members. Out: the load up to which only the hinges of the mechanism form. It does not calculate later effects (travelling hinges,
+//! waves).
 //!
-//! Statically the hinges are where the loads and the corners are (Melo et al. 2006, Fig. 3). The members' own inertia bends them, too, and when the
-//! load is high it makes other hinges nearer to it (Fig. 4: the paper draws them, and gives no rule). Derived here, of a rigid–plastic
-//! frame at rest: beyond collapse the mechanism turns with the acceleration α that the work of load, hinges and inertia gives, and it is
-//! what happens as long as the moments nowhere exceed what the sections carry (both bounds of plastic theory then meet).
+//! Statically the hinges are at the loads and at the corners (Melo et al. 2006, Fig. 3). The inertia of the members bends them too. Under
+//! a high load it forms other hinges nearer to the load (Fig. 4: the paper draws them without a rule). The rule here is derived for a
+//! rigid–plastic frame at rest. Beyond collapse the mechanism rotates with the acceleration α from the work of load, hinges and inertia.
+//! This solution applies as long as no moment exceeds the plastic moment of the section (both bounds of plastic theory then agree).
 
 use crate::structure::portal::{FrameMasses, Loads, Portal, Sections};
 
-/// The largest such load, N; infinite where the members that turn have no mass between the hinges. None under two loads together,
-/// whose mechanisms change into one another first, and where the plan does not say what the frame weighs.
+/// The largest such load \[N\]; infinite if the rotating members have no mass between the hinges. None under two loads together, whose
+/// mechanisms change into one another first, and without stated masses of the frame.
 #[must_use]
 pub fn mechanism_limit(portal: &Portal) -> Option<f64> {
     let masses = portal.masses?;
