@@ -164,7 +164,7 @@ pub(crate) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
     }
 }
 
-/// `stated`: of half the difference of two readings.
+/// `stated`: the variance of half the difference of two readings.
 fn fit_of(pairs: &[(f64, f64)], stated: StatedVariance) -> Option<LineFit> {
     let (velocities, forces): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
     let speeds: Vec<f64> = velocities
@@ -175,7 +175,7 @@ fn fit_of(pairs: &[(f64, f64)], stated: StatedVariance) -> Option<LineFit> {
     fit_damping(&velocities, &forces).map(|fit| fit.stated(&speeds, stated, 0.0))
 }
 
-/// ∂c/∂K (s) and ∂F_c/∂K (m), K the stiffness that brings the readings of each pair to one place.
+/// ∂c/∂K \[s\] and ∂F_c/∂K \[m\], with K the stiffness that corrects the readings of each pair to one position.
 fn effects_of_stiffness<'a>(pairs: impl Iterator<Item = &'a OutAndBack>) -> [f64; 2] {
     let moving = pairs.filter(|pair| pair.velocity != 0.0);
     let (speeds, apart): (Vec<f64>, Vec<f64>) = moving
@@ -194,9 +194,9 @@ fn effects_of_stiffness<'a>(pairs: impl Iterator<Item = &'a OutAndBack>) -> [f64
 pub(super) struct Stroke {
     pub out: Range<usize>,
     pub back: Range<usize>,
-    /// Commanded, m/s.
+    /// Commanded \[m/s\].
     pub speed: f64,
-    /// Whether every reading was made at the time that was asked for.
+    /// Whether every reading was made at the requested time.
     pub on_grid: bool,
 }
 
@@ -204,23 +204,23 @@ pub(super) struct Sweep {
     pub steps: Vec<SweepStep>,
     /// The steps of each stroke that was completed, out and back.
     pub strokes: Vec<Stroke>,
-    /// K of the plan, N/m.
+    /// K of the plan \[N/m\].
     pub stiffness: Option<Estimate>,
-    /// s
+    /// \[s\]
     pub lag: f64,
-    /// Whether the rig reads at the times that are asked for.
+    /// Whether the rig reads at the requested times.
     pub exact: bool,
 }
 
 /// A commanded constant-velocity pass.
 #[derive(Clone, Copy)]
 struct Pass {
-    /// m
+    /// \[m\]
     from: f64,
     to: f64,
-    /// Signed, m/s.
+    /// With its sign \[m/s\].
     velocity: f64,
-    /// s
+    /// \[s\]
     seconds: f64,
     samples: usize,
 }
@@ -293,7 +293,7 @@ impl Sweep {
                 speed: speed.abs(),
                 on_grid,
             });
-            // A pass ends in motion: the piston comes to rest at home before the next reading or command.
+            // A pass ends in motion: the piston stops at home before the next reading or command.
             session.guard.move_to(&[home], None)?;
         }
         Ok(())
@@ -383,7 +383,7 @@ impl Sweep {
             .collect()
     }
 
-    /// K of the plan, N/m.
+    /// K of the plan \[N/m\].
     pub(super) fn planned(&self) -> f64 {
         self.stiffness.map_or(0.0, |stiffness| stiffness.value)
     }

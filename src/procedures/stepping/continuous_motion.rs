@@ -23,9 +23,9 @@ const BRAKING: f64 = 5.0;
 /// The point that an actuator passes at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Passing {
-    /// m
+    /// \[m\]
     pub place: f64,
-    /// m/s, of virtual time.
+    /// \[m/s\] of simulated time.
     pub velocity: f64,
     /// Whether a contact force contributes to the velocity.
     pub struck: bool,
@@ -34,11 +34,11 @@ pub(crate) struct Passing {
 /// The motion of an actuator at the end of the last path.
 #[derive(Clone, Copy)]
 struct Motion {
-    /// m
+    /// \[m\]
     place: f64,
-    /// m/s, of rig time.
+    /// \[m/s\] of laboratory time.
     velocity: f64,
-    /// Mean over the last step, m/s²: the next parabola has it.
+    /// Mean over the last step \[m/s²\]; the next parabola uses it.
     acceleration: f64,
 }
 
@@ -46,12 +46,12 @@ struct Motion {
 pub(crate) struct Gliding {
     axes: Vec<Motion>,
     time_scale: f64,
-    /// Rig time of a step, s.
+    /// Laboratory time of a step \[s\].
     step_time: f64,
 }
 
 impl Gliding {
-    /// From rest at these positions (m); `time_step` of virtual time, s.
+    /// From rest at these positions \[m\]; `time_step` in simulated time \[s\].
     pub(crate) fn from_rest(places: &[f64], time_scale: f64, time_step: f64) -> Self {
         let axes = places
             .iter()
@@ -68,8 +68,8 @@ impl Gliding {
         }
     }
 
-    /// One step: the reading at its end; or the one that violated a limit, with the stop that follows. `predict` is called while the
-    /// actuators move.
+    /// One step: the reading at its end. If a reading violates a limit, that reading with the stop that follows. `predict` is called
+    /// while the actuators move.
     pub(crate) fn step(
         &mut self,
         predict: impl FnOnce() -> Vec<Passing>,
@@ -111,7 +111,7 @@ impl Gliding {
         follow(&paths, READINGS.1, session)
     }
 
-    /// Comes to rest at constant deceleration.
+    /// Stops with constant deceleration.
     pub(crate) fn brake(&self, session: &mut Session<'_>) -> Result<(), Stop> {
         let seconds = BRAKING * self.step_time;
         let brake = |axis: &Motion| {
@@ -126,7 +126,7 @@ impl Gliding {
     }
 }
 
-/// Follows paths: the reading at their end; or the one that violated a limit, with the stop that follows.
+/// Follows paths and returns the reading at their end. If a reading violates a limit, that reading with the stop that follows.
 fn follow(
     paths: &[Path],
     readings: usize,
