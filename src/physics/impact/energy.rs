@@ -24,6 +24,6 @@ pub struct Energies {
     pub indentation: f64,
     /// Work of the striker's weight, Ms g (Xs − Xs₀), an input where it falls \[J\].
     pub weight: f64,
-    /// What remains of the input: the integration error.
+    /// The remainder of the input: the integration error.
     pub error: f64,
 }

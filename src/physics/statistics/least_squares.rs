@@ -14,16 +14,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Steps of one descent, at most.
+/// Largest number of steps of one descent.
 const MAX_STEPS: usize = 60;
-/// A step is halved so often, at most.
+/// Largest number of halvings of a step.
 const MAX_HALVINGS: usize = 12;
 /// A step shorter than this in every parameter ends the descent. Parameters are therefore chosen of the order of 1.
 const SHORTEST_STEP: f64 = 1e-10;
 
-/// A model of readings, as the residuals that it leaves.
+/// A model of readings, given by its residuals.
 pub trait Residuals {
-    /// r(p), reading minus model; None where the model has no value.
+    /// r(p), reading minus model; None if the model has no value.
     fn residuals(&self, parameters: &DVector<f64>) -> Option<DVector<f64>>;
 
     /// J = ∂r/∂p, one column for each parameter.
@@ -161,8 +161,8 @@ impl Covariance {
         self.between(gradient, gradient).max(0.0).sqrt()
     }
 
-    /// The lower triangle L with V = LLᵀ, the parameters taken in `order`: row by row the independent contributions to each of
-    /// them. Zero for readings without scatter.
+    /// The lower triangle L with V = LLᵀ, the parameters in the order `order`: row by row the independent contributions to each of them.
+    /// Zero for readings without scatter.
     #[must_use]
     pub fn independent(&self, order: &[usize]) -> DMatrix<f64> {
         let ordered = self.0.select_rows(order).select_columns(order);
