@@ -241,7 +241,7 @@ impl Behaviour {
                 at: Breaks::Force(force),
             } => of.capacity().min(*force),
             Self::Fracture { of, .. } | Self::Rate { of, .. } => of.capacity(),
-            // What was lost one way is felt more the other way.
+            // The loss in one direction increases the force in the other direction.
             Self::Logarithmic {
                 of,
                 share,

@@ -1,12 +1,12 @@
 //! Continuous motion: the actuators do not stop at the steps. They follow smooth paths together, and are read as they pass their
 //! targets. In: for each step the waypoints with their velocities. Out: the reading there. It knows no equation of motion.
 //!
-//! A step of Δt takes `time_scale`·Δt of laboratory time. While its reading is made durable and its targets are computed, the
-//! actuators continue along parabolas, from their position and velocity with the mean acceleration of the step before: this part does
-//! not depend on the reading. If a contact force contributed to that acceleration, it is no trend, and the velocity stays constant.
-//! For the rest of the step each actuator follows a cubic to its target, which it passes with the velocity that the integrator
-//! predicts there, divided by the time scale. Position and velocity are continuous everywhere (the guard refuses a path that does not
-//! join). The last reading is made at the target.
+//! A step of Δt takes `time_scale`·Δt of laboratory time. While its reading is stored and its targets are computed, the actuators
+//! continue along parabolas, from their position and velocity with the mean acceleration of the step before. This part does not depend on
+//! the reading. If a contact force contributed to that acceleration, it is not a trend, and the velocity stays constant. For the rest of
+//! the step each actuator follows a cubic to its target. It passes the target with the velocity that the integrator predicts there,
+//! divided by the time scale. Position and velocity are continuous everywhere (the guard refuses a path that does not join). The last
+//! reading is made at the target.
 
 use crate::physics::tracking::trajectory::Path;
 use crate::rig::{Reading, RigFault};

@@ -21,9 +21,9 @@ pub fn mechanism_limit(portal: &Portal) -> Option<f64> {
     }
 }
 
-/// A column turns about its foot: with y from there, its inertia −m α y bends it to M(y) = −M_c + V y + m α y³/6, and
-/// M(h) = m_corner gives V h = M_c + m_corner − m α h³/6. M falls below −M_c as soon as V < 0: at m α h³/6 = M_c + m_corner. Then
-/// H h = 2(M_c + m_corner) + α(⅔ m h³ + what the beam's level carries · h²).
+/// A column rotates about its foot: with y from there, its inertia −m α y bends it to M(y) = −M_c + V y + m α y³/6, and M(h) = m_corner
+/// gives V h = M_c + m_corner − m α h³/6. M falls below −M_c as soon as V < 0: at m α h³/6 = M_c + m_corner. Then H h = 2(M_c + m_corner)
+/// + α(⅔ m h³ + mass at the beam's level · h²).
 fn sway(portal: &Portal, masses: FrameMasses) -> f64 {
     let Portal { span, height, .. } = *portal;
     let hinges = portal.plastic_moment.column + portal.plastic_moment.corner();
@@ -54,7 +54,7 @@ fn beam(portal: &Portal, masses: FrameMasses) -> f64 {
     (2.0 * hinges + 4.0 * q + 6.0 * q * masses.midspan / own) / half
 }
 
-/// Where a function that grows from 0 without bound comes to `wanted`, by bisection; `scale` is the size of its argument.
+/// The argument at which a function that grows from 0 without bound equals `wanted`, by bisection; `scale` is the size of its argument.
 fn excess(of: impl Fn(f64) -> f64, wanted: f64, scale: f64) -> f64 {
     if wanted <= 0.0 {
         return 0.0;
