@@ -39,7 +39,7 @@ pub(crate) struct Facts<'a> {
 pub(crate) struct Recorded {
     /// Whether the numbers of its lists have a separate table.
     pub lists_are_tabled: bool,
-    /// Integrated virtual time (s), and the laboratory time (s) that it took.
+    /// Integrated simulated time \[s\], and the laboratory time \[s\] that it took.
     pub time_spans: Option<(f64, f64)>,
     /// Results that have an uncertainty budget where no requirement reads any.
     pub budgeted: &'static [&'static str],

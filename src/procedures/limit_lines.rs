@@ -80,7 +80,7 @@ fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
 /// A label that fits into a picture, on one line.
 fn short(label: &str) -> String {
     const LONGEST: usize = 40;
-    // The label is measured as it is drawn.
+    // The width of the label is that of the text as drawn.
     let label = crate::text::glyphs::shown(label);
     let mut text: String = label
         .chars()

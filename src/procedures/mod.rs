@@ -294,7 +294,7 @@ pub(crate) fn known_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     }
 }
 
-/// Check: how late the actuators of a virtual rig are; None where not enough is known before the run, or nothing is integrated.
+/// Check: the delay of the actuators of a simulated rig; None if too little is known before the run, or nothing is integrated.
 pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
     match kind {
         ProcedureKind::Impact(impact) => impact::delay::of_impact(plan, impact),
@@ -365,7 +365,7 @@ pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     }
 }
 
-/// Check and accepted results: the numeric columns of the tables of a block; none where it has none.
+/// Check and accepted results: the numeric columns of the tables of a block; none without tables.
 pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
     let tables: &[&[Column]] = match kind {
         Kind::StiffnessRamp | Kind::Move => &[stiffness_ramp::tables::COLUMNS],
@@ -441,7 +441,7 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
     }
 }
 
-/// Report: gives displacement (m) and force (N) of every axis, row by row of a procedure's table.
+/// Report: gives displacement \[m\] and force \[N\] of every axis, row by row of a procedure's table.
 pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
     match history {
         History::Ramp(RampHistory { steps, .. }) | History::Move(steps) => {

@@ -1,4 +1,4 @@
-//! How far a run took its channels: the largest displacement and force, by size, in its tables. In: a record. Out: numbers.
+//! The peak absolute displacement and force of the channels of a run, from its tables. In: a record. Out: numbers.
 
 use crate::record::ImpactHistory;
 

@@ -1,4 +1,4 @@
-//! How procedures name their results, and give them their contributions. A number that is not finite does not exist in the run.
+//! The names of the results of procedures, and their contributions. A number that is not finite does not exist in the run.
 
 use crate::plan::formula::ResultValue;
 use crate::record::NamedResult;

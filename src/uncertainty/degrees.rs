@@ -94,7 +94,7 @@ pub fn known(parts: &[Contribution], results: &dyn Results) -> Option<Known> {
     Some(Known { standard, degrees })
 }
 
-/// The same of each of `count` entries of a list.
+/// As [`known`], for each of `count` entries of a list.
 #[must_use]
 pub fn known_entries(
     parts: &[Contribution],

@@ -20,7 +20,7 @@ impl StepState {
     }
 }
 
-/// How striker and structure meet.
+/// The contact law between striker and structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactLaw {
     /// One velocity while they touch (Melo et al. 2006, eq. 4).

@@ -1,5 +1,5 @@
-//! A multilinear curve fitted to a ramp or a backbone: straight segments that meet at breakpoints. In: displacements and forces, and
-//! how many breakpoints. Out: the stiffness of every segment and the breakpoints, with standard errors. It knows no rig and no plan.
+//! A multilinear curve fitted to a ramp or a backbone: straight segments that meet at breakpoints. In: displacements and forces, and the
+//! number of breakpoints. Out: the stiffness of every segment and the breakpoints, with standard errors. It knows no rig and no plan.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +14,7 @@ pub const MOST_BREAKS: usize = 8;
 /// Scatter below this fraction of the largest force is rounding and no reason for another breakpoint.
 const ROUNDING: f64 = 1e-9;
 
-/// How many breakpoints a curve has.
+/// The number of breakpoints of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BreakCount {
     Exactly(usize),
@@ -186,7 +186,7 @@ fn chosen(lines: Vec<Polyline>, count: usize) -> Option<(Polyline, Vec<f64>)> {
     ))
 }
 
-/// Readings of a ramp, scaled so that all sums are of the order of 1 and the ramp goes to positive x.
+/// Readings of a ramp, scaled so that all sums are of the order of 1 and the ramp has positive x.
 pub(super) struct ScaledCurve {
     /// Displacement and force over their scales, in order of displacement.
     pub points: Vec<(f64, f64)>,

@@ -105,7 +105,7 @@ impl Residuals for Breakpoints<'_> {
         Some(DVector::from_iterator(self.points.len(), left))
     }
 
-    /// −∂y/∂τ, less the part of it that the coefficients take up.
+    /// −∂y/∂τ, minus the part that the coefficients explain.
     fn jacobian(&self, parameters: &DVector<f64>) -> Option<DMatrix<f64>> {
         let line = Polyline::with_breakpoints(self.points, parameters.as_slice())?;
         let mut jacobian = DMatrix::zeros(self.points.len(), parameters.len());

@@ -38,7 +38,7 @@ pub struct ImpactSolver<V: Vector = f64> {
 /// That on one floor of a frame.
 pub type FrameImpactSolver = ImpactSolver<Vec<f64>>;
 
-/// How far and how fast a structure can still move its struck degree of freedom with the energy that it has.
+/// Bounds of the displacement and velocity that the energy of a structure still allows at its struck degree of freedom.
 #[derive(Clone, Debug)]
 struct Reach<V: Vector> {
     stiffness: <V::Matrix as Matrix>::Factor,

@@ -323,7 +323,7 @@ impl Between {
 
 /// The end of the run, inside its last step if the run ends at a velocity of zero.
 struct Ending {
-    /// Of the last step.
+    /// Fraction of the last step.
     share: f64,
     /// \[m\]
     displacement: f64,

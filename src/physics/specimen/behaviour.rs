@@ -7,7 +7,7 @@ use crate::structure::beam::{self, Beam};
 use crate::structure::portal::Portal;
 use crate::structure::portal::mass::{self, EquivalentMasses};
 
-/// Restoring force of a virtual specimen against displacement.
+/// Restoring force of a simulated specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Behaviour {
     /// R = K X, K \[N/m\].

@@ -19,7 +19,7 @@ pub struct Beam {
     pub own_mass: Option<f64>,
 }
 
-/// How the ends of a beam are held (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
+/// The supports of a beam (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ends {
     Cantilever,

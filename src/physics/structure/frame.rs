@@ -33,14 +33,14 @@ pub struct Storey {
     pub height: Option<f64>,
     /// Restoring-force model: storey shear against storey drift.
     pub behaviour: Behaviour,
-    /// On the load cells of a virtual rig, N·s/m of drift velocity.
+    /// Damping on the load cells of a simulated rig, per drift velocity of the storey \[N·s/m\].
     pub damping: f64,
     /// The same, N: friction against the drift.
     pub coulomb: f64,
 }
 
 impl Storey {
-    /// Of this mass (kg), stiffness (N/m) and behaviour, and nothing else stated.
+    /// A storey of this mass \[kg\], stiffness \[N/m\] and behaviour, without other properties.
     #[must_use]
     pub const fn new(mass: f64, stiffness: f64, behaviour: Behaviour) -> Self {
         let (mass_uncertainty, stiffness_uncertainty) = (0.0, 0.0);

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Hermite's cubic, in rig time.
+/// Hermite's cubic, in laboratory time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Path {
     /// m

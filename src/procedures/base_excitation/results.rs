@@ -1,5 +1,5 @@
-//! The results of a shake: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in the
-//! schema's order. It moves nothing.
+//! The results of a ground-motion test: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in
+//! the schema's order. It moves nothing.
 
 use crate::physics::integrator::state::FrameState;
 use crate::physics::statistics::noisy_largest::NoisyLargest;

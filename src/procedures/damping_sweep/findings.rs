@@ -13,7 +13,7 @@ const FEW: usize = 3;
 /// Relative velocity error of the piston that has no observation.
 const OFF_SPEED: f64 = 0.05;
 
-/// The K of the strokes contradicts that of the plan if the two differ by so many standard errors, and by this fraction.
+/// The K of the strokes contradicts that of the plan if the two differ by this many standard errors, and by the fraction below.
 const CONTRADICTS: f64 = 5.0;
 const OFF_STIFFNESS: f64 = 0.1;
 

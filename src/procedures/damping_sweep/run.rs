@@ -1,15 +1,15 @@
 //! `damping sweep` (Melo et al. 2006, sec. 6 (b)): constant-velocity passes over one stroke and back, at increasing velocities.
 //! In: velocities, stroke, the K of an earlier ramp. Out: c and the Coulomb force by `F_d = R − K·X = c·v + F_c·sign v`.
 //!
-//! X and R are as measured, X from the rig's zero. A zero offset of the load cell adds the same force to both directions at one
-//! position. The fit uses half the difference between a reading and the one at the same position on the return, so that the offset does
-//! not affect c, `F_c` or their standard errors. The K of the plan does not affect them either: a lagging actuator is behind in both
-//! directions, and the distance between the two positions of a pair is corrected with the stiffness of the strokes themselves, whose
-//! error is one of c. Yielding of the specimen does not affect them: with `about`, one unread stroke precedes the first that is read,
-//! and a stroke with plastic deformation is left out.
+//! X and R are as measured, X from the rig's zero. A zero offset of the load cell adds the same force to both directions at one position.
+//! The fit uses half the difference between a reading and the one at the same position on the return. The offset therefore does not
+//! affect c, `F_c` or their standard errors. The K of the plan does not affect them either. A lagging actuator is behind in both
+//! directions: the distance between the two positions of a pair is corrected with the stiffness of the strokes themselves, whose error
+//! contributes to c. Yielding of the specimen does not affect them: with `about`, one unread stroke precedes the first that is read, and
+//! a stroke with plastic deformation is left out.
 //!
-//! A rig that reads at the times that are asked for has nearly the same positions out and back. For a rig that reads when it can, the
-//! measured fraction of the stroke determines the steady part, and the pass with fewer readings is paired with the other one
+//! A rig that reads at the requested times has nearly the same positions out and back. For a rig that reads at its own times, the
+//! measured fraction of the stroke determines the steady part. The pass with fewer readings is then paired with the other one
 //! interpolated.
 
 use std::ops::Range;
@@ -88,7 +88,7 @@ pub(crate) fn perform(
         effects: effects_of_stiffness(kept().flat_map(|(_, pairs)| pairs)),
     };
     let instruments = InstrumentUncertainty::of(whole, session.guard.declared_noise(), 1);
-    // With a lag, or readings at other times than asked for, the displacements out and back differ.
+    // With a lag, or readings at other times than requested, the displacements out and back differ.
     let apart = whole.rig.link.as_real().is_some() || together.effects != [0.0; 2];
     let of_reading = instruments.stated_variance(0, 1);
     let force = 0.5 * of_reading.about(if apart { stiffness } else { 0.0 });

@@ -126,7 +126,7 @@ impl FloorSummary {
         &self.storey_energy
     }
 
-    /// Virtual time of the first contact, s; None where there was none.
+    /// Simulated duration of the first contact \[s\]; None without contact.
     pub(crate) fn contact_duration(&self) -> Option<f64> {
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
         (self.first_impact > 0).then_some(self.first_impact as f64 * self.time_step)

@@ -26,7 +26,7 @@ pub(crate) fn force_displacement(history: &EscalateHistory) -> Chart {
     )
 }
 
-/// Displacement against the virtual time of each impact.
+/// Displacement against the simulated time of each impact.
 pub(crate) fn displacement(history: &EscalateHistory) -> Chart {
     let of = |step: &ImpactStep| (step.time, step.command);
     let displaced = Quantity {

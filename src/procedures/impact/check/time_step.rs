@@ -10,8 +10,8 @@ pub(crate) fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Opt
     impact.critical_time_step(striker, Formula::constant)
 }
 
-/// Δtc, s, with a predicted stiffness where an earlier procedure is to measure it: the initial one of the specimen of a virtual rig.
-/// The second value is true if Δtc is such a prediction.
+/// Δtc \[s\]. If an earlier procedure measures the stiffness, it uses the initial stiffness of the specimen of a simulated rig. The
+/// second value is true if Δtc is such a prediction.
 pub(crate) fn predicted_critical(
     checker: &Checker,
     impact: &Impact,
