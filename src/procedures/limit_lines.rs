@@ -53,7 +53,7 @@ pub(crate) fn limits_on(
     lines
 }
 
-/// Which entry of a list a condition is on, from 1; none where it is on all of them.
+/// The entry of a list to which a condition applies, from 1; None if it applies to all of them.
 fn entry(value: &Formula) -> Option<usize> {
     if let Formula::Index(_, index) = value {
         Some(index + 1)

@@ -251,7 +251,7 @@ pub(crate) fn attribute(
     fit_uncertainty::combine(results);
 }
 
-/// Run: an upper bound of a procedure's steps, where the plan alone gives one.
+/// Run: an upper bound of a procedure's steps, if the plan alone gives one.
 pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => {
@@ -344,7 +344,7 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
     }
 }
 
-/// Report: the table of a procedure's steps, and those beside it; none where it records no steps.
+/// Report: the table of a procedure's steps, with its further tables; none if it records no steps.
 pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     let name = procedure.name.clone();
     match &procedure.history {
@@ -427,7 +427,7 @@ pub(crate) fn report(
     }
 }
 
-/// Report: the parts of the self-test that a procedure uses, each with those it is combined with.
+/// Report: the parts of the self-test that a procedure uses, each with the parts in combination with it.
 pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => vec![vec![stiffness_ramp::facts::self_tested(ramp)]],

@@ -2,7 +2,7 @@
 
 use crate::record::ImpactHistory;
 
-/// Gives displacement (m) and force (N) of every axis of an impact, row by row of its table.
+/// Gives displacement \[m\] and force \[N\] of every axis of an impact, row by row of its table.
 pub(crate) fn of_impact(history: &ImpactHistory, give: &mut dyn FnMut(&[f64], &[f64])) {
     match &history.frame {
         None => history

@@ -46,7 +46,7 @@ pub trait Evaluate: Sync {
 /// Results of one evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
-    /// NaN where a result does not exist.
+    /// NaN if a result does not exist.
     pub values: Vec<f64>,
     /// The values at the departure of the run from its record.
     pub before_departure: Option<Vec<f64>>,
@@ -174,7 +174,7 @@ enum Part {
     Trial(u16),
 }
 
-/// The effect on each value, and whether the value follows smoothly; None where the value does not exist.
+/// The effect on each value, and whether the value follows smoothly; None if the value does not exist.
 type Effects = Vec<Option<(f64, bool)>>;
 
 struct Prepared<'a, P> {

@@ -48,7 +48,7 @@ pub struct MultilinearFit {
     pub degrees: f64,
     /// Fraction of the standard errors that the scatter shows; the rest is stated.
     pub shown: f64,
-    /// BIC for 0, 1, … breakpoints minus its least value; empty where the number was given.
+    /// BIC for 0, 1, … breakpoints minus its least value; empty if the number was given.
     pub criterion: Vec<f64>,
 }
 
@@ -107,7 +107,7 @@ impl MultilinearFit {
             .collect()
     }
 
-    /// Points of the backbone curve from the origin, displacement \[m\] and force \[N\], the last at `reach` \[m\]. None where a segment
+    /// Points of the backbone curve from the origin, displacement \[m\] and force \[N\], the last at `reach` \[m\]. None if a segment
     /// does not soften, or where the force falls.
     #[must_use]
     pub fn backbone_points(&self, reach: f64) -> Option<Vec<[f64; 2]>> {
@@ -134,7 +134,7 @@ impl MultilinearFit {
 }
 
 /// Least squares over segments and breakpoints together. The standard errors are those of the linearised model at the optimum, with
-/// the breakpoints among its parameters; they do not include the choice of their number. None where the points do not determine
+/// the breakpoints among its parameters; they do not include the choice of their number. None if the points do not determine
 /// such a curve.
 #[must_use]
 pub fn fit_multilinear(x: &[f64], y: &[f64], count: BreakCount) -> Option<MultilinearFit> {

@@ -37,13 +37,13 @@ pub fn row(x: f64, breakpoints: &[f64]) -> impl Iterator<Item = f64> {
 }
 
 impl Polyline {
-    /// The best line with these breakpoints; None where they leave a segment fewer than [`FEWEST`] points.
+    /// The best line with these breakpoints; None if they leave a segment fewer than [`FEWEST`] points.
     #[must_use]
     pub fn with_breakpoints(points: &[(f64, f64)], breakpoints: &[f64]) -> Option<Self> {
         Self::through(points, breakpoints).filter(|_| holds_enough(points, breakpoints))
     }
 
-    /// The best line with these breakpoints; None where they leave a segment without a slope.
+    /// The best line with these breakpoints; None if they leave a segment without a slope.
     #[must_use]
     pub fn through(points: &[(f64, f64)], breakpoints: &[f64]) -> Option<Self> {
         let rows = points.iter().map(|(x, y)| (row(*x, breakpoints), *y));

@@ -185,7 +185,7 @@ pub enum ImpactError {
 
 /// Receives the steps of an impact that is integrated to its end.
 pub trait Sink<V = f64> {
-    /// The end of a step; `over` where the run ends with it before its duration.
+    /// The end of a step; `over`: the run ends with it before its duration.
     fn push(&mut self, structure: &State<V>, state: &ImpactState, over: bool);
 }
 

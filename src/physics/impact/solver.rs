@@ -27,7 +27,7 @@ pub struct ImpactSolver<V: Vector = f64> {
     workspace: Workspace<V>,
     reach: Option<Reach<V>>,
     unloaded: V,
-    /// ½ Ms V0², J.
+    /// ½ Ms V0² \[J\].
     striker_energy: f64,
     /// [`ImpactState::input`] without the work of a weight \[J\].
     first_input: f64,
@@ -42,14 +42,14 @@ pub type FrameImpactSolver = ImpactSolver<Vec<f64>>;
 #[derive(Clone, Debug)]
 struct Reach<V: Vector> {
     stiffness: <V::Matrix as Matrix>::Factor,
-    /// e_sᵀK⁻¹e_s, m/N
+    /// e_sᵀK⁻¹e_s \[m/N\]
     compliance: f64,
-    /// e_sᵀM⁻¹e_s, 1/kg
+    /// e_sᵀM⁻¹e_s \[1/kg\]
     mobility: f64,
 }
 
 impl<V: Vector> Reach<V> {
-    /// None where the structure does not resist.
+    /// None if the structure does not resist.
     fn new(form: &StepForm<V>, struck: usize) -> Option<Self> {
         let unit = |factor: &<V::Matrix as Matrix>::Factor| {
             let mut unit = V::zero(form.matrices.mass.rows());
@@ -73,7 +73,7 @@ impl<V: Vector> Reach<V> {
         0.5 * bent.dot(force)
     }
 
-    /// Largest speed (m/s) and least displacement (m) of the struck degree of freedom from here on, as far as the structure is
+    /// Largest speed \[m/s\] and least displacement \[m\] of the struck degree of freedom from here on, as far as the structure is
     /// elastic.
     fn bounds(&self, state: &State<V>, struck: usize) -> (f64, f64) {
         let mut bent = state.restoring_force.clone();
@@ -206,14 +206,14 @@ impl<V: Vector> ImpactSolver<V> {
         }
     }
 
-    /// Before the first step: where the structure was measured, m.
+    /// Before the first step: where the structure was measured \[m\].
     pub fn measured_at_start(&mut self, measured_displacement: V::View<'_>) {
         self.structure.measured_at_start(measured_displacement);
         self.state.measured_displacement =
             self.structure.state().measured_displacement.as_slice()[self.striker.struck];
     }
 
-    /// Displacements to command in this step, m. Asked again before `complete`, they are the same.
+    /// Displacements to command in this step \[m\]. A second call before `complete` gives the same values.
     #[inline]
     pub fn predict(&mut self) -> V::View<'_> {
         let start = self.start();
@@ -439,7 +439,7 @@ impl<V: Vector> ImpactSolver<V> {
     }
 
     /// The impact to its end, `steps` steps at most, on whatever `read` finds: it is given the solver whose step is predicted, and
-    /// gives displacement (m) and force (N) there. The steps are those of `predict` and `complete`.
+    /// gives displacement \[m\] and force \[N\] there. The steps are those of `predict` and `complete`.
     #[inline]
     pub fn run<K: Sink<V>>(
         &mut self,

@@ -336,7 +336,7 @@ impl<V: Vector> Solver<V> {
     }
 }
 
-/// r* = `r_m` − `K_I`(`d_m` − d̃), N.
+/// r* = `r_m` − `K_I`(`d_m` − d̃) \[N\].
 #[inline]
 fn correct<V: Vector>(
     operator: &V::Matrix,

@@ -58,7 +58,7 @@ pub struct Floors {
 }
 
 impl Floors {
-    /// Peak |X| of all floors \[m\]; NaN where one is NaN.
+    /// Peak |X| of all floors \[m\]; NaN if one is NaN.
     #[must_use]
     pub fn farthest(&self) -> f64 {
         self.max_displacement

@@ -12,7 +12,7 @@ use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink};
 use crate::integrator::state::State;
 use crate::reintegration::perturbation::Perturbation;
 
-/// Results of an impact, SI; NaN where a result does not exist.
+/// Results of an impact, SI; NaN if a result does not exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     /// As the run itself reports them, at the ends of steps.
@@ -270,7 +270,7 @@ impl ImpactResults {
     }
 }
 
-/// Fraction of a step at which a velocity that falls linearly from `before` to `now` is zero; None where it does not reach zero.
+/// Fraction of a step at which a velocity that falls linearly from `before` to `now` is zero; None if it does not reach zero.
 fn crossing(before: f64, now: f64) -> Option<f64> {
     (before > 0.0 && now <= 0.0).then(|| before / (before - now))
 }

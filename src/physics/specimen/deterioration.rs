@@ -10,7 +10,7 @@
 //! - At the reversal of a loaded excursion: the unloading stiffness of both sides times 1 − `β_k`, with `E_i` and ΣE_j minus the released
 //!   elastic energy.
 
-/// Parameters of cyclic deterioration: for each mode the energy capacity γ over `F_y` `x_y`, infinite where the mode is off.
+/// Parameters of cyclic deterioration: for each mode the energy capacity γ over `F_y` `x_y`, infinite if the mode is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deterioration {
     pub strength: f64,
@@ -23,7 +23,7 @@ pub struct Deterioration {
     pub residual: f64,
 }
 
-/// Deterioration of a hysteresis so far; none where no capacity is stated.
+/// Deterioration of a hysteresis so far; none if no capacity is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Degradation {
     rule: Option<Deterioration>,

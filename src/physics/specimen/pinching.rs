@@ -44,7 +44,7 @@ pub struct Capping {
 /// - unloading has the stiffness K (x_y/x_p)^a, with the peak displacement x_p of that direction (as in Takeda's model), but at least
 ///   that of the peak's chord, F_p/x_p; a reversal before zero force reloads along the same line;
 /// - from zero force at u₀, reloading runs to the break point U = (1 − κ_D)·U_p, F = κ_F·F_p (U − u₀)/(x_p − u₀), with the residual
-///   displacement U_p of the peak of that direction, and on to the peak; where u₀ is past the break point, straight to the peak;
+///   displacement U_p of the peak of that direction, and on to the peak; if u₀ is past the break point, straight to the peak;
 /// - beyond the peak it is the backbone;
 /// - basic strength, post-capping strength, unloading stiffness and the target of reloading deteriorate by the energy of its excursions
 ///   (`Degradation`); not while it is elastic.

@@ -41,7 +41,7 @@ pub trait Residuals {
 }
 
 /// Damped Gauss–Newton from `start`: every step is halved until the sum of squares falls. Ends where it falls no more, or where the
-/// Jacobian is rank-deficient. None where the model has no value at the start.
+/// Jacobian is rank-deficient. None if the model has no value at the start.
 #[must_use]
 pub fn minimize(model: &impl Residuals, start: DVector<f64>) -> Option<DVector<f64>> {
     let mut parameters = start;
@@ -98,7 +98,7 @@ pub fn central_jacobian(
     Some(DMatrix::from_columns(&columns?))
 }
 
-/// Inverse of a normal matrix JᵀJ, scaled to a unit diagonal first; None where the columns of J depend on each other.
+/// Inverse of a normal matrix JᵀJ, scaled to a unit diagonal first; None if the columns of J depend on each other.
 #[must_use]
 pub fn inverse_normal(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale = DMatrix::from_diagonal(&normal.diagonal().map(|square| 1.0 / square.sqrt()));
@@ -111,7 +111,7 @@ pub fn inverse_normal(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 }
 
 /// Parameters of the linear model Σ pⱼ xⱼ, by the normal equations, which Cholesky's decomposition solves alike in any scale of the
-/// columns. In: for each reading the row xⱼ of `count` numbers, and the value. None where the columns depend on each other.
+/// columns. In: for each reading the row xⱼ of `count` numbers, and the value. None if the columns depend on each other.
 #[must_use]
 pub fn linear<R: IntoIterator<Item = f64>>(
     readings: impl Iterator<Item = (R, f64)>,

@@ -34,8 +34,8 @@ pub(crate) struct Ends<'a, V> {
 }
 
 impl FrameEnergies {
-    /// The balance one step on; `damping_work` where the velocity has jumped inside the step, J, otherwise that of the mean
-    /// velocity. `scratch` is two vectors of the structure's order.
+    /// The balance one step on. `damping_work` \[J\] is given if the velocity has jumped inside the step, otherwise that of the mean
+    /// velocity is used. `scratch` is two vectors of the structure's order.
     #[inline]
     pub(crate) fn advance<V: Vector>(
         &self,

@@ -361,7 +361,7 @@ fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {
     largest
 }
 
-/// The energy that the motion of the ground put in, and where it was at the end.
+/// The input energy of the ground motion, and its parts at the end.
 fn energy_balance(history: &ShakeHistory) -> Block {
     let e = history
         .steps

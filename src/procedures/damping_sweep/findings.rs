@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// The properties of the specimen that the strokes show beside c.
 pub(super) struct Findings {
-    /// K of the strokes that count and its standard error, N/m, where they show it.
+    /// K of the valid strokes and its standard error \[N/m\], if they show it.
     pub stiffness: Option<(f64, f64)>,
     /// First steps of the strokes with plastic deformation, where others had none.
     pub left_out: Vec<usize>,

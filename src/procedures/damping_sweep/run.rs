@@ -40,7 +40,7 @@ const END: f64 = 0.1;
 /// reversal (2·exp(−5)). Three would leave a tenth, and bias c.
 const LAGS: f64 = 5.0;
 
-/// Readings on the steady part where the plan gives no rate.
+/// Readings on the steady part if the plan gives no rate.
 const STEADY_SAMPLES: f64 = 50.0;
 
 /// Readings of one pass, at most.
@@ -153,7 +153,7 @@ fn steady_from(seconds: f64, lag: f64) -> f64 {
     END.max(LAGS * lag / seconds)
 }
 
-/// Readings of one pass that takes `seconds`, at a rate (Hz) or by the default.
+/// Readings of one pass that takes `seconds`, at a rate \[Hz\] or by the default.
 pub(crate) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
     let steady = 1.0 - END - steady_from(seconds, lag);
     match rate {

@@ -79,7 +79,7 @@ pub(crate) fn motion(impact: &Impact) -> Motion<'static> {
     }
 }
 
-/// The parts of the self-test that an impact uses, each with those it is combined with.
+/// The parts of the self-test that an impact uses, each with the parts in combination with it.
 pub(crate) fn self_tested(impact: &Impact) -> Vec<Vec<Part>> {
     let of_frame = matches!(impact.target, ImpactTarget::Storey(_));
     let [point, storey] = match impact.contact {

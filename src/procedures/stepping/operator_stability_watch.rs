@@ -155,7 +155,7 @@ impl Stiffer {
 }
 
 impl Stiffer {
-    /// Secant stiffness of the last step with its standard deviation, N/m; None where the move is too small, or reversed: friction
+    /// Secant stiffness of the last step with its standard deviation \[N/m\]; None if the move is too small, or reversed: friction
     /// reverses with it. In a response that reverses at every step, as an unstable one does, the last reading but one has the same
     /// friction: both were reached in the same direction, if the amplitude has grown enough.
     fn secant(&mut self, reading: (f64, f64)) -> Option<(f64, f64)> {

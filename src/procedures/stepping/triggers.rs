@@ -9,7 +9,7 @@ pub(crate) struct Triggers {
 
 struct Armed {
     trigger: InspectTrigger,
-    /// Largest |R| since the last time it went off, N.
+    /// Largest |R| since its last trigger \[N\].
     largest_force: f64,
     gone_off: bool,
 }

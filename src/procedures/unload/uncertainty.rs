@@ -160,7 +160,7 @@ fn moves(rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) 
     }
 }
 
-/// A force (N) on one floor alone.
+/// A force \[N\] on one floor alone.
 fn alone(axis: usize, force: f64, floors: usize) -> Vec<f64> {
     let mut all = vec![0.0; floors];
     all[axis] = force;

@@ -1,4 +1,4 @@
-//! The fit of one time constant: exact without noise, its standard errors those of many fits, none where nothing relaxes.
+//! The fit of one time constant: exact without noise, its standard errors those of many fits, none if nothing relaxes.
 
 use super::{RelaxationFit, RelaxationModel, fit_relaxation};
 use crate::relaxation::hold::{Hold, Unrelaxed};
@@ -14,7 +14,7 @@ const K: f64 = 3e5;
 const K1: f64 = 2e5;
 const TAU: f64 = 1.5;
 
-/// Eight holds of `pause` (s) every 1 mm, reached in 0.5 s, twenty readings each and closer at first.
+/// Eight dwells of `pause` \[s\] every 1 mm, reached in 0.5 s, with twenty readings each, closer together at first.
 fn holds(stiffness: f64, pause: f64, noise: &mut dyn FnMut() -> f64) -> Vec<Hold> {
     let mut branch = MaxwellBranch::new(stiffness, TAU);
     (1_u32..=8)
