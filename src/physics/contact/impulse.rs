@@ -56,7 +56,7 @@ impl ImpulseContact {
         Self { force_limit: force }
     }
 
-    /// N; infinite if there is none.
+    /// \[N\]; infinite without a limit.
     pub(crate) const fn force_limit(self) -> f64 {
         self.force_limit
     }

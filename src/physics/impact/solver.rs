@@ -92,7 +92,7 @@ impl ImpactSolver {
     /// An impact on one degree of freedom. R₀ is read once before the first step; M Ẍ₀ = −CẊ₀ − R₀ with the structure at rest.
     ///
     /// # Errors
-    /// The structure is none that can be stepped, or law and integrator do not go together.
+    /// The structure cannot be stepped, or law and integrator cannot be combined.
     pub fn new(
         input: &ImpactInput,
         initial_displacement: f64,
@@ -121,8 +121,7 @@ impl<V: Vector> ImpactSolver<V> {
     /// An impact on one degree of freedom of a structure, under its initial load throughout.
     ///
     /// # Errors
-    /// The structure is none that can be stepped, the struck degree of freedom is not in it, or law and integrator do not go
-    /// together.
+    /// The structure cannot be stepped, the struck degree of freedom is not in it, or law and integrator cannot be combined.
     pub fn on(input: &SolverInput<V>, setup: &ImpactSetup) -> Result<Self, ImpactError> {
         let ImpactSetup {
             struck,
@@ -403,10 +402,10 @@ impl<V: Vector> ImpactSolver<V> {
         self.striker_stopped
     }
 
-    /// Whether striker and structure are apart for good, as far as the structure is elastic and unloaded from here on: the striker
-    /// moves back, and either faster than the energy of the structure can ever move the struck degree of freedom,
-    /// `|Ẋ_s| ≤ √(2E e_sᵀM⁻¹e_s)`, or from behind where it can get to, `√(2E e_sᵀK⁻¹e_s)` from its rest. A striker that falls
-    /// always comes back.
+    /// Whether striker and structure have separated finally, if the structure is elastic and unloaded from here on. The striker moves
+    /// back, and one of two conditions applies. It is faster than the energy of the structure can ever move the struck degree of freedom,
+    /// `|Ẋ_s| ≤ √(2E e_sᵀM⁻¹e_s)`, or it is out of its reach, `√(2E e_sᵀK⁻¹e_s)` from its unloaded position. A falling striker always
+    /// returns.
     #[must_use]
     pub fn rebounded(&self) -> bool {
         let state = &self.state;

@@ -40,8 +40,8 @@ enum Bends {
 }
 
 impl FramePath {
-    /// `velocities` are those predicted for the targets \[m/s\] of a continuous motion with a reading each `time_step` \[s\]; `stiffness` is the
-    /// initial K; `force_noise` \[N\] and `resolution` \[m\] are those of one floor. None without readings.
+    /// `velocities` are those predicted for the targets \[m/s\] of a continuous motion with a reading each `time_step` \[s\]; `stiffness`
+    /// is the initial K; `force_noise` \[N\] and `resolution` \[m\] are those of one floor. None without readings.
     #[must_use]
     pub fn new(
         readings: Vec<FrameReading>,

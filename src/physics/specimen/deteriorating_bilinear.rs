@@ -5,8 +5,9 @@ use super::RestoringForce;
 use super::deterioration::Degradation;
 use crate::specimen::Deterioration;
 
-/// The bilinear spring (`Bilinear`: K between two lines of slope k, R = kX ± Y, Y = (1 − h)F_y, k = hK) with two of the modes of deterioration of
-/// Ibarra, Medina & Krawinkler (Earthquake Engng Struct. Dyn. 34 (2005) 1489–1511), in the order of `IMKBilin` of OpenSees:
+/// The bilinear spring (`Bilinear`: K between two lines of slope k, R = kX ± Y, Y = (1 − h)F_y, k = hK) with two of the modes of
+/// deterioration of Ibarra, Medina & Krawinkler (Earthquake Engng Struct. Dyn. 34 (2005) 1489–1511), in the order of `IMKBilin` of
+/// OpenSees:
 /// - at zero force, where the next excursion begins, Y of that side and k lose the fraction of `Degradation`. The slope is one for both
 ///   sides: two lines of different slopes would cross, and a spring between them would release energy that it never absorbed;
 /// - at the reversal of a loaded excursion, the stiffness between the lines. The energy stored between them, ½(R − kX)²/(K − k), grows

@@ -6,8 +6,8 @@ use super::matrices::Matrices;
 use super::matrix::{Matrix as _, Vector};
 
 /// Energies at the end of a step, all in J, cumulated from the start; of displacements and velocities against the ground
-/// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90; the absolute form adds the work of the ground). They add up:
-/// `kinetic + restoring + damping + error = input`.
+/// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90; the absolute form adds the work of the ground).
+/// They add up: `kinetic + restoring + damping + error = input`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct FrameEnergies {
     /// ½ ẊᵀMẊ

@@ -35,9 +35,9 @@ fn sway(portal: &Portal, masses: FrameMasses) -> f64 {
     (2.0 * hinges + 4.0 * hinges + 6.0 * hinges * carried / column) / height
 }
 
-/// A half-beam of l = L/2 turns about its corner: M(x) = −m_corner + V x + m α x³/6, M(l) = M_b, V l = m_corner + M_b − q with q = m α l³/6. Where
-/// V < 0, M is least at (x/l)² = (q − S)/3q, S = m_corner + M_b: −m_corner − ⅔(q − S)√((q − S)/3q), which is −M_b at the limit. Then
-/// W l = 2S + 4q + 6q · carried/(m l).
+/// A half-beam of l = L/2 turns about its corner: M(x) = −m_corner + V x + m α x³/6, M(l) = M_b, V l = m_corner + M_b − q with q = m α
+/// l³/6. Where V < 0, M is least at (x/l)² = (q − S)/3q, S = m_corner + M_b: −m_corner − ⅔(q − S)√((q − S)/3q), which is −M_b at the
+/// limit. Then W l = 2S + 4q + 6q · carried/(m l).
 fn beam(portal: &Portal, masses: FrameMasses) -> f64 {
     let half = portal.span / 2.0;
     let own = masses.per_length.beam * half;
