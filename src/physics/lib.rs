@@ -7,8 +7,8 @@
 //! equation of that paper).
 //!
 //! # Units and signs
-//! All numbers are in SI: \[m\], \[m/s\], \[N\], \[kg\], \[s\], \[J\]. Displacements and forces are positive in the direction of the striker.
-//! The contact force F ≥ 0 pushes the structure forwards and the striker backwards.
+//! All numbers are in SI: \[m\], \[m/s\], \[N\], \[kg\], \[s\], \[J\]. Displacements and forces are positive in the direction of the
+//! striker. The contact force F ≥ 0 pushes the structure forwards and the striker backwards.
 //!
 //! # Modules
 //! | module | content |

@@ -39,11 +39,11 @@ pub(crate) struct Facts<'a> {
 pub(crate) struct Recorded {
     /// Whether the numbers of its lists have a separate table.
     pub lists_are_tabled: bool,
-    /// Integrated virtual time (s), and the laboratory time (s) that it took.
+    /// Integrated simulated time \[s\], and the laboratory time \[s\] that it took.
     pub time_spans: Option<(f64, f64)>,
-    /// Results that have an uncertainty budget where no requirement reads any.
+    /// Results that have an uncertainty budget even if no requirement reads any.
     pub budgeted: &'static [&'static str],
-    /// The name of the entries of its lists, where the names of the lists do not give it.
+    /// The name of the entries of its lists, if the names of the lists do not give it.
     pub entries: &'static str,
     /// The method by which the contributions to the uncertainty of its results were found.
     pub uncertainty: &'static str,
@@ -63,15 +63,15 @@ impl Default for Recorded {
 
 /// The state in which a procedure leaves the specimen to the next one that integrates.
 pub(crate) enum Leaves<'a> {
-    /// As it found it.
+    /// In the state in which it was found.
     AsFound,
-    /// At rest, or where the plan commands it.
+    /// At rest, or at the position that the plan commands.
     AtRest,
     /// Under load or in motion.
     Moving(Motion<'a>),
 }
 
-/// A motion that begins from where the one before it ended.
+/// A motion that begins at the end of the one before it.
 pub(crate) struct Motion<'a> {
     pub what: &'a str,
     /// Its end, in words.

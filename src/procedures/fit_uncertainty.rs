@@ -11,16 +11,16 @@ use crate::record::{BilinearFit, LineFit, NamedResult};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source, combined};
 use crate::units::Dimension;
 
-/// Results of a fit that lie on one line, slope first.
+/// Pairs of fitted results of one line, slope first.
 const LINES: [(&str, &str); 2] = [
     ("stiffness", "intercept_force"),
     ("damping", "coulomb_force"),
 ];
 
-/// Forces that a false zero of the load cell shifts; slopes and differences do not show it.
+/// Forces that a zero error of the load cell shifts; it has no effect on slopes and differences.
 const SHIFTED: [&str; 3] = ["intercept_force", "yield_force", "break_forces"];
 
-/// The fits of a procedure, and how far their scatter shows their standard errors.
+/// The fits of a procedure, and the fraction of their standard errors that their scatter shows.
 pub(crate) struct Fits<'a> {
     pub line: Option<LineFit>,
     pub bilinear: Option<&'a BilinearFit>,
@@ -80,7 +80,7 @@ pub(crate) fn attribute(
 /// Combines the contributions of every result into its standard uncertainty.
 pub(crate) fn combine(results: &mut [NamedResult]) {
     for result in results {
-        // A fit alone keeps its standard error as it is, to the bit.
+        // A result with only a fit keeps its standard error bit-identical.
         let calibrated = |part: &Contribution| {
             !matches!(part.source, Source::Fit { .. } | Source::FitEntry { .. })
         };
@@ -128,8 +128,8 @@ fn split(parts: &mut Vec<Contribution>, procedure: ProcedureId, shown: f64) {
     parts.retain(|part| part.amount != 0.0);
 }
 
-/// The error that all readings have in common by their resolution, q/√12: forces that a false zero shifts have it, slopes and
-/// differences do not. A displacement that is off by e is a force that is off by −K·e.
+/// The error that all readings have in common from their resolution, q/√12. It affects the forces that a zero error shifts, but not
+/// slopes and differences. A displacement error e is equivalent to a force error −K·e.
 fn in_common(errors: ReadingErrors, procedure: ProcedureId, results: &mut [NamedResult]) {
     let stiffness = match results
         .iter()
@@ -162,7 +162,7 @@ fn in_common(errors: ReadingErrors, procedure: ProcedureId, results: &mut [Named
     }
 }
 
-/// The standard error `own`, of which the intercept of a line shares with the slope what they are correlated by.
+/// The standard error `own`: the part of an intercept that correlates with the slope of its line is a contribution of the slope.
 fn own_parts(
     procedure: ProcedureId,
     name: &'static str,
@@ -182,7 +182,7 @@ fn own_parts(
     }
 }
 
-/// The errors of a bilinear fit by what they share.
+/// The independent contributions to the errors of a bilinear fit.
 fn shares_of(
     procedure: ProcedureId,
     name: &'static str,
@@ -201,7 +201,7 @@ fn shares_of(
     }
 }
 
-/// The independent errors of a curve by what they are of: K₁, the intercept, the further stiffnesses, the breaks.
+/// The independent contributions to the errors of a curve: K₁, the intercept, the further stiffnesses, the breakpoints.
 fn parts_of_curve(
     procedure: ProcedureId,
     fit: &MultilinearFit,
@@ -228,7 +228,7 @@ fn parts_of_curve(
         .collect()
 }
 
-/// The errors of a multilinear fit by what they share.
+/// The independent contributions to the error of one result of a multilinear fit.
 fn shares_of_curve(
     procedure: ProcedureId,
     name: &'static str,
@@ -263,7 +263,7 @@ fn shares_of_curve(
     }
 }
 
-/// The same of every entry of the lists of a curve.
+/// The same for every entry of the lists of a curve.
 fn of_lists(
     procedure: ProcedureId,
     fit: &MultilinearFit,
@@ -304,8 +304,8 @@ fn of_lists(
     }
 }
 
-/// A result that is made of forces F, displacements X and times alone, as F^p·X^q, grows with the factor of the load cell
-/// to the p and that of the transducer to the q: p is the exponent of mass in its dimension, q that of length less p.
+/// A result that is calculated from forces F, displacements X and times alone, as F^p·X^q, is proportional to the factor of the load cell
+/// to the power p and that of the transducer to the power q. p is the exponent of mass in its dimension, q that of length minus p.
 fn of_calibration(
     result: &NamedResult,
     value: f64,

@@ -25,7 +25,7 @@ pub(crate) fn limits_on(
             if !reads(&condition.value, procedure, result.name) {
                 continue;
             }
-            // A band is two lines with one text, so that two texts never stand on each other.
+            // A band is two lines with one label, so that two labels never overlap.
             let entry =
                 entry(&condition.value).map_or_else(String::new, |entry| format!(" ({entry})"));
             let label = format!(
@@ -53,7 +53,7 @@ pub(crate) fn limits_on(
     lines
 }
 
-/// Which entry of a list a condition is on, from 1; none where it is on all of them.
+/// The entry of a list to which a condition applies, from 1; None if it applies to all of them.
 fn entry(value: &Formula) -> Option<usize> {
     if let Formula::Index(_, index) = value {
         Some(index + 1)
@@ -62,8 +62,8 @@ fn entry(value: &Formula) -> Option<usize> {
     }
 }
 
-/// Whether a condition is on the value of this result, or on the largest entry of it where it is a list. A bound on its
-/// uncertainty is none on what is drawn.
+/// Whether a condition applies to the value of this result, or to the largest entry if it is a list. A limit of its uncertainty does not
+/// apply to the chart.
 fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
     let is = |formula: &Formula| {
         formula
@@ -80,7 +80,7 @@ fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
 /// A label that fits into a picture, on one line.
 fn short(label: &str) -> String {
     const LONGEST: usize = 40;
-    // As it is drawn, so that its room is that of what is drawn.
+    // The width of the label is that of the text as drawn.
     let label = crate::text::glyphs::shown(label);
     let mut text: String = label
         .chars()

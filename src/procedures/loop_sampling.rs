@@ -3,7 +3,8 @@
 use crate::physics::identification::loop_sampling::left_open;
 use crate::physics::reintegration::perturbation::ReadingErrors;
 
-/// By how much these points of a loop of this stiffness \[N/m\], each the mean of so many samples, leave its energy open \[J\].
+/// The part of the energy that these points of a loop of this stiffness \[N/m\] leave undetermined \[J\]; each is the mean of so many
+/// samples.
 pub(crate) fn left_open_by(
     points: &[(f64, f64)],
     stiffness: f64,

@@ -42,7 +42,7 @@ use crate::uncertainty::Source;
 use facts::{Delay, Facts, Leaves, Recorded, Tests};
 use impact::check::judge::Strikers;
 
-/// Check: the procedure that a block specifies; None after an error, and for a block that is no procedure.
+/// Check: the procedure that a block specifies; None after an error, and for a block that does not declare a procedure.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     match checker.scope.blocks[block].kind.kind {
         Kind::StiffnessRamp => stiffness_ramp::check::stiffness_ramp(checker, block),
@@ -174,7 +174,7 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
     }
 }
 
-/// Report: what is to be known of what a procedure recorded.
+/// Report: the observations on the record of a procedure.
 pub(crate) fn recorded(history: &History) -> Recorded {
     match history {
         History::Ramp(history) => stiffness_ramp::facts::recorded(history),
@@ -217,7 +217,7 @@ pub(crate) fn run(
     }
 }
 
-/// Run: gives the fitted results of a procedure their contributions, those of its own uncertainty apart.
+/// Run: gives the fitted results of a procedure their contributions, except those of its own uncertainty.
 pub(crate) fn attribute(
     kind: &ProcedureKind,
     history: &History,
@@ -251,7 +251,7 @@ pub(crate) fn attribute(
     fit_uncertainty::combine(results);
 }
 
-/// Run: an upper bound of a procedure's steps, where the plan alone gives one.
+/// Run: an upper bound of a procedure's steps, if the plan alone gives one.
 pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => {
@@ -294,7 +294,7 @@ pub(crate) fn known_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     }
 }
 
-/// Check: how late the actuators of a virtual rig are; None where not enough is known before the run, or nothing is integrated.
+/// Check: the delay of the actuators of a simulated rig; None if too little is known before the run, or nothing is integrated.
 pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
     match kind {
         ProcedureKind::Impact(impact) => impact::delay::of_impact(plan, impact),
@@ -310,7 +310,7 @@ pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
     }
 }
 
-/// Report: a figure and its caption; None where the record has nothing for it.
+/// Report: a figure and its caption; None if nothing is recorded for it.
 pub(crate) fn chart(
     run: &Run<'_>,
     procedure: &ProcedureRecord,
@@ -344,7 +344,7 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
     }
 }
 
-/// Report: the table of a procedure's steps, and those beside it; none where it records no steps.
+/// Report: the table of a procedure's steps, with its further tables; none if it records no steps.
 pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     let name = procedure.name.clone();
     match &procedure.history {
@@ -365,7 +365,7 @@ pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     }
 }
 
-/// Check and accepted results: the numeric columns of the tables of a block; none where it has none.
+/// Check and accepted results: the numeric columns of the tables of a block; none without tables.
 pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
     let tables: &[&[Column]] = match kind {
         Kind::StiffnessRamp | Kind::Move => &[stiffness_ramp::tables::COLUMNS],
@@ -427,7 +427,7 @@ pub(crate) fn report(
     }
 }
 
-/// Report: the parts of the self-test that a procedure uses, each with those it is combined with.
+/// Report: the parts of the self-test that a procedure uses, each with the parts in combination with it.
 pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => vec![vec![stiffness_ramp::facts::self_tested(ramp)]],
@@ -441,7 +441,7 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
     }
 }
 
-/// Report: gives displacement (m) and force (N) of every axis, row by row of a procedure's table.
+/// Report: gives displacement \[m\] and force \[N\] of every axis, row by row of a procedure's table.
 pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
     match history {
         History::Ramp(RampHistory { steps, .. }) | History::Move(steps) => {

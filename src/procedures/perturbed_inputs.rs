@@ -1,12 +1,12 @@
-//! Inputs with some of their sources perturbed: what every re-integrated procedure shares. In: formulas, results, perturbed sources.
-//! Out: the uncertain sources of the formulas, and results with those sources perturbed.
+//! Inputs with some of their sources perturbed, for every procedure that is re-integrated. In: formulas, results, perturbed sources. Out:
+//! the uncertain sources of the formulas, and results with those sources perturbed.
 
 use crate::plan::formula::{Formula, Results};
 use crate::run::stop::Stop;
 use crate::uncertainty::engine::Shifts;
 use crate::uncertainty::{Moved, Source, sources_of};
 
-/// Why no uncertainty is told of a run.
+/// The reason why no uncertainty of a run is reported.
 pub(crate) const LEADS_ELSEWHERE: &str =
     "the recorded way, taken again, does not lead to the recorded results";
 
@@ -30,7 +30,7 @@ pub(crate) fn with_shifts<T>(
     }
 }
 
-/// Sources of the results and statements that `formulas` read, and `stated` ones with their uncertainties.
+/// Sources of the results and statements that `formulas` read, followed by the `stated` ones with their uncertainties.
 pub(crate) fn uncertain_inputs(
     formulas: &[&Formula],
     stated: impl Iterator<Item = (Source, f64)>,

@@ -1,8 +1,8 @@
-//! How far a run took its channels: the largest displacement and force, by size, in its tables. In: a record. Out: numbers.
+//! The peak absolute displacement and force of the channels of a run, from its tables. In: a record. Out: numbers.
 
 use crate::record::ImpactHistory;
 
-/// Gives displacement (m) and force (N) of every axis of an impact, row by row of its table.
+/// Gives displacement \[m\] and force \[N\] of every axis of an impact, row by row of its table.
 pub(crate) fn of_impact(history: &ImpactHistory, give: &mut dyn FnMut(&[f64], &[f64])) {
     match &history.frame {
         None => history

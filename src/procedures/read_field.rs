@@ -15,7 +15,7 @@ impl ReadField for Formula {
     }
 }
 
-/// One number, where the field is given.
+/// One number, if the field is given.
 impl ReadField for Option<Formula> {
     fn read(checker: &mut Checker<'_>, block: usize, field: &str) -> Option<Self> {
         checker.optional(block, field)

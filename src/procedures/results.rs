@@ -1,4 +1,4 @@
-//! How procedures name their results, and give them their contributions. A number that is not finite does not exist in the run.
+//! The names of the results of procedures, and their contributions. A number that is not finite does not exist in the run.
 
 use crate::plan::formula::ResultValue;
 use crate::record::NamedResult;
@@ -7,12 +7,12 @@ use crate::uncertainty::{Contribution, Source, combined};
 use crate::units::Dimension;
 
 impl ResultKind {
-    /// This result without uncertainty; None where it does not exist in this run.
+    /// This result without uncertainty; None if it does not exist in this run.
     pub(crate) fn found(self, value: Option<f64>) -> NamedResult {
         result(self.name, self.dimension, value)
     }
 
-    /// This result as a list; None where it does not exist in this run.
+    /// This result as a list; None if it does not exist in this run.
     pub(crate) fn found_list(self, values: Option<Vec<f64>>) -> NamedResult {
         match values {
             Some(values) => NamedResult {
@@ -25,18 +25,18 @@ impl ResultKind {
         }
     }
 
-    /// This result with its standard uncertainty, where it has one.
+    /// This result with its standard uncertainty, if it has one.
     pub(crate) fn found_with(self, value: Option<(f64, Option<f64>)>) -> NamedResult {
         measured(self.name, self.dimension, value)
     }
 }
 
-/// A result without uncertainty; None where it does not exist in this run.
+/// A result without uncertainty; None if it does not exist in this run.
 pub(crate) fn result(name: &'static str, dimension: Dimension, value: Option<f64>) -> NamedResult {
     measured(name, dimension, value.map(|value| (value, None)))
 }
 
-/// A result and its standard uncertainty, where it has one.
+/// A result and its standard uncertainty, if it has one.
 pub(crate) fn measured(
     name: &'static str,
     dimension: Dimension,
@@ -83,7 +83,7 @@ fn counting(mut parts: Vec<Contribution>) -> Vec<Contribution> {
 /// Names of results in the order of their values, each with how many values it has.
 pub(crate) type Layout = Vec<(&'static str, usize)>;
 
-/// The values of a layout, as results have them; NaN where one does not exist.
+/// The values of a layout, as results have them; NaN if one does not exist.
 pub(crate) fn values(layout: &[(&'static str, usize)], results: &[NamedResult]) -> Vec<f64> {
     let of_result = |(name, count): &(&'static str, usize)| {
         let values = match results

@@ -1,24 +1,24 @@
-//! The cost of a study: how many evaluations it takes. In: the length of a run, its sources. Out: a bound that is the same for every
+//! The cost of a study: the number of evaluations. In: the length of a run, its sources. Out: a bound that is the same for every
 //! procedure.
 
 use super::{MOST_DRAWS, Source};
 
-/// Trials of the reading errors at least.
+/// Smallest number of Monte Carlo trials of the reading errors.
 const FEWEST_DRAWS: u16 = 8;
-/// And at least where inputs are drawn with them.
+/// Smallest number of trials if inputs are varied in the same trials.
 const FEWEST_DRAWS_OF_INPUTS: u16 = 16;
-/// Steps of all trials together, about, and of all perturbations of inputs: what a long run is allowed to cost.
+/// Approximate number of steps of all trials together, and of all perturbations of inputs: the cost limit of a long run.
 const STEPS_OF_DRAWS: u64 = 512_000;
 const STEPS_OF_MOVES: u64 = 512_000;
-/// Perturbations of inputs that a run of any length may cost.
+/// Number of input perturbations that are allowed for a run of any length.
 const MOVES_OF_ANY: u64 = 24;
 
-/// How many evaluations a study takes.
+/// The number of evaluations of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TrialBudget {
-    /// Whether every input is perturbed by half its uncertainty too, to see whether the results follow it in proportion.
+    /// Whether every input is also perturbed by half its uncertainty, to check that the results are proportional.
     pub halves: bool,
-    /// Whether inputs of which there is one a storey are drawn together, with the errors of the readings.
+    /// Whether inputs that exist once per storey are varied together in the trials of the reading errors.
     pub together: bool,
     pub trials: u16,
 }
@@ -50,13 +50,13 @@ impl TrialBudget {
         }
     }
 
-    /// Whether a source is drawn with the errors of the readings.
+    /// Whether a source is varied in the trials of the reading errors.
     pub const fn draws(self, source: Source) -> bool {
         self.together && is_alike(source)
     }
 }
 
-/// Whether an input has many like it: one a storey, a mode or an axis.
+/// Whether an input is one of many of its kind: one per storey, mode or axis.
 const fn is_alike(source: Source) -> bool {
     matches!(
         source,
@@ -73,7 +73,7 @@ const fn is_alike(source: Source) -> bool {
 mod tests {
     use super::*;
 
-    /// However long the run and however many its inputs, a study takes few times as many steps.
+    /// However long the run and however many its inputs, a study needs only a few times as many steps.
     #[test]
     fn the_cost_of_a_study_is_bounded() {
         let sources = |inputs: usize, alike: usize| -> Vec<Source> {

@@ -1,5 +1,5 @@
 //! Effective degrees of freedom and coverage factors. In: contributions, with the degrees of freedom of their sources. Out: effective
-//! degrees of freedom, the coverage factor k and the expanded uncertainty U = k·u, for verdicts and for everything that is printed.
+//! degrees of freedom, the coverage factor k and the expanded uncertainty U = k·u, for verdicts and for all printed results.
 
 use super::{Contribution, Source, combined};
 use crate::physics::statistics::student_t;
@@ -9,7 +9,7 @@ use crate::plan::formula::{ProcedureId, Results};
 /// 1/√(2·64), 9 %.
 pub const MOST_DRAWS: u16 = 64;
 
-/// Fewer effective degrees of freedom than this are remarked on: U is then more than 3.3 times u.
+/// With fewer effective degrees of freedom than this an observation is made: U is then more than 3.3 times u.
 pub const FEW: u8 = 3;
 
 /// The uncertainty of a number.
@@ -17,7 +17,7 @@ pub const FEW: u8 = 3;
 pub struct Known {
     /// u, in the number's own unit.
     pub standard: f64,
-    /// Effective degrees of freedom of u; infinite where no part of u was estimated from readings.
+    /// Effective degrees of freedom of u; infinite if no part of u was estimated from readings.
     pub degrees: f64,
 }
 
@@ -94,7 +94,7 @@ pub fn known(parts: &[Contribution], results: &dyn Results) -> Option<Known> {
     Some(Known { standard, degrees })
 }
 
-/// The same of each of `count` entries of a list.
+/// As [`known`], for each of `count` entries of a list.
 #[must_use]
 pub fn known_entries(
     parts: &[Contribution],
@@ -152,7 +152,7 @@ mod tests {
         known(parts, &Two).unwrap().degrees
     }
 
-    /// By hand: u² = 9 + 16 = 25, ν = 625/(81/4 + 256/9) = 12.83; beside what is known a fit counts for less.
+    /// By hand: u² = 9 + 16 = 25, ν = 625/(81/4 + 256/9) = 12.83; beside a known contribution a fit has less weight.
     #[test]
     fn estimates_combine_by_welch_and_satterthwaite() {
         let by_hand = 625.0 / (81.0 / 4.0 + 256.0 / 9.0);
@@ -171,8 +171,8 @@ mod tests {
         );
     }
 
-    /// JCGM 100:2008, G.4.1, example: components of 0.25 %, 0.57 % and 0.82 % with 9, 4 and 14 degrees of freedom have 19. Here the
-    /// first is of draws.
+    /// JCGM 100:2008, G.4.1, example: components of 0.25 %, 0.57 % and 0.82 % with 9, 4 and 14 degrees of freedom have 19. Here the first
+    /// is from Monte Carlo trials.
     #[test]
     fn the_example_of_the_guide() {
         struct Guide;
@@ -212,7 +212,7 @@ mod tests {
             (known.standard - 1.03).abs() < 0.005 && (known.degrees - 19.0).abs() < 0.05,
             "{known:?}"
         );
-        // Of the next blow they are another nine.
+        // The trials of the next impact are another nine.
         let next = |draw| {
             Contribution::new(
                 Source::Readings {
@@ -227,7 +227,7 @@ mod tests {
         assert!((super::known(&of_two, &Guide).unwrap().degrees - 18.0).abs() < 1e-9);
     }
 
-    /// Slope and intercept of one line: whatever is made of both has the degrees of freedom of the line, and no more.
+    /// Slope and intercept of one line: every result of both has the degrees of freedom of the line, and no more.
     #[test]
     fn what_one_scatter_tells_has_its_degrees_of_freedom() {
         let parts = [fit(0, "stiffness", 2.0), fit(0, "intercept_force", 2.0)];

@@ -1,6 +1,7 @@
-//! The uncertainty engine: what each source contributes to each result of a procedure. In: a procedure as a pure function of its inputs
-//! and readings. Out: for each number, half the difference of the results at ±u of each source (JCGM 100:2008, 5.1.3 and 5.1.4), the
-//! results of Monte Carlo trials of the reading errors (JCGM 101:2008), and those in finer time steps. It knows no procedure and no rig.
+//! The uncertainty engine: the contribution of each source to each result of a procedure. In: a procedure as a pure function of its
+//! inputs and readings. Out: for each number, half the difference of the results at ±u of each source (JCGM 100:2008, 5.1.3 and 5.1.4),
+//! the results of Monte Carlo trials of the reading errors (JCGM 101:2008), and those in finer time steps. It knows no procedure and no
+//! rig.
 
 use super::cost::TrialBudget;
 use super::instruments::InstrumentUncertainty;
@@ -10,21 +11,21 @@ use super::{Contribution, MOST_DRAWS, Source};
 use crate::physics::reintegration::perturbation::{Perturbation, sign_of_input};
 use crate::plan::formula::ProcedureId;
 
-/// A re-integrated run must lead to the recorded results, relatively.
+/// Relative difference within which a re-integrated run must reproduce the recorded results.
 pub const CLOSE: f64 = 1e-9;
-/// The effects of a source to either side may differ by this fraction of the larger one; beyond it the result does not follow the source
-/// smoothly. Twice the error of half the difference.
+/// The effects of a source to either side may differ by this fraction of the larger one. Beyond it the response to this input is strongly
+/// non-linear. It is twice the error of half the difference.
 const ONE_SIDED: f64 = 0.2;
-/// The same of half the difference at ±u and at ±u/2.
+/// As `ONE_SIDED`, for half the difference at ±u and at ±u/2.
 const HALVED: f64 = 0.1;
-/// An input that cannot be perturbed by its uncertainty to either side is perturbed by no less than this fraction of it.
+/// An input that cannot be perturbed by its full uncertainty to either side is perturbed by at least this fraction of it.
 const LEAST_SHARE: f64 = 1e-3;
-/// Steps of a re-integrated run for each of its own.
+/// Refinements of a re-integrated run: steps for each step of the run.
 pub const FINER: [u8; 2] = [2, 4];
-/// Halving the step again may change a result by this fraction of the first change: by half where the scheme is of first order, with
-/// a margin for higher terms. Otherwise the steps do not converge.
+/// The second halving of the step may change a result by this fraction of the first change. A first-order scheme gives one half; the rest
+/// is a margin for higher terms. Otherwise the steps do not converge.
 const CONVERGES: f64 = 0.75;
-/// A run that goes this many times as far as the recorded one grows without bound.
+/// If a run reaches this many times the displacement of the recorded one, it grows without bound.
 const FARTHER: f64 = 10.0;
 const GROWS: &str = "errors of its readings, taken along the recorded way, grow without bound";
 
@@ -45,16 +46,16 @@ pub trait Evaluate: Sync {
 /// Results of one evaluation.
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
-    /// NaN where a result does not exist.
+    /// NaN if a result does not exist.
     pub values: Vec<f64>,
-    /// The values as they were where the run departed from its record.
+    /// The values at the departure of the run from its record.
     pub before_departure: Option<Vec<f64>>,
-    /// The farthest place from zero \[m\].
+    /// Peak absolute displacement \[m\].
     pub farthest: f64,
 }
 
 impl Evaluation {
-    /// Values that follow from the readings as they are.
+    /// Values that follow from the readings directly.
     #[must_use]
     pub const fn of_readings(values: Vec<f64>) -> Self {
         Self {
@@ -64,7 +65,7 @@ impl Evaluation {
         }
     }
 
-    /// Of a run that could not be integrated.
+    /// The evaluation of a run that could not be integrated.
     #[must_use]
     pub fn none(count: usize) -> Self {
         Self::of_readings(vec![f64::NAN; count])
@@ -92,7 +93,7 @@ impl<E> From<String> for Unknown<E> {
     }
 }
 
-/// Receives how many of how many evaluations are done; its error ends the study.
+/// Receives the number of evaluations done and their total number; an error ends the study.
 pub type Tick<'a, E> = &'a mut dyn FnMut(usize, usize) -> Result<(), E>;
 
 /// Contributions to each of the values of a procedure.
@@ -101,15 +102,15 @@ pub type Contributions = Vec<Vec<Contribution>>;
 /// The study of one procedure, or of one impact of a series.
 pub struct Study<'a, P> {
     pub procedure: ProcedureId,
-    /// From 0: each impact of a series has reading errors of its own.
+    /// From 0: each impact of a series has separate reading errors.
     pub impact: u16,
     pub evaluate: &'a P,
     pub instruments: &'a InstrumentUncertainty,
     /// Uncertain inputs, each once.
     pub inputs: Vec<Source>,
-    /// How long one evaluation is: steps of one degree of freedom.
+    /// The length of one evaluation: steps of one degree of freedom.
     pub steps: u64,
-    /// The values as the run reported them, of one that is integrated in time steps.
+    /// The values that the run reported, if it is integrated in time steps.
     pub reported: Option<Vec<f64>>,
 }
 
@@ -173,13 +174,13 @@ enum Part {
     Trial(u16),
 }
 
-/// The effect on each value, and whether the value follows smoothly; None where the value does not exist.
+/// The effect on each value, and whether the value follows smoothly; None if the value does not exist.
 type Effects = Vec<Option<(f64, bool)>>;
 
 struct Prepared<'a, P> {
     study: &'a Study<'a, P>,
     budget: TrialBudget,
-    /// Inputs that are drawn with the errors of the readings.
+    /// Inputs that are varied in the trials of the reading errors.
     drawn: Vec<Source>,
     nominal: Evaluation,
 }
@@ -213,7 +214,7 @@ impl<P: Evaluate> Prepared<'_, P> {
         }
     }
 
-    /// The results with a source perturbed; None where that is out of its bounds.
+    /// The results with a source perturbed; None if the input is then out of its bounds.
     fn perturbed(&self, source: Source, by: f64) -> Result<Option<Evaluation>, String> {
         let shifts = [(source, by)];
         let Ok(inputs) = self.study.evaluate.inputs(&shifts) else {
@@ -243,7 +244,7 @@ impl<P: Evaluate> Prepared<'_, P> {
             }
             share *= 0.5;
         };
-        // To the sides that the whole perturbation went to.
+        // To the same sides as the full perturbation.
         let half = |whole: &Option<Evaluation>, by: f64| match whole {
             Some(_) => self.perturbed(source, by),
             None => Ok(None),
@@ -327,7 +328,7 @@ impl<P: Evaluate> Prepared<'_, P> {
             &evaluate.inputs(&shifts)?,
         )?;
         let root = f64::from(self.budget.trials).sqrt();
-        // A result that does not exist has no uncertainty, and none is looked for in its trials.
+        // A result that does not exist has no uncertainty; its trials are not evaluated.
         let effect = |(found, nominal): (&f64, &f64)| {
             nominal
                 .is_finite()
@@ -342,7 +343,7 @@ impl<P: Evaluate> Prepared<'_, P> {
     }
 }
 
-/// Results at both sides; at a side that an input cannot be perturbed to, as far off as at the other.
+/// Results at both sides; if an input cannot be perturbed to one side, the same difference as at the other side.
 fn one_sided(nominal: f64, sides: [Option<f64>; 2]) -> [f64; 2] {
     let mirrored = |value: f64| nominal + (nominal - value);
     match sides {
@@ -353,8 +354,8 @@ fn one_sided(nominal: f64, sides: [Option<f64>; 2]) -> [f64; 2] {
     }
 }
 
-/// The effect of a perturbation by ±u, and whether it is smooth: `[up, down]`, and the same at ±u/2 where it was tried. Where
-/// the two sides, or the two sizes, disagree, the largest change stands for it.
+/// The effect of a perturbation by ±u, and whether it is smooth: `[up, down]`, and the same at ±u/2 if it was evaluated. If the two sides
+/// or the two sizes disagree, the effect is the largest change.
 fn effect(nominal: f64, [up, down]: [f64; 2], half: Option<[f64; 2]>) -> (f64, bool) {
     let (above, below, central) = (up - nominal, nominal - down, 0.5 * (up - down));
     let halved = half.map_or(central, |[up, down]| up - down);
@@ -374,8 +375,8 @@ fn effect(nominal: f64, [up, down]: [f64; 2], half: Option<[f64; 2]>) -> (f64, b
     (central, true)
 }
 
-/// The effect of the time step on a number that the run `reported`, and that was `nominal` when it was re-integrated and these in finer
-/// steps: how far it is from them, at most. It is sure where the steps converge.
+/// The effect of the time step on a number: the largest difference between the `reported` value and those of finer steps. `nominal` is
+/// the re-integrated value. The effect is reliable if the steps converge.
 fn of_finer_steps(reported: f64, nominal: f64, [half, quarter]: [f64; 2]) -> (f64, bool) {
     let off = [reported - half, reported - quarter]
         .into_iter()

@@ -1,5 +1,5 @@
-//! The uncertainty of the instruments of a rig: calibration, zero offset and reading errors, axis by axis. In: what the plan states and the rig
-//! declares. Out: sources, and readings with some of them perturbed. It knows no procedure.
+//! The uncertainty of the instruments of a rig: calibration, zero offset and reading errors, axis by axis. In: statements of the plan and
+//! declarations of the rig. Out: sources, and readings with some of them perturbed. It knows no procedure.
 
 use super::Source;
 use crate::physics::identification::StatedVariance;
@@ -19,7 +19,7 @@ pub struct InstrumentUncertainty {
 }
 
 impl InstrumentUncertainty {
-    /// Of the rig of a plan, which declares this noise.
+    /// The instruments of the rig of a plan, which declares this noise.
     #[must_use]
     pub fn of(plan: &Plan, declared: DeclaredNoise, axes: usize) -> Self {
         let of_axis = |axis| {
@@ -56,8 +56,8 @@ impl InstrumentUncertainty {
         self.axes.iter().any(|(_, errors)| errors.any())
     }
 
-    /// The variance of a mean of so many samples of an axis, for a fit whose scatter shows the noise: q²/12, which the samples at one place
-    /// have in common. A dry run has no scatter, and counts with the noise as well.
+    /// The variance of the mean of so many samples of an axis, for a fit whose scatter shows the noise: q²/12, which the samples at one
+    /// position have in common. A dry run has no scatter: there the noise is added.
     #[must_use]
     pub fn stated_variance(&self, axis: usize, samples: u32) -> StatedVariance {
         let errors = self.errors(axis);
@@ -95,7 +95,7 @@ impl InstrumentUncertainty {
             })
     }
 
-    /// Readings with the sources that are the instruments' perturbed, and the errors of a trial.
+    /// Readings with the sources of the instruments perturbed, and with the errors of a trial.
     #[must_use]
     pub fn perturbed(&self, shifts: Shifts<'_>, trial: Option<u16>) -> Perturbation {
         let mut readings = Perturbation {
@@ -118,7 +118,7 @@ impl InstrumentUncertainty {
                 Source::ForceZero(axis) => {
                     readings.axes[axis].zero_offset += by * self.axes[axis].0.zero();
                 }
-                // The others are inputs.
+                // All other sources are inputs.
                 _ => {}
             }
         }
@@ -134,7 +134,7 @@ impl InstrumentUncertainty {
     }
 }
 
-/// The errors of one reading of an axis, as the rig declares them; in a dry run, those of the rig that it stands for.
+/// The errors of one reading of an axis, as the rig declares them; in a dry run, those of the rig that it represents.
 fn reading_errors(plan: &Plan, declared: DeclaredNoise, axis: usize) -> ReadingErrors {
     let (noise, resolution, force_resolution) = match &plan.rig.link {
         Link::Virtual(VirtualLink {

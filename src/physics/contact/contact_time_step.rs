@@ -1,22 +1,22 @@
-//! A striker as it meets what it strikes, and the time step that a contact of finite stiffness needs there. In: masses,
+//! The motion of a striker when it meets the structure, and the time step that a contact of finite stiffness then needs. In: masses,
 //! speed, stiffnesses. Out: numbers in SI. It integrates nothing.
 
 use crate::integrator::newmark::critical_time_step;
 
-/// A striker as it meets a structure.
+/// A striker at the instant when it meets a structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
-    /// Ms, kg
+    /// Ms \[kg\]
     pub striker_mass: f64,
-    /// m/s
+    /// \[m/s\]
     pub speed: f64,
-    /// k of a contact of finite stiffness, N/m^1.5.
+    /// k of a contact of finite stiffness \[N/m^1.5\].
     pub hertz: Option<f64>,
 }
 
 impl Approach {
-    /// A striker of `mass` (kg) that starts with `velocity` (m/s) at the distance `gap` (m), under `gravity` (m/s²) along its path,
-    /// where the gap is closed.
+    /// A striker of `mass` \[kg\] that starts with `velocity` \[m/s\] at the distance `gap` \[m\], under `gravity` \[m/s²\] along its
+    /// path; its speed when the gap closes.
     #[must_use]
     pub fn after_gap(mass: f64, velocity: f64, gap: f64, gravity: f64, hertz: Option<f64>) -> Self {
         let squared = velocity * velocity + 2.0 * gravity * gap;
@@ -27,8 +27,8 @@ impl Approach {
         }
     }
 
-    /// The contact's tangent at its deepest, `k_c = 1.5 k √δ` with δ of an impact between free masses, (5/4 μu²/k)^(2/5), N/m;
-    /// `struck` is the effective mass at the struck point \[kg\]. None of a contact that has no stiffness, or that never closes.
+    /// The contact's tangent at its deepest \[N/m\]: `k_c = 1.5 k √δ` with δ of an impact between free masses, (5/4 μu²/k)^(2/5).
+    /// `struck` is the effective mass at the struck point \[kg\]. None for a contact without stiffness, or one that never closes.
     #[must_use]
     pub fn contact_stiffness(&self, struck: f64) -> Option<f64> {
         let hertz = self.hertz.filter(|_| self.speed > 0.0)?;
@@ -37,9 +37,9 @@ impl Approach {
         Some(1.5 * hertz * deepest.sqrt())
     }
 
-    /// Critical time step of one degree of freedom that is struck, s: a tenth of its period (Melo et al. 2006, eq. 7), under a
-    /// contact of finite stiffness a tenth of the shorter period of mass (kg) and striker on the spring (N/m) and that of the
-    /// contact: with a = (K + `k_c`)/M + `k_c`/Ms, ω² = (a + √(a² − 4 K `k_c`/(M Ms)))/2. A longer step would not resolve the impact.
+    /// Critical time step of one struck degree of freedom \[s\]: a tenth of its period (Melo et al. 2006, eq. 7). For a contact of finite
+    /// stiffness it is a tenth of the shorter period of mass \[kg\] and striker on the spring \[N/m\] and that of the contact: with a =
+    /// (K + `k_c`)/M + `k_c`/Ms, ω² = (a + √(a² − 4 K `k_c`/(M Ms)))/2. A longer step would not resolve the impact.
     #[must_use]
     pub fn critical_time_step(&self, mass: f64, stiffness: f64) -> f64 {
         let alone = critical_time_step(mass, stiffness);
@@ -120,8 +120,8 @@ mod tests {
         }
     }
 
-    /// An impact between free masses lasts 2.943 δ/u (Hertz), and `k_c` gives ω = √(15/8)·u/δ there: 2.943·√(15/8)·200/2π = 128.3 steps
-    /// of a twentieth fall into it.
+    /// An impact between free masses lasts 2.943 δ/u (Hertz), and `k_c` gives ω = √(15/8)·u/δ there. It contains 2.943·√(15/8)·200/2π =
+    /// 128.3 steps of a twentieth.
     #[test]
     fn a_step_shows_a_blow_on_a_free_mass() {
         let critical = HARD.critical_time_step(1.0, 300.0);

@@ -1,5 +1,5 @@
-//! Contact of finite stiffness: Hunt–Crossley's F = k δ^1.5 (1 + loss·δ̇), never pulling, with an optional limit force
-//! beyond which the surface is indented. An impact is much shorter than a step and is integrated in parts of its own duration.
+//! Contact of finite stiffness: Hunt–Crossley's F = k δ^1.5 (1 + loss·δ̇), never in tension, with an optional limit force above which the
+//! surface is indented. An impact is much shorter than a step and is integrated in parts of its own duration.
 
 use super::{Advance, Approaching, Start};
 use crate::contact::state::StepState;
@@ -9,7 +9,7 @@ use crate::structure::matrix::Vector;
 
 /// Parts of an impact. The relative error of the peak force is then about 1e-4; fewer parts change its fourth digit.
 const PARTS_OF_AN_IMPACT: f64 = 200.0;
-/// Parts of a step, at most; a step much longer than the impact is then resolved more coarsely.
+/// Largest number of parts of a step; a step much longer than the impact is then resolved more coarsely.
 const MOST_PARTS: f64 = 1e6;
 /// Gauss–Legendre on [0, 1], three points: (node, weight).
 const GAUSS: [(f64, f64); 3] = [
@@ -57,7 +57,7 @@ pub struct HertzContact {
 }
 
 impl HertzContact {
-    /// Resolves the impact that free bodies make (duration 2.943 `δ_max/u`).
+    /// Resolves the impact of free bodies (duration 2.943 `δ_max/u`).
     #[must_use]
     pub fn new(stiffness: f64, loss: f64, force_limit: Option<f64>, impact: Approaching) -> Self {
         let Approaching {
@@ -186,7 +186,7 @@ impl HertzContact {
         }
     }
 
-    /// The midpoint rule over parts of the step: it keeps the energy balance to rounding whatever the force is.
+    /// The midpoint rule over parts of the step: it satisfies the energy balance to rounding for any force.
     fn follow<V: Vector>(
         &self,
         substep: &mut Substep<V>,
@@ -211,7 +211,7 @@ impl HertzContact {
         let duration = time_step / parts;
         let half = 0.5 * duration;
         substep.prepare(duration, 0.0);
-        // M̂⁻¹ e_s: how the structure yields to a force on the struck degree of freedom.
+        // M̂⁻¹ e_s: the response of the structure to a force on the struck degree of freedom.
         response.update([], |_, []| 0.0);
         response.as_mut_slice()[struck] = 1.0;
         substep.solve(response);

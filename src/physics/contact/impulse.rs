@@ -27,7 +27,7 @@ pub struct ImpulseContact {
     force_limit: f64,
 }
 
-/// State and force (N) of a contact in a step.
+/// State and force \[N\] of a contact in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Decided {
     pub state: StepState,
@@ -50,18 +50,18 @@ impl ImpulseContact {
         }
     }
 
-    /// At most `force`, N.
+    /// At most `force` \[N\].
     #[must_use]
     pub const fn limited(force: f64) -> Self {
         Self { force_limit: force }
     }
 
-    /// N; infinite if there is none.
+    /// \[N\]; infinite without a limit.
     pub(crate) const fn force_limit(self) -> f64 {
         self.force_limit
     }
 
-    /// F of a step from `v_free` (m/s) and w (m/s/N): at most the limit, never a pull.
+    /// F of a step from `v_free` \[m/s\] and w \[m/s/N\]: at most the limit, and never in tension.
     #[inline]
     pub(crate) fn decide(
         self,
@@ -88,7 +88,7 @@ impl ImpulseContact {
         }
     }
 
-    /// The striker after a step, the struck degree of freedom at `displacement` (m) with `velocity` (m/s) then.
+    /// The striker after a step, the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then.
     #[inline]
     pub(crate) fn advance(
         striker: &Striker,

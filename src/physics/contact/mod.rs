@@ -24,11 +24,11 @@ pub struct Start {
     pub velocity: f64,
     pub striker_displacement: f64,
     pub striker_velocity: f64,
-    /// F of the step before, N.
+    /// F of the step before \[N\].
     pub contact_force: f64,
     /// Whether the step before was one in contact.
     pub touching: bool,
-    /// δp, m
+    /// δp \[m\]
     pub indentation: f64,
 }
 
@@ -38,15 +38,15 @@ pub struct Advance {
     pub striker_displacement: f64,
     pub striker_velocity: f64,
     pub state: StepState,
-    /// Impulse of the step over Δt, N.
+    /// Impulse of the step over Δt \[N\].
     pub contact_force: f64,
-    /// δp, m
+    /// δp \[m\]
     pub indentation: f64,
-    /// Energy that left the two bodies through their contact in this step, J.
+    /// Energy that left the two bodies through their contact in this step \[J\].
     pub contact_loss: f64,
-    /// ∫ẊᵀCẊ dt of a step whose velocity jumps, J; 0 of a law of impulses, whose dampers the structure balances.
+    /// ∫ẊᵀCẊ dt of a step with a velocity jump \[J\]; 0 for a law of impulses, where the structure balances the dampers.
     pub damping_work: f64,
-    /// `F_lim` Δδp, J.
+    /// `F_lim` Δδp \[J\].
     pub indentation_work: f64,
     /// Contacts that began in this step: of a law that acts step by step the first step in contact after one apart, of one that
     /// follows the contact inside a step every time that it closes.
@@ -103,12 +103,12 @@ impl AnyContact {
 /// Two bodies before their first impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approaching {
-    /// That the striker meets, kg.
+    /// The mass that the striker meets \[kg\].
     pub mass: f64,
-    /// Ms, kg
+    /// Ms \[kg\]
     pub striker_mass: f64,
-    /// m/s
+    /// \[m/s\]
     pub velocity: f64,
-    /// Δt, s
+    /// Δt \[s\]
     pub time_step: f64,
 }

@@ -1,5 +1,5 @@
-//! Impacts with a coefficient of restitution, each at its own instant inside the step; where bounces die out the two
-//! bodies go on together until the contact would have to pull. Between events the step is eq. (5) over a part of Δt.
+//! Impacts with a coefficient of restitution, each at its own instant inside the step. When bounces die out the two bodies move together
+//! until the contact would be in tension. Between events the step is eq. (5) over a part of Δt.
 //!
 //! An impulse p on the degree of freedom s changes the velocities by M⁻¹e_s p, so that an impact meets the mass 1/(e_sᵀM⁻¹e_s).
 
@@ -9,13 +9,13 @@ use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Scratch, Striker, Substep};
 use crate::structure::matrix::Vector;
 
-/// Flights shorter than this part of Δt are not followed: the bodies stay together. Larger, and bouncing ends too
-/// early; smaller, and a step near e = 1 takes more bounces than it is worth. Its error shrinks with Δt.
+/// Flights shorter than this part of Δt are not followed: the bodies stay together. With more, bouncing ends too early. With less, a step
+/// near e = 1 takes more bounces than necessary. The error falls with Δt.
 const SHORTEST_FLIGHT: f64 = 1e-3;
-/// Halvings of an interval of time: past the resolution of a double.
+/// Bisections of a time interval: past the resolution of a double.
 const HALVINGS: u32 = 60;
-/// Impacts of one step that bounce. `SHORTEST_FLIGHT` lets no more into a step whose structure slows down steadily; past
-/// them the next impact is treated as the last of the series.
+/// Largest number of bounces in one step. `SHORTEST_FLIGHT` allows no more in a step whose structure slows down steadily; past them the
+/// next impact is treated as the last of the series.
 const MOST_BOUNCES: u32 = 2000;
 
 /// Separation speed = `coefficient` × closing speed.
@@ -40,14 +40,14 @@ impl RestitutionContact {
 /// A collision of two bodies: the impulse between them.
 struct Collision {
     coefficient: f64,
-    /// M Ms/(M + Ms), kg.
+    /// M Ms/(M + Ms) \[kg\].
     reduced_mass: f64,
-    /// m/s
+    /// \[m/s\]
     closing: f64,
 }
 
 impl Collision {
-    /// Of two masses, kg, that close at this speed, m/s.
+    /// Two masses \[kg\] that close at this speed \[m/s\].
     const fn new(coefficient: f64, mass: f64, striker_mass: f64, closing: f64) -> Self {
         Self {
             coefficient,
@@ -56,12 +56,12 @@ impl Collision {
         }
     }
 
-    /// N·s
+    /// \[N·s\]
     const fn impulse(&self) -> f64 {
         self.reduced_mass * (1.0 + self.coefficient) * self.closing
     }
 
-    /// J
+    /// \[J\]
     const fn loss(&self) -> f64 {
         0.5 * self.reduced_mass
             * (1.0 - self.coefficient * self.coefficient)
@@ -69,12 +69,12 @@ impl Collision {
             * self.closing
     }
 
-    /// Speed at which they part, m/s.
+    /// Speed at which they separate \[m/s\].
     const fn separation(&self) -> f64 {
         self.coefficient * self.closing
     }
 
-    /// Whether they are together again, slowing towards each other at `deceleration` (m/s²), after a flight that is not followed.
+    /// Whether they are together again after a flight that is not followed; they approach each other with `deceleration` \[m/s²\].
     const fn dies_out(&self, deceleration: f64, time_step: f64) -> bool {
         2.0 * self.separation() <= deceleration * SHORTEST_FLIGHT * time_step
     }
@@ -99,7 +99,7 @@ struct Course<'a, 'b, V: Vector> {
     swapped: bool,
     striker_displacement: f64,
     striker_velocity: f64,
-    /// Xs − X, at most 0; the very 0 after an impact.
+    /// Xs − X, at most 0; exactly 0 after an impact.
     overlap: f64,
     left: f64,
     impulse: f64,
@@ -108,7 +108,8 @@ struct Course<'a, 'b, V: Vector> {
 }
 
 impl<V: Vector> Course<'_, '_, V> {
-    /// Looks `duration` ahead, with the striker on the structure or without: the struck displacement, velocity and acceleration.
+    /// Evaluates the motion `duration` ahead, with the striker on the structure or without: the struck displacement, velocity and
+    /// acceleration.
     #[inline]
     fn look(&mut self, duration: f64, joined: bool) -> [f64; 3] {
         let Striker {
@@ -133,7 +134,7 @@ impl<V: Vector> Course<'_, '_, V> {
         .map(|vector| vector.as_slice()[struck])
     }
 
-    /// Goes on for `duration` to where it looked.
+    /// Continues for `duration` to the evaluated motion.
     #[inline]
     fn go(&mut self, striker_velocity: f64, duration: f64) {
         let moved = self.substep.of_struck(self.ahead).0 - self.substep.of_struck(self.now).0;
@@ -218,7 +219,7 @@ impl RestitutionContact {
                 bounces += 1;
             }
         }
-        // A pair that parts as the step begins has not touched in it.
+        // A pair that separates as the step begins has not touched in it.
         let touched = self.joined || course.impulse > 0.0;
         let advance = Advance {
             striker_displacement: course.striker_displacement,
@@ -250,7 +251,7 @@ impl RestitutionContact {
         let [velocity, _] = course.struck();
         let touching_and_closing = overlap == 0.0 && striker_velocity > velocity;
         if !touching_and_closing {
-            // Xs − X > 0 divided by the time flown, so that the touch at the start of a flight is no root of it.
+            // Xs − X > 0 divided by the flight time, so that the contact at the start of a flight is not a root.
             let mut closed = |duration: f64| {
                 let [_, ahead, _] = course.look(duration, false);
                 overlap / duration + (striker_velocity + 0.5 * gravity * duration)
@@ -262,12 +263,12 @@ impl RestitutionContact {
                 return false;
             }
             let instant = locate(left, closed);
-            // The last look of a search is not always at the instant that it found.
+            // The last evaluation of a search is not always at the instant that it found.
             course.look(instant, false);
             course.go(striker_velocity + gravity * instant, instant);
             course.overlap = 0.0;
         }
-        // The chord met the striker but the structure speeds away from it: they graze, and nothing passes.
+        // The chord met the striker but the structure moves away from it: they graze, and no momentum passes.
         if course.striker_velocity < course.struck()[0] {
             return false;
         }
@@ -310,14 +311,14 @@ impl RestitutionContact {
         }
     }
 
-    /// Both bodies as one, to the end of the step or to the instant the contact would pull.
+    /// Both bodies as one, to the end of the step or to the instant when the contact would be in tension.
     #[inline]
     fn ride<V: Vector>(&mut self, course: &mut Course<V>) {
         let Striker { mass, gravity, .. } = course.striker;
         let mut duration = course.left;
         let [velocity, _] = course.struck();
         let mut ahead = course.look(duration, true);
-        // F = Ms(g − Ẍ): it pulls where the pair speeds up by more than g.
+        // F = Ms(g − Ẍ): it is in tension if the pair accelerates by more than g.
         let parted = ahead[2] > gravity;
         if parted {
             duration = locate(duration, |duration| {

@@ -20,16 +20,16 @@ impl StepState {
     }
 }
 
-/// How striker and structure meet.
+/// The contact law between striker and structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactLaw {
     /// One velocity while they touch (Melo et al. 2006, eq. 4).
     Rigid,
-    /// Rigid up to `force` (N), then perfectly plastic (Melo et al. 2006, Fig. 7).
+    /// Rigid up to `force` \[N\], then perfectly plastic (Melo et al. 2006, Fig. 7).
     Limit { force: f64 },
     /// Separation speed over closing speed, 0 to 1.
     Restitution { coefficient: f64 },
-    /// F = k δ^1.5 (1 + loss·δ̇), k in N/m^1.5, loss in s/m; past `force_limit` (N) the surface is dented for good.
+    /// F = k δ^1.5 (1 + loss·δ̇), k in N/m^1.5, loss in s/m; above `force_limit` \[N\] the surface is permanently indented.
     Hertz {
         stiffness: f64,
         loss: f64,
@@ -38,7 +38,7 @@ pub enum ContactLaw {
 }
 
 impl ContactLaw {
-    /// k of a law of finite stiffness, N/m^1.5.
+    /// k of a law of finite stiffness \[N/m^1.5\].
     #[must_use]
     pub const fn stiffness(&self) -> Option<f64> {
         match self {

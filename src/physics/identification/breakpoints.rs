@@ -1,12 +1,12 @@
-//! Search for the breakpoints of a polyline. In: points in order of x, and how many breakpoints at most. Out: the best line of each
+//! Search for the breakpoints of a polyline. In: points in order of x, and the largest number of breakpoints. Out: the best line for each
 //! number of breakpoints. It knows no forces, no errors and no criterion.
 //!
-//! One start is the best division into separate lines, found exactly by dynamic programming; the other adds one breakpoint to the
-//! best line with one fewer. Gauss–Newton descends from both ([`Polyline::descended`]), and the better end is taken.
+//! One start is the best division into separate lines, found exactly by dynamic programming; the other adds one breakpoint to the best
+//! line with one fewer. Gauss–Newton descends from both ([`Polyline::descended`]), and the better result is used.
 
 use super::polyline::{FEWEST, Polyline};
 
-/// Positions tried for a breakpoint at the start, at most; from there it moves anywhere.
+/// Largest number of positions tried for a breakpoint at the start; from there it moves anywhere.
 const MAX_POSITIONS: usize = 200;
 
 /// The best lines with 0, 1, … up to `most` breakpoints, as far as the points determine them. x must rise.
@@ -50,8 +50,8 @@ fn positions(count: usize) -> impl Iterator<Item = usize> + Clone {
     (FEWEST..=count.saturating_sub(FEWEST)).step_by(count.div_ceil(MAX_POSITIONS).max(1))
 }
 
-/// The division of the points into 2, 3, … separate lines that leaves the least squares, each as the positions where its lines
-/// meet, or the middle between the neighbouring points where the lines do not meet between them.
+/// The division of the points into 2, 3, … separate lines with the least sum of squares. Each is given by the positions at which its
+/// lines meet, or by the middle between the neighbouring points if the lines do not meet between them.
 fn divisions(points: &[(f64, f64)], most: usize) -> Vec<Vec<f64>> {
     let ends: Vec<usize> = positions(points.len())
         .chain(std::iter::once(points.len()))

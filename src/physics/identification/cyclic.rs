@@ -4,39 +4,38 @@
 /// One reading of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopPoint {
-    /// Where the actuator was sent, m.
+    /// Commanded displacement \[m\].
     pub command: f64,
-    /// m
+    /// \[m\]
     pub displacement: f64,
-    /// N
+    /// \[N\]
     pub force: f64,
 }
 
-/// What one cycle comes to.
+/// The results of one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loop {
-    /// Half the width of the loop, a, m.
+    /// Half the width of the loop, a \[m\].
     pub amplitude: f64,
-    /// ∫R dX from the first point to the last by the trapezoid, J: positive where energy was spent. The ends of a
-    /// cycle are at one place, so that it is the area of the loop.
+    /// ∫R dX from the first point to the last by the trapezoidal rule \[J\]: positive if energy was dissipated. A cycle begins and ends
+    /// at one position, so that this is the area of the loop.
     pub energy: f64,
-    /// N
+    /// \[N\]
     pub max_force: f64,
-    /// N
+    /// \[N\]
     pub min_force: f64,
-    /// Displacement (m) and force (N) where the leftmost and where the rightmost command was read. A place that is
-    /// commanded twice, as the start of a one-sided cycle, counts as it is left last: that reading closes the loop, and no
-    /// error of a reading chooses between the two.
+    /// Displacement \[m\] and force \[N\] at the leftmost and at the rightmost command. If a position is commanded twice, as the start of
+    /// a one-sided cycle, the last reading counts: it closes the loop, and the choice does not depend on errors of readings.
     pub ends: [(f64, f64); 2],
-    /// From the left end to the right, `K_sec`, N/m; None without motion.
+    /// From the left end to the right, `K_sec` \[N/m\]; None without motion.
     pub stiffness: Option<f64>,
-    /// Equivalent viscous damping, `E_D / (4π E_S0)` with `E_S0 = ½ K_sec a²`: a damper C = 2ζ√(KM) that moves at
-    /// ω = √(K/M) takes π C ω a² = 4πζ·½Ka² a cycle. About the middle of the loop, so that it means the same of one-sided cycles. None where
+    /// Equivalent viscous damping, `E_D / (4π E_S0)` with `E_S0 = ½ K_sec a²`. A damper C = 2ζ√(KM) that moves at ω = √(K/M) dissipates π
+    /// C ω a² = 4πζ·½Ka² per cycle. It refers to the middle of the loop, so that it has the same meaning for one-sided cycles. None if
     /// the loop has no positive stiffness.
     pub damping_ratio: Option<f64>,
 }
 
-/// The loop through `points`; None of fewer than two.
+/// The loop through `points`; None for fewer than two.
 #[must_use]
 pub fn loop_of(points: &[LoopPoint]) -> Option<Loop> {
     let (first, rest) = points.split_first().filter(|(_, rest)| !rest.is_empty())?;
@@ -86,7 +85,7 @@ impl LoopPoint {
     }
 }
 
-/// ∫R dX between two points by the trapezoid, J.
+/// ∫R dX between two points by the trapezoidal rule \[J\].
 #[must_use]
 pub fn work(from: (f64, f64), to: (f64, f64)) -> f64 {
     0.5 * (from.1 + to.1) * (to.0 - from.0)
@@ -105,7 +104,7 @@ mod tests {
         }
     }
 
-    /// Points of one cycle to +a, −a and back, `points` to the quarter.
+    /// Points of one cycle to +a, −a and back, `points` per quarter.
     fn cycle(model: &mut dyn RestoringForce, amplitude: f64, points: u32) -> Vec<LoopPoint> {
         let mut path = vec![read(0.0, model)];
         let (mut from, ends) = (0.0, [(amplitude, 1), (-amplitude, 2), (0.0, 1)]);
@@ -187,8 +186,8 @@ mod tests {
             (None, None, 2.0)
         );
     }
-    /// Pushed to `a` and back from the virgin state: the place of the start is read twice, at no force and at the force that
-    /// holds it there. Whatever the errors of the two readings, the loop goes from the second.
+    /// Pushed to `a` and back from the virgin state: the start position is read twice, at zero force and at the force that holds it
+    /// there. Whatever the errors of the two readings, the loop begins at the second.
     #[test]
     fn a_one_sided_loop_is_closed_by_its_last_reading() {
         for error in [-1e-6, 0.0, 1e-6] {

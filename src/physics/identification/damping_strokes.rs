@@ -1,48 +1,48 @@
-//! What the strokes of a damping sweep tell of the specimen itself: whether it flowed on the way, and how stiff it is there. In: of each
-//! stroke, pairs of a reading out and one back near one place. Out: numbers in SI. It fits no damping.
+//! The properties of the specimen that the passes of a damping sweep show: whether it yielded, and its stiffness there. In: for each
+//! pass, pairs of an outward and a return reading near one position. Out: numbers in SI. It fits no damping.
 //!
-//! Viscous and Coulomb damping resist the same at every place of a stroke, so that half of out minus back is one number. An actuator that
-//! lags is behind on both ways, so that the two readings of a pair are apart: the stiffness of the strokes, which the mean of the two
-//! forces shows, brings them to one place. A specimen that
-//! flows on the way out comes back by another line: the difference then grows from where the stroke turns, by (K − `K_t`)/2 a metre, and is
-//! of its loop, not of its damping.
+//! Viscous and Coulomb damping forces are the same at every position of a pass. Half of (outward − return) is therefore one number. An
+//! actuator that lags is behind in both directions, so that the two readings of a pair are apart. The mean of the two forces shows the
+//! stiffness along the passes, and this stiffness corrects both readings to one position. A specimen that yields on the outward pass
+//! returns along a different line. The difference then grows from the reversal point by (K − `K_t`)/2 per metre. It belongs to the
+//! hysteresis loop and not to the damping.
 
 use super::fit_line;
 
-/// Of a change along a stroke, in standard errors, that is taken for one.
+/// A change along a pass counts from this many standard errors.
 const SURE: f64 = 5.0;
 
-/// Of the mean difference: what an actuator that has not quite settled leaves is a hundredth.
+/// A change counts from this fraction of the mean difference: an actuator that has not quite settled leaves about a hundredth.
 const SHARE: f64 = 0.1;
 
-/// Of the largest force: less is rounding.
+/// Fraction of the largest force below which a difference is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A reading on the way out and one on the way back near the same place.
+/// An outward and a return reading near the same position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutAndBack {
-    /// Of the way on which the place was read, m/s.
+    /// Velocity of the pass in which the position was read \[m/s\].
     pub velocity: f64,
-    /// Mean of the two places, m.
+    /// Mean of the two positions \[m\].
     pub place: f64,
-    /// Half of out minus back of the places, m.
+    /// Half of (outward − return) of the positions \[m\].
     pub half_apart: f64,
-    /// Half of out minus back of the forces, N.
+    /// Half of (outward − return) of the forces \[N\].
     pub half_difference: f64,
-    /// Mean of the two forces, N.
+    /// Mean of the two forces \[N\].
     pub mean: f64,
 }
 
 impl OutAndBack {
-    /// Half of out minus back at one place (N), of strokes that run at `stiffness` (N/m).
+    /// Half of (outward − return) at one position \[N\], for passes with the tangent `stiffness` \[N/m\].
     #[must_use]
     pub fn damping_force(&self, stiffness: f64) -> f64 {
         self.half_difference - stiffness * self.half_apart
     }
 }
 
-/// By how much the damping force changes along a stroke that runs at `stiffness` (N/m), N; None where it is the same all along, or too
-/// few readings tell.
+/// The change of the damping force along a pass with the tangent `stiffness` \[N/m\], in N. None if the force is the same all along, or
+/// if there are too few readings.
 #[must_use]
 pub fn change_along(stroke: &[OutAndBack], stiffness: f64) -> Option<f64> {
     let places: Vec<f64> = stroke.iter().map(|pair| pair.place).collect();
@@ -61,8 +61,8 @@ pub fn change_along(stroke: &[OutAndBack], stiffness: f64) -> Option<f64> {
     (change > SURE * error && change > SHARE * mean.abs() && change > rounding).then_some(change)
 }
 
-/// K of the specimen along its strokes with its standard error, N/m: one slope of the mean force for all, each with an intercept of its
-/// own, for where a specimen rests may drift between them.
+/// Stiffness K of the specimen along its passes, with its standard error \[N/m\]. All passes share one slope of the mean force. Each pass
+/// has its own intercept, because the unloaded position may drift between them.
 #[must_use]
 pub fn own_stiffness<'a>(
     strokes: &(impl Iterator<Item = &'a [OutAndBack]> + Clone),
@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(change_along(&stroke(noisy, 0.0), 4e5), None);
     }
 
-    /// Half of K − `K_t` over the stroke.
+    /// Half of K − `K_t` over the pass.
     #[test]
     fn a_way_back_by_another_line_does() {
         let change =
@@ -139,7 +139,7 @@ mod tests {
         assert!((change - 1.8e5 * 39.0 * 2e-5).abs() < 1e-6, "{change}");
     }
 
-    /// An actuator that is 1 mm behind on either way: 3 N of damping, by the stiffness of the strokes alone.
+    /// An actuator that lags by 1 mm in both directions: 3 N of damping, from the stiffness of the passes alone.
     #[test]
     fn readings_that_are_apart_are_brought_to_one_place() {
         let behind = 1e-3;

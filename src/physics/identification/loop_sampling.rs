@@ -1,36 +1,38 @@
-//! Where the points of a loop stand, and what they leave open of its area. In: how many there are, places and forces in order, the noise of
-//! a force. Out: places, an energy. It knows no rig.
+//! The spacing of the points of a loop, and the part of its area that they leave undetermined. In: the number of points, positions and
+//! forces in order, the noise of a force. Out: positions, an energy. It knows no rig.
 //!
-//! Between two points the curve is not known; the trapezoid takes the chord. If it does not bend more than once there, it lies between the
-//! chord and the lines that its neighbours on the same way lead on to: a corner reaches the point where these meet, a curve goes about
-//! a third of the way there. Where the way turns there is one line; where a step is a whole way there is none, and all that lies between
-//! the two forces is open.
+//! Between two points the curve is not known; the trapezoidal rule takes the chord. If the curve bends no more than once there, it lies
+//! between the chord and the extended segments before and after. A corner reaches the point where these lines meet; a smooth curve
+//! reaches about a third of that distance. Next to a reversal there is only one such line. If one step is the whole branch there is none,
+//! and the whole range between the two forces is undetermined.
 
-/// The share of even spacing.
+/// The fraction of even spacing.
 const EVEN: f64 = 0.25;
 
-/// Where a point stands that has this share of the points before it, both from 0 to 1 on the stretch from one turn to the next.
+/// The position of the point that has this fraction of the points before it. Both run from 0 to 1 between one reversal and the next.
 ///
-/// A loop that yields soon after its turn, at d of a stretch D, has an energy ∝ d(D − d), and so has one that yields late: each loses
-/// about the same share of it at its corner where steps are ∝ √(d(D − d)), which is even steps of the angle in ½(1 − cos πs). Some even
-/// spacing is kept: pinched loops bend in the middle, and no step there is 1.5 times the even one; none is less than a quarter of it.
+/// A loop that yields at a distance d after its reversal, on a branch of length D, has an energy ∝ d(D − d). This applies to early and to
+/// late yielding. Each loop loses about the same fraction of its energy at its corner if steps are ∝ √(d(D − d)). These are even steps of
+/// the angle in ½(1 − cos πs). Some even spacing is kept because pinched loops bend in the middle. There no step is longer than 1.5 times
+/// the even one, and none is shorter than a quarter of it.
 #[must_use]
 pub fn spaced(share: f64) -> f64 {
     EVEN * share + (1.0 - EVEN) * 0.5 * (1.0 - (std::f64::consts::PI * share).cos())
 }
 
-/// A bend smaller than so many standard deviations of it is noise.
+/// A bend smaller than this many of its standard deviations is noise.
 const SURE: f64 = 4.0;
-/// Of the largest force: less is rounding.
+/// Fraction of the largest force below which a difference is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The most (J) by which the area under `points` (m and N) may differ from its trapezia; `noise` is the standard deviation of a force, N.
+/// The largest difference \[J\] between the area under `points` (m and N) and its trapezoids; `noise` is the standard deviation of a
+/// force \[N\].
 #[must_use]
 pub fn left_open(points: &[(f64, f64)], noise: f64) -> f64 {
     let largest = points
         .iter()
         .fold(0.0, |largest: f64, (_, force)| largest.max(force.abs()));
-    // Of the second difference of three forces.
+    // The noise of the second difference of three forces.
     let least = (SURE * 6.0_f64.sqrt() * noise).max(ROUNDING * largest);
     let slope = |from: (f64, f64), to: (f64, f64), way: f64| {
         let moved = to.0 - from.0;
@@ -46,7 +48,8 @@ pub fn left_open(points: &[(f64, f64)], noise: f64) -> f64 {
         let after = points
             .get(index + 2)
             .and_then(|after| slope(to, *after, way));
-        // By how much the line before passes the end of the step, and the line after its begin, on the other side of the chord.
+        // The overshoot of the line before past the end of the step, and of the line after past its begin, on the other side of the
+        // chord.
         let (before, after) = (
             before.map(|slope| bend(slope * way - rise)),
             after.map(|slope| bend(rise - slope * way)),
@@ -56,7 +59,7 @@ pub fn left_open(points: &[(f64, f64)], noise: f64) -> f64 {
                 (Some(before), Some(after)) if before * after > 0.0 => {
                     before * after / (before + after)
                 }
-                // It bends both ways: one after the other, or by a jump.
+                // The curve bends in both directions: one after the other, or by a jump.
                 (Some(before), Some(after)) => before.abs().min(after.abs()),
                 (Some(one), None) | (None, Some(one)) => one,
                 (None, None) => bend(rise),
@@ -72,7 +75,7 @@ mod tests {
     use crate::specimen::{Bilinear, BoltedJoint, PinchedHysteresis, RestoringForce};
     use crate::specimen::{Bolted, Pinching};
 
-    /// Places of the closed second cycle to ±a, `points` to the quarter, with what the model gives; `spacing` as [`spaced`].
+    /// Positions of the closed second cycle to ±a with the forces of the model; `points` per quarter, `spacing` as [`spaced`].
     fn second_cycle(
         model: &mut dyn RestoringForce,
         amplitude: f64,
@@ -82,7 +85,7 @@ mod tests {
         let mut path = Vec::new();
         for cycle in 0..2 {
             let mut from = 0.0;
-            // To one side, to the other and back: each end, and which part of the way from turn to turn leads to it.
+            // To one side, to the other and back: each end, and the part of the branch that leads to it.
             for (end, [begin, turn]) in [(1.0, [0.5, 1.0]), (-1.0, [0.0, 1.0]), (0.0, [0.0, 0.5])] {
                 let to = end * amplitude;
                 let count = f64::from(points) * ((to - from) / amplitude).abs();
@@ -106,8 +109,8 @@ mod tests {
         share
     }
 
-    /// Of loops that yield early and late, pinched and loose ones: the largest share of an energy that 25 points a quarter lose is a third of
-    /// what even ones lose, and of none more than 0.25 %.
+    /// Loops that yield early and late, pinched and wide ones. With 25 points per quarter the largest relative energy loss is a third of
+    /// that of even steps, and for no loop more than 0.25 %.
     #[test]
     fn points_that_stand_closer_towards_the_turns_lose_less() {
         let bilinear = |hardening: f64| {
@@ -170,8 +173,8 @@ mod tests {
             .sum()
     }
 
-    /// Wherever its corners fall between the points: the parallelogram 4 F_y (1 − α)(a − x_y) is never farther off than what is left open,
-    /// and that falls with the square of the step.
+    /// Wherever its corners fall between the points, the error of the parallelogram 4 F_y (1 − α)(a − x_y) never exceeds the undetermined
+    /// energy. This energy falls with the square of the step.
     #[test]
     fn a_parallelogram_loses_no_more_than_is_left_open() {
         for (points, place) in [2, 3, 5, 10, 25, 100]
@@ -201,7 +204,7 @@ mod tests {
         }
     }
 
-    /// ∫ of a parabola: the chord loses a third of what the lines of its neighbours leave open.
+    /// ∫ of a parabola: the chord loses a third of the area that the lines of its neighbours enclose.
     #[test]
     fn a_curve_loses_a_third_of_it() {
         let points: Vec<(f64, f64)> = (0..=100)
@@ -212,7 +215,8 @@ mod tests {
         assert!((open / lost - 3.0).abs() < 0.15, "{open} J of {lost} J");
     }
 
-    /// A force that turns with the way, as a damper's does, is lost by half of the first step back; one point a quarter leaves all open.
+    /// A force that changes sign with the direction, such as that of a damper, loses half of the first step after the reversal. With one
+    /// point per quarter everything is undetermined.
     #[test]
     fn a_turn_and_a_lone_step_leave_open_what_lies_between_the_forces() {
         let damper = [

@@ -15,40 +15,40 @@ pub mod polyline;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineFit {
     pub slope: f64,
-    /// Standard; no less than by the stated errors of the readings.
+    /// Standard error of the slope; at least that from the stated errors of the readings.
     pub slope_error: f64,
     pub intercept: f64,
-    /// The same of the intercept.
+    /// Standard error of the intercept, likewise.
     pub intercept_error: f64,
-    /// Of slope and intercept, −1 to 1: both turn about the middle of the points.
+    /// Correlation of slope and intercept, −1 to 1: the line rotates about the mean of the points.
     pub correlation: f64,
     pub r_squared: f64,
-    /// Of the scatter about the line: the points less the two numbers of it.
+    /// Degrees of freedom of the scatter about the line: number of points minus two.
     pub degrees: f64,
     /// Fraction of the standard errors that the scatter shows; the rest is stated.
     pub shown: f64,
 }
 
-/// The variance of a reading by what is stated of its errors. A fit counts with no less.
+/// The variance of a reading from its stated errors. A fit uses at least this variance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StatedVariance {
-    /// Of a force \[N²\].
+    /// Variance of a force \[N²\].
     pub force: f64,
-    /// Of a displacement \[m²\].
+    /// Variance of a displacement \[m²\].
     pub displacement: f64,
-    /// Whether the readings do not have these errors yet: those of the run will scatter by them.
+    /// Whether the readings do not have these errors yet: the readings of the run will scatter by them.
     pub expected: bool,
 }
 
 impl StatedVariance {
-    /// Of a force about a curve of this slope \[N/m\].
+    /// Variance of a force about a curve of this slope \[N/m\].
     #[must_use]
     pub fn about(self, slope: f64) -> f64 {
         self.force + slope * slope * self.displacement
     }
 
-    /// The variance \[N²\] that a fit of this slope \[N/m\] counts with, whose readings scatter by `scatter` \[N²\], and the fraction of its
-    /// standard errors that the scatter shows.
+    /// The variance \[N²\] for a fit of this slope \[N/m\], whose readings scatter by `scatter` \[N²\], and the fraction of its standard
+    /// errors that the scatter shows.
     #[must_use]
     pub fn counted(self, scatter: f64, slope: f64) -> (f64, f64) {
         let stated = self.about(slope);
@@ -63,8 +63,8 @@ impl StatedVariance {
 }
 
 impl LineFit {
-    /// The same line through points at these x, whose errors are stated to be no less; `slope` \[N/m\] is that of the force over the
-    /// displacement.
+    /// The same line through points at these x, with errors that are at least the stated ones; `slope` \[N/m\] is that of the force over
+    /// the displacement.
     #[must_use]
     pub fn stated(self, x: &[f64], stated: StatedVariance, slope: f64) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "no test has 2^53 readings")]
@@ -85,8 +85,8 @@ impl LineFit {
     }
 }
 
-/// Least squares with an intercept, about the means so that no digits are lost. None with fewer than three points, with
-/// lists of different length, or where x does not vary.
+/// Least squares with an intercept, about the means so that no digits are lost. None with fewer than three points, with lists of
+/// different length, or if x does not vary.
 #[must_use]
 pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
     if x.len() != y.len() || x.len() < 3 {
@@ -104,7 +104,7 @@ pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
         yy += dy * dy;
     }
     let largest = x.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-    // One value many times over has a mean that misses it by its rounding: that is no spread to fit a slope to.
+    // The mean of many equal values differs from them by its rounding: a slope cannot be fitted to this spread.
     if xx.is_nan() || xx <= count * (8.0 * f64::EPSILON * largest).powi(2) {
         return None;
     }
@@ -128,8 +128,8 @@ pub fn fit_line(x: &[f64], y: &[f64]) -> Option<LineFit> {
     })
 }
 
-/// `F_d = c·v + F_c·sign v`: slope c (N·s/m) and intercept `F_c` (N), fitted as `F_d·sign v` against |v|. Readings at rest say
-/// nothing of it and are left out.
+/// `F_d = c·v + F_c·sign v`: slope c \[N·s/m\] and intercept `F_c` \[N\], fitted as `F_d·sign v` against |v|. Readings at rest contain no
+/// information on it and are left out.
 #[must_use]
 pub fn fit_damping(velocities: &[f64], damping_forces: &[f64]) -> Option<LineFit> {
     if velocities.len() != damping_forces.len() {
@@ -144,7 +144,7 @@ pub fn fit_damping(velocities: &[f64], damping_forces: &[f64]) -> Option<LineFit
     fit_line(&speeds, &forces)
 }
 
-/// ∮R dX by the trapezoid, closed from the last point to the first, J: positive where energy was spent.
+/// ∮R dX by the trapezoidal rule, closed from the last point to the first \[J\]: positive if energy was dissipated.
 #[must_use]
 pub fn loop_energy(displacements: &[f64], forces: &[f64]) -> f64 {
     let count = displacements.len().min(forces.len());
@@ -173,7 +173,7 @@ mod tests {
             .map(|reading| 2.0 + 0.1 * f64::from(reading % 7))
             .collect();
         assert_eq!(fit_damping(&velocities, &forces), None);
-        // A hundred ulps apart is a spread that was asked for.
+        // A spread of a hundred ulps is a spread that was commanded.
         let apart: Vec<f64> = (0..51)
             .map(|reading| 0.005 + f64::from(reading % 2) * 1e-16)
             .collect();

@@ -1,5 +1,5 @@
-//! A multilinear curve fitted to a ramp or a backbone: straight segments that meet at breakpoints. In: displacements and forces, and
-//! how many breakpoints. Out: the stiffness of every segment and the breakpoints, with standard errors. It knows no rig and no plan.
+//! A multilinear curve fitted to a ramp or a backbone: straight segments that meet at breakpoints. In: displacements and forces, and the
+//! number of breakpoints. Out: the stiffness of every segment and the breakpoints, with standard errors. It knows no rig and no plan.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,7 +14,7 @@ pub const MOST_BREAKS: usize = 8;
 /// Scatter below this fraction of the largest force is rounding and no reason for another breakpoint.
 const ROUNDING: f64 = 1e-9;
 
-/// How many breakpoints a curve has.
+/// The number of breakpoints of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BreakCount {
     Exactly(usize),
@@ -48,7 +48,7 @@ pub struct MultilinearFit {
     pub degrees: f64,
     /// Fraction of the standard errors that the scatter shows; the rest is stated.
     pub shown: f64,
-    /// BIC for 0, 1, … breakpoints minus its least value; empty where the number was given.
+    /// BIC for 0, 1, … breakpoints minus its least value; empty if the number was given.
     pub criterion: Vec<f64>,
 }
 
@@ -107,7 +107,7 @@ impl MultilinearFit {
             .collect()
     }
 
-    /// Points of the backbone curve from the origin, displacement \[m\] and force \[N\], the last at `reach` \[m\]. None where a segment
+    /// Points of the backbone curve from the origin, displacement \[m\] and force \[N\], the last at `reach` \[m\]. None if a segment
     /// does not soften, or where the force falls.
     #[must_use]
     pub fn backbone_points(&self, reach: f64) -> Option<Vec<[f64; 2]>> {
@@ -134,7 +134,7 @@ impl MultilinearFit {
 }
 
 /// Least squares over segments and breakpoints together. The standard errors are those of the linearised model at the optimum, with
-/// the breakpoints among its parameters; they do not include the choice of their number. None where the points do not determine
+/// the breakpoints among its parameters; they do not include the choice of their number. None if the points do not determine
 /// such a curve.
 #[must_use]
 pub fn fit_multilinear(x: &[f64], y: &[f64], count: BreakCount) -> Option<MultilinearFit> {
@@ -186,7 +186,7 @@ fn chosen(lines: Vec<Polyline>, count: usize) -> Option<(Polyline, Vec<f64>)> {
     ))
 }
 
-/// Readings of a ramp, scaled so that all sums are of the order of 1 and the ramp goes to positive x.
+/// Readings of a ramp, scaled so that all sums are of the order of 1 and the ramp has positive x.
 pub(super) struct ScaledCurve {
     /// Displacement and force over their scales, in order of displacement.
     pub points: Vec<(f64, f64)>,

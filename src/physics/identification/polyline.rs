@@ -37,13 +37,13 @@ pub fn row(x: f64, breakpoints: &[f64]) -> impl Iterator<Item = f64> {
 }
 
 impl Polyline {
-    /// The best line with these breakpoints; None where they leave a segment fewer than [`FEWEST`] points.
+    /// The best line with these breakpoints; None if they leave a segment fewer than [`FEWEST`] points.
     #[must_use]
     pub fn with_breakpoints(points: &[(f64, f64)], breakpoints: &[f64]) -> Option<Self> {
         Self::through(points, breakpoints).filter(|_| holds_enough(points, breakpoints))
     }
 
-    /// The best line with these breakpoints; None where they leave a segment without a slope.
+    /// The best line with these breakpoints; None if they leave a segment without a slope.
     #[must_use]
     pub fn through(points: &[(f64, f64)], breakpoints: &[f64]) -> Option<Self> {
         let rows = points.iter().map(|(x, y)| (row(*x, breakpoints), *y));
@@ -105,7 +105,7 @@ impl Residuals for Breakpoints<'_> {
         Some(DVector::from_iterator(self.points.len(), left))
     }
 
-    /// −∂y/∂τ, less the part of it that the coefficients take up.
+    /// −∂y/∂τ, minus the part that the coefficients explain.
     fn jacobian(&self, parameters: &DVector<f64>) -> Option<DMatrix<f64>> {
         let line = Polyline::with_breakpoints(self.points, parameters.as_slice())?;
         let mut jacobian = DMatrix::zeros(self.points.len(), parameters.len());

@@ -22,8 +22,8 @@ pub struct Energies {
     pub contact_loss: f64,
     /// `F_lim` Δδp, cumulated: an indicator, not a part of the sum.
     pub indentation: f64,
-    /// Work of the striker's weight, Ms g (Xs − Xs₀), an input where it falls \[J\].
+    /// Work of the striker's weight, Ms g (Xs − Xs₀), an input if it falls \[J\].
     pub weight: f64,
-    /// What remains of the input: the integration error.
+    /// The remainder of the input: the integration error.
     pub error: f64,
 }

@@ -44,20 +44,20 @@ pub struct ImpactInput {
     pub max_tangent_ratio: f64,
     pub law: ContactLaw,
     pub integrator: Integrator,
-    /// `K_I` of α-OS and of the I-modification, N/m.
+    /// `K_I` of α-OS and of the I-modification \[N/m\].
     pub operator_stiffness: f64,
-    /// Whether the recursion takes r* = `r_m` − `K_I`(`d_m` − d̃) in place of the reading: the force where the specimen was
-    /// to be, as long as it is nearly elastic.
+    /// Whether the recursion uses r* = `r_m` − `K_I`(`d_m` − d̃) instead of the reading: the force at the commanded displacement, as long
+    /// as the specimen is nearly elastic.
     pub i_modification: bool,
-    /// Standard deviation of the load cell, N.
+    /// Standard deviation of the load cell \[N\].
     pub force_noise: f64,
-    /// Of the displacement reading, m.
+    /// Resolution of the displacement reading \[m\].
     pub resolution: f64,
 }
 
 impl ImpactInput {
-    /// A rigid impact on an undamped structure at rest, by the tangent form: `mass` (kg) and `stiffness` (N/m) of the structure,
-    /// `striker_mass` (kg) and `striker_velocity` (m/s) of a striker that touches it at the start, steps of `time_step` (s).
+    /// A rigid impact on an undamped structure at rest, by the tangent form: `mass` \[kg\] and `stiffness` \[N/m\] of the structure,
+    /// `striker_mass` \[kg\] and `striker_velocity` \[m/s\] of a striker that touches it at the start, steps of `time_step` \[s\].
     #[must_use]
     pub const fn rigid(
         mass: f64,
@@ -85,7 +85,7 @@ impl ImpactInput {
         }
     }
 
-    /// ½ Ms V0², J.
+    /// ½ Ms V0² \[J\].
     #[must_use]
     pub fn striker_energy(&self) -> f64 {
         0.5 * self.striker_mass * self.striker_velocity * self.striker_velocity
@@ -125,11 +125,11 @@ pub struct ImpactState {
     pub displacement: f64,
     /// Imposed on the specimen \[m\]: X itself, under α-OS the predicted displacement d̃.
     pub target: f64,
-    /// m
+    /// \[m\]
     pub measured_displacement: f64,
-    /// m/s
+    /// \[m/s\]
     pub velocity: f64,
-    /// m/s²
+    /// \[m/s²\]
     pub acceleration: f64,
     /// Measured R \[N\].
     pub restoring_force: f64,
@@ -137,17 +137,17 @@ pub struct ImpactState {
     pub force_at_computed: f64,
     /// F, mean over the step \[N\].
     pub contact_force: f64,
-    /// m
+    /// \[m\]
     pub striker_displacement: f64,
-    /// m/s
+    /// \[m/s\]
     pub striker_velocity: f64,
     /// K_t for the next step \[N/m\].
     pub tangent_stiffness: f64,
     /// δp, permanent \[m\].
     pub indentation: f64,
     pub state: StepState,
-    /// Those of the whole structure. Under `hertz` the contact loss holds also the energy stored in the contact, given back as it
-    /// opens.
+    /// Those of the whole structure. Under `hertz` the contact loss also contains the energy stored in the contact, which is released as
+    /// it opens.
     pub energies: Energies,
     /// Input energy so far \[J\], the reference of relative errors. At the start ½ Ms V0², and for a loaded structure its elastic energy
     /// ½RᵀK⁻¹R; a falling weight adds its work.
@@ -172,7 +172,7 @@ pub struct ImpactSetup {
     pub law: ContactLaw,
 }
 
-/// Why an impact cannot be integrated.
+/// The reason why an impact cannot be integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ImpactError {
     #[error(transparent)]
@@ -185,11 +185,11 @@ pub enum ImpactError {
 
 /// Receives the steps of an impact that is integrated to its end.
 pub trait Sink<V = f64> {
-    /// The end of a step; `over` where the run ends with it before its duration.
+    /// The end of a step; `over`: the run ends with it before its duration.
     fn push(&mut self, structure: &State<V>, state: &ImpactState, over: bool);
 }
 
-/// Keeps nothing.
+/// Stores nothing.
 impl<V> Sink<V> for () {
     fn push(&mut self, _: &State<V>, _: &ImpactState, _: bool) {}
 }

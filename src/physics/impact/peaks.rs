@@ -1,5 +1,5 @@
-//! Peak absolute values, interpolated between the ends of steps, so that they are smooth functions of the inputs. In: displacements
-//! and velocities, or a force alone, at the ends of steps. Out: the largest by size.
+//! Peak absolute values, interpolated between the ends of steps, so that they are smooth functions of the inputs. In: displacements and
+//! velocities, or a force alone, at the ends of steps. Out: the peak absolute values.
 
 /// Peak |x| of several displacements, each with its velocity: inside a step the velocity is linear from one end to the other,
 /// the trapezoidal rule.
@@ -51,7 +51,7 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Takes the end of a step.
+    /// Adds the end of a step.
     pub fn take(&mut self, now: f64) {
         if let [Some(before), Some(middle)] = self.last {
             let (rise, fall) = (middle - before, middle - now);
@@ -92,7 +92,7 @@ mod tests {
         for phase in (0..20).map(|phase| 0.01 * f64::from(phase)) {
             let (mut displacement, mut peak) = (PeakDisplacements::new(1, step), Peak::default());
             for at in (0..60).map(|at| step * f64::from(at) + phase - 0.3) {
-                // Eq. (2d) is exact of a velocity that is even between the ends: place and velocity agree to its order.
+                // Eq. (2d) is exact for a velocity that is linear between the ends: displacement and velocity agree to its order.
                 displacement.take([(-2.0 * at.sin(), -2.0 * at.cos())].into_iter());
                 peak.take(-2.0 * at.sin());
             }

@@ -27,7 +27,7 @@ pub struct ImpactSolver<V: Vector = f64> {
     workspace: Workspace<V>,
     reach: Option<Reach<V>>,
     unloaded: V,
-    /// ½ Ms V0², J.
+    /// ½ Ms V0² \[J\].
     striker_energy: f64,
     /// [`ImpactState::input`] without the work of a weight \[J\].
     first_input: f64,
@@ -38,18 +38,18 @@ pub struct ImpactSolver<V: Vector = f64> {
 /// That on one floor of a frame.
 pub type FrameImpactSolver = ImpactSolver<Vec<f64>>;
 
-/// How far and how fast a structure can still move its struck degree of freedom with the energy that it has.
+/// Bounds of the displacement and velocity that the energy of a structure still allows at its struck degree of freedom.
 #[derive(Clone, Debug)]
 struct Reach<V: Vector> {
     stiffness: <V::Matrix as Matrix>::Factor,
-    /// e_sᵀK⁻¹e_s, m/N
+    /// e_sᵀK⁻¹e_s \[m/N\]
     compliance: f64,
-    /// e_sᵀM⁻¹e_s, 1/kg
+    /// e_sᵀM⁻¹e_s \[1/kg\]
     mobility: f64,
 }
 
 impl<V: Vector> Reach<V> {
-    /// None where the structure does not resist.
+    /// None if the structure does not resist.
     fn new(form: &StepForm<V>, struck: usize) -> Option<Self> {
         let unit = |factor: &<V::Matrix as Matrix>::Factor| {
             let mut unit = V::zero(form.matrices.mass.rows());
@@ -73,7 +73,7 @@ impl<V: Vector> Reach<V> {
         0.5 * bent.dot(force)
     }
 
-    /// Largest speed (m/s) and least displacement (m) of the struck degree of freedom from here on, as far as the structure is
+    /// Largest speed \[m/s\] and least displacement \[m\] of the struck degree of freedom from here on, as far as the structure is
     /// elastic.
     fn bounds(&self, state: &State<V>, struck: usize) -> (f64, f64) {
         let mut bent = state.restoring_force.clone();
@@ -92,7 +92,7 @@ impl ImpactSolver {
     /// An impact on one degree of freedom. R₀ is read once before the first step; M Ẍ₀ = −CẊ₀ − R₀ with the structure at rest.
     ///
     /// # Errors
-    /// The structure is none that can be stepped, or law and integrator do not go together.
+    /// The structure cannot be stepped, or law and integrator cannot be combined.
     pub fn new(
         input: &ImpactInput,
         initial_displacement: f64,
@@ -121,8 +121,7 @@ impl<V: Vector> ImpactSolver<V> {
     /// An impact on one degree of freedom of a structure, under its initial load throughout.
     ///
     /// # Errors
-    /// The structure is none that can be stepped, the struck degree of freedom is not in it, or law and integrator do not go
-    /// together.
+    /// The structure cannot be stepped, the struck degree of freedom is not in it, or law and integrator cannot be combined.
     pub fn on(input: &SolverInput<V>, setup: &ImpactSetup) -> Result<Self, ImpactError> {
         let ImpactSetup {
             struck,
@@ -206,14 +205,14 @@ impl<V: Vector> ImpactSolver<V> {
         }
     }
 
-    /// Before the first step: where the structure was measured, m.
+    /// Before the first step: where the structure was measured \[m\].
     pub fn measured_at_start(&mut self, measured_displacement: V::View<'_>) {
         self.structure.measured_at_start(measured_displacement);
         self.state.measured_displacement =
             self.structure.state().measured_displacement.as_slice()[self.striker.struck];
     }
 
-    /// Displacements to command in this step, m. Asked again before `complete`, they are the same.
+    /// Displacements to command in this step \[m\]. A second call before `complete` gives the same values.
     #[inline]
     pub fn predict(&mut self) -> V::View<'_> {
         let start = self.start();
@@ -403,10 +402,10 @@ impl<V: Vector> ImpactSolver<V> {
         self.striker_stopped
     }
 
-    /// Whether striker and structure are apart for good, as far as the structure is elastic and unloaded from here on: the striker
-    /// moves back, and either faster than the energy of the structure can ever move the struck degree of freedom,
-    /// `|Ẋ_s| ≤ √(2E e_sᵀM⁻¹e_s)`, or from behind where it can get to, `√(2E e_sᵀK⁻¹e_s)` from its rest. A striker that falls
-    /// always comes back.
+    /// Whether striker and structure have separated finally, if the structure is elastic and unloaded from here on. The striker moves
+    /// back, and one of two conditions applies. It is faster than the energy of the structure can ever move the struck degree of freedom,
+    /// `|Ẋ_s| ≤ √(2E e_sᵀM⁻¹e_s)`, or it is out of its reach, `√(2E e_sᵀK⁻¹e_s)` from its unloaded position. A falling striker always
+    /// returns.
     #[must_use]
     pub fn rebounded(&self) -> bool {
         let state = &self.state;
@@ -439,7 +438,7 @@ impl<V: Vector> ImpactSolver<V> {
     }
 
     /// The impact to its end, `steps` steps at most, on whatever `read` finds: it is given the solver whose step is predicted, and
-    /// gives displacement (m) and force (N) there. The steps are those of `predict` and `complete`.
+    /// gives displacement \[m\] and force \[N\] there. The steps are those of `predict` and `complete`.
     #[inline]
     pub fn run<K: Sink<V>>(
         &mut self,

@@ -7,44 +7,44 @@ use crate::integrator::state::State;
 /// Results of an impact. Peaks are over step ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactSummary {
-    /// m
+    /// \[m\]
     pub max_displacement: f64,
-    /// s
+    /// \[s\]
     pub time_of_max_displacement: f64,
-    /// End of the first step with Ẋs ≤ 0, s.
+    /// End of the first step with Ẋs ≤ 0 \[s\].
     pub stop_time: Option<f64>,
-    /// Computed X at the end of the run, m.
+    /// Computed X at the end of the run \[m\].
     pub final_displacement: f64,
-    /// Largest |Ẋ|, m/s.
+    /// Largest |Ẋ| \[m/s\].
     pub max_velocity: f64,
-    /// N
+    /// \[N\]
     pub max_contact_force: f64,
-    /// ∫F dt, N·s
+    /// ∫F dt \[N·s\]
     pub impulse: f64,
-    /// Blows: contacts that began ([`crate::contact::Advance::contacts`]).
+    /// Number of contacts that began ([`crate::contact::Advance::contacts`]).
     pub contacts: u64,
-    /// Coefficient of restitution of the first contact, separation over closing speed; none before it has ended.
+    /// Coefficient of restitution of the first contact, separation over closing speed; None before it has ended.
     pub restitution: Option<f64>,
-    /// m
+    /// \[m\]
     pub indentation: f64,
-    /// J
+    /// \[J\]
     pub indentation_energy: f64,
-    /// ∫R dX up to the largest X, J.
+    /// ∫R dX up to the largest X \[J\].
     pub absorbed_energy: f64,
-    /// ½ Ms V0², J
+    /// ½ Ms V0² \[J\]
     pub striker_energy: f64,
     /// Over the energy put into the test ([`ImpactState::input`]).
     pub energy_error: f64,
-    /// The structure was still moving outwards where X was largest: not a peak.
+    /// The structure was still moving outwards at the largest X: it is not a peak.
     pub still_rising: bool,
-    /// The striker has stopped, and the run ended with a contact force.
+    /// The striker has stopped, and the contact was still active at the last step.
     pub last_blow_cut: bool,
 }
 
 /// The first contact in progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FirstBlow {
-    /// Closing speed at the last step end apart, m/s.
+    /// Closing speed at the last step end without contact \[m/s\].
     ToCome {
         closing: f64,
     },
@@ -62,7 +62,7 @@ pub struct SummaryBuilder {
     input: ImpactInput,
     first_blow: FirstBlow,
     last_velocity: f64,
-    /// N
+    /// \[N\]
     last_contact_force: f64,
     summary: ImpactSummary,
 }
@@ -99,7 +99,7 @@ impl SummaryBuilder {
         }
     }
 
-    /// Takes the end of the next step.
+    /// Adds the end of the next step.
     pub fn push(&mut self, state: &ImpactState) {
         let summary = &mut self.summary;
         if state.displacement > summary.max_displacement {
@@ -172,13 +172,13 @@ impl<V> Sink<V> for SummaryBuilder {
     }
 }
 
-/// Whether a structure that ends with `velocity` Ẋ (m/s) at `displacement` X (m) was still on its way to the `largest` X (m). A run that goes on past that has seen a
-/// peak, whichever way the structure moves as it ends.
+/// Whether a structure that ends with `velocity` Ẋ \[m/s\] at `displacement` X \[m\] was still moving outwards to the `largest` X \[m\].
+/// A run that continues past that has a peak, whatever its direction at the end.
 pub fn still_rising(velocity: f64, displacement: f64, largest: f64) -> bool {
     velocity > 0.0 && displacement >= largest
 }
 
-/// The summary of a run that is all there.
+/// The summary of a complete run.
 #[must_use]
 pub fn summarise<'a>(
     input: &ImpactInput,

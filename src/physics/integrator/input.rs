@@ -1,4 +1,4 @@
-//! Initial state and parameters of a test, and why they are refused. In: values of a caller. Out: the same, checked. It integrates nothing.
+//! Initial state and parameters of a test, and their checks. In: values of a caller. Out: the checked values. It integrates nothing.
 
 use thiserror::Error;
 
@@ -14,7 +14,7 @@ pub struct SolverInput<'a, V: Vector> {
     /// `K_I` of α-OS and of the I-modification \[N/m\]: the initial stiffness, or a larger one.
     pub operator_stiffness: &'a V::Matrix,
     pub integrator: Integrator,
-    /// Whether the recursion uses the effective force r* = `r_m` − `K_I`(`d_m` − d̃) in place of the reading.
+    /// Whether the recursion uses the effective force r* = `r_m` − `K_I`(`d_m` − d̃) instead of the reading.
     pub i_modification: bool,
     pub tangents: Tangents,
     /// Δt \[s\]
@@ -34,7 +34,7 @@ pub struct SolverInput<'a, V: Vector> {
 /// The input of a frame.
 pub type FrameInput<'a> = SolverInput<'a, Vec<f64>>;
 
-/// Why a structure cannot be integrated.
+/// The reason why a structure cannot be integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum FrameError {
     #[error("a frame has at least one degree of freedom")]

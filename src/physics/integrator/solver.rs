@@ -1,5 +1,5 @@
-//! A structure on a rig, step by step. In: matrices, an integrator, loads, readings. Out: targets, the motion and its energy. It commands no
-//! rig: the caller moves the specimen to the targets and returns the readings.
+//! A structure on a rig, step by step. In: matrices, an integrator, loads, readings. Out: targets, the motion and its energy. It commands
+//! no rig: the caller moves the specimen to the targets and returns the readings.
 
 use super::input::{FrameError, SolverInput};
 use super::state::State;
@@ -336,7 +336,7 @@ impl<V: Vector> Solver<V> {
     }
 }
 
-/// r* = `r_m` − `K_I`(`d_m` − d̃), N.
+/// r* = `r_m` − `K_I`(`d_m` − d̃) \[N\].
 #[inline]
 fn correct<V: Vector>(
     operator: &V::Matrix,

@@ -1,5 +1,5 @@
-//! The longest stable step of an integrator on a linear structure. In: an integrator, frequencies, how much stiffer the structure is
-//! than the integrator takes it for. Out: seconds. It integrates nothing.
+//! The longest stable step of an integrator on a linear structure. In: an integrator, frequencies, the ratio of the true stiffness to the
+//! assumed one. Out: seconds. It integrates nothing.
 //!
 //! α-OS on a linear structure of stiffness K that it splits with `K_I` is one recursion of three numbers, d, v and a: the force at the
 //! end of a step is r₁ = K d₁ − (K − `K_I`)βΔt²·a₁ ([`super::coefficients`]). Its amplification factors z are the roots of
@@ -9,28 +9,28 @@
 //! c = CΔt/M,   k = KΔt²/M,   k_I = K_IΔt²/M
 //! ```
 //!
-//! and a step is stable where all of them lie in the unit circle (the criterion of Schur and Cohn, in the form of Jury). Without
-//! damping two bounds follow in closed form. With s = (K − `K_I`)/K:
+//! A step is stable if all of them lie in the unit circle (the criterion of Schur and Cohn, in the form of Jury). Without damping two
+//! bounds follow in closed form. With s = (K − `K_I`)/K:
 //!
-//! - at z = −1 it turns over beyond `k s = 4 / ((1+2α)((1−α)² − α²/s))`, which for α = 0 is Δt = 2√(M/(K − `K_I`));
-//! - at z near exp(iωΔt), ln|z| = ½(ωΔt)⁴·¼|α|·((1−α)²s − (1+α)²) to leading order: where s > ((1+α)/(1−α))² a vibration gains energy
-//!   from every step, however short. What little that is while steps are short is judged against `TRIFLE`.
+//! - at z = −1 the response becomes unstable beyond `k s = 4 / ((1+2α)((1−α)² − α²/s))`, which for α = 0 is Δt = 2√(M/(K − `K_I`));
+//! - at z near exp(iωΔt), ln|z| = ½(ωΔt)⁴·¼|α|·((1−α)²s − (1+α)²) to leading order: if s > ((1+α)/(1−α))² a vibration gains energy from
+//!   every step, however short. This gain is small for short steps and is compared with `TRIFLE`.
 //!
-//! A structure of many degrees of freedom is stable where each pair of Rayleigh quotients of (K, `K_I`) is, for z and its vector x make
-//! xᴴ(…)x = 0 the same cubic: so the largest s, the highest ω² and the highest K − `K_I` bound all of them.
+//! A structure of many degrees of freedom is stable if each pair of Rayleigh quotients of (K, `K_I`) is, because z and its vector x make
+//! xᴴ(…)x = 0 the same cubic. The largest s, the highest ω² and the highest K − `K_I` therefore bound all of them.
 
 use super::coefficients::Coefficients;
 use crate::integrator::Integrator;
 
-/// Damping ratio that an integrator may take away unnoticed: an amplitude grows by 0.06 % in a cycle.
+/// Negative damping ratio of an integrator that is neglected: an amplitude grows by 0.06 % per cycle.
 const TRIFLE: f64 = 1e-4;
 
-/// A structure as an integrator meets it.
+/// The properties of a structure that determine the stability of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
-    /// ω² of the structure as it is stiffest, rad²/s².
+    /// ω² of the structure at its largest stiffness \[rad²/s²\].
     pub highest: f64,
-    /// The highest of M⁻¹(`K_t` − `K_I`), rad²/s²; 0 or less where it is nowhere stiffer than its operator.
+    /// The highest of M⁻¹(`K_t` − `K_I`) \[rad²/s²\]; 0 or less if no part is stiffer than its operator.
     pub shortfall: f64,
     /// The largest (`K_t` − `K_I`)/`K_t` of its springs.
     pub share: f64,
@@ -39,7 +39,7 @@ pub struct Met {
 }
 
 impl Met {
-    /// One degree of freedom: mass (kg), C (N·s/m), the stiffness it has and that it is split with (N/m).
+    /// One degree of freedom: mass \[kg\], C \[N·s/m\], its stiffness and the operator stiffness \[N/m\].
     #[must_use]
     pub fn one(mass: f64, damping: f64, stiffness: f64, operator_stiffness: f64) -> Self {
         let beyond = stiffness - operator_stiffness;
@@ -52,13 +52,13 @@ impl Met {
     }
 }
 
-/// Longest stable Δt, s; infinite where there is none.
+/// Longest stable Δt \[s\]; infinite if there is no limit.
 ///
-/// - Explicit Newmark: Δt ≤ T/π = 2/ω for the highest frequency of the structure, where the roots of z² − (2 − ω²Δt²)z + 1 leave the
+/// - Explicit Newmark: Δt ≤ T/π = 2/ω for the highest frequency of the structure. Beyond it the roots of z² − (2 − ω²Δt²)z + 1 leave the
 ///   unit circle.
-/// - α-OS: none while `K_I ≥ K_t`; else by its amplification factors, above.
-/// - Tangent: constant average acceleration has none as long as its tangent is the structure's. See [`super::tangent`] for one that
-///   changes.
+/// - α-OS: no limit while `K_I ≥ K_t`; otherwise from its amplification factors, above.
+/// - Tangent: constant average acceleration has no limit as long as its tangent is that of the structure. See [`super::tangent`] for a
+///   changing tangent.
 #[must_use]
 pub fn longest_stable_step(integrator: Integrator, met: &Met) -> f64 {
     match integrator {
@@ -80,7 +80,7 @@ pub fn longest_stable_step(integrator: Integrator, met: &Met) -> f64 {
     }
 }
 
-/// The least ωΔt from which on α-OS is unstable, ω that of K.
+/// The smallest ωΔt from which α-OS is unstable, with ω of K.
 fn longest_angle(integrator: Integrator, met: &Met) -> f64 {
     let damping_ratio = met.damping_ratio.max(TRIFLE);
     let stable = |angle: f64| {
@@ -129,7 +129,7 @@ fn amplification(by: Coefficients, c: f64, k: f64, operator: f64) -> [f64; 4] {
     ]
 }
 
-/// Whether all roots of a real cubic lie in the unit circle or on it (Jury's criterion), p(1) > 0 taken for granted: it is k.
+/// Whether all roots of a real cubic lie in the unit circle or on it (Jury's criterion). p(1) > 0 is assumed because it equals k.
 fn inside([three, two, one, none]: [f64; 4]) -> bool {
     three > 0.0
         && -three + two - one + none <= 0.0
@@ -173,7 +173,7 @@ mod tests {
         );
     }
 
-    /// Without α it is 2/√(ω² − ω_I²), whatever is damped.
+    /// Without α it is 2/√(ω² − ω_I²), whatever the damping.
     #[test]
     fn without_alpha_the_limit_is_that_of_the_shortfall() {
         for (share, damping_ratio) in [(0.25, 0.0), (0.25, 0.1), (0.9, 0.0), (0.5, 0.02)] {
@@ -185,7 +185,7 @@ mod tests {
         }
     }
 
-    /// The closed form at z = −1, while no vibration gains: there α helps.
+    /// The closed form at z = −1, as long as no vibration gains energy: there α increases the limit.
     #[test]
     fn alpha_moves_the_limit_as_the_closed_form_says() {
         for (alpha, share) in [(-0.05, 0.5), (-0.1, 0.5), (-0.2, 0.25), (-0.3, 0.2)] {

@@ -1,6 +1,5 @@
-//! One step of a structure under each integrator (coefficients in [`super::coefficients`]), for one degree of freedom and for many.
-//! In: the state at a step's start, loads, the force read. Out: the position to impose, the end of the step. It keeps no
-//! history.
+//! One step of a structure under each integrator (coefficients in [`super::coefficients`]), for one degree of freedom and for many. In:
+//! the state at a step's start, loads, the measured force. Out: the position to impose, the end of the step. It keeps no history.
 //!
 //! A contact force F acts on one degree of freedom s. Every end velocity there is linear in it, Ẋ₁ = `v_free` + w F, with
 //! `v_free` that of the step without contact, and a contact law decides on F from those two. In the tangent form
@@ -20,12 +19,11 @@
 //! w = Δt·e_sᵀ(½M⁻¹ − γM̂⁻¹(1+α)(β_cΔt²K_I + ½ΔtC)M⁻¹)e_s
 //! ```
 //!
-//! with β_c = ¼ under α-OS and 0 under explicit Newmark. Without contact this is each of them as published: r₀ and v₀ with
-//! their corrections equal those by the published start values r̃₀ = r₀ − βΔt²K_I a₀ and ṽ₀ = v₀ − γΔt·a₀. With
-//! α = 0 and `K_I` = `K_t` it is the tangent form. Whatever α is, the rigid contact tends to the paper's collision with
-//! e = Ms/(Ms + 2M) as Δt → 0. Weighting F with α too would make it a collision with
-//! e = Ms(1 − (1+α)γ)/(M + (1+α)γMs), 0.767 and not 0.833 for α = −0.05 in the paper's first example: numerical damping
-//! acts most on the fastest motion, which is the impact.
+//! with β_c = ¼ under α-OS and 0 under explicit Newmark. Without contact each scheme is the published one: r₀ and v₀ with their
+//! corrections equal those by the published start values r̃₀ = r₀ − βΔt²K_I a₀ and ṽ₀ = v₀ − γΔt·a₀. With α = 0 and `K_I` = `K_t` it is
+//! the tangent form. Whatever α is, the rigid contact tends to the paper's collision with e = Ms/(Ms + 2M) as Δt → 0. If F were also
+//! weighted with α, the collision would have e = Ms(1 − (1+α)γ)/(M + (1+α)γMs), 0.767 and not 0.833 for α = −0.05 in the paper's first
+//! example: numerical damping acts most on the fastest motion, which is the impact.
 
 use super::coefficients::Coefficients;
 use super::tangents::FollowedTangents;
@@ -45,7 +43,7 @@ pub(crate) struct StepForm<V: Vector> {
     effective: V::Matrix,
     factor: Factored<V>,
     mass_factor: Factored<V>,
-    /// Whether there is damping at all.
+    /// Whether there is any damping.
     damped: bool,
     struck: Option<Struck<V>>,
     scratch: V,
@@ -69,15 +67,15 @@ pub(crate) struct Moment<'a, V> {
 #[derive(Clone, Debug)]
 struct Struck<V> {
     index: usize,
-    /// M⁻¹ e_s, 1/kg
+    /// M⁻¹ e_s \[1/kg\]
     push: V,
-    /// M̂⁻¹ e_s in tangent form, 1/kg; under the others M̂⁻¹ (1+α)(β_cΔt²K_I + ½ΔtC) M⁻¹ e_s, the reaction of the structure.
+    /// M̂⁻¹ e_s in tangent form \[1/kg\]; for the others M̂⁻¹ (1+α)(β_cΔt²K_I + ½ΔtC) M⁻¹ e_s, the reaction of the structure.
     response: V,
     /// F of the step in progress or, before it is decided, of the last one \[N\].
     force: f64,
 }
 
-/// Where a step leads.
+/// The end of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Motion<V> {
     pub displacement: V,
@@ -135,7 +133,7 @@ impl<V: Vector> StepForm<V> {
         })
     }
 
-    /// Another `K_t`. M̂ stays positive definite: storeys are not negative.
+    /// Sets a different `K_t`. M̂ stays positive definite: storeys are not negative.
     #[inline]
     pub fn take_tangents(&mut self, tangents: &V::Tangents) -> Result<(), NotPositiveDefinite> {
         tangents.compose(&mut self.operator);
@@ -165,7 +163,7 @@ impl<V: Vector> StepForm<V> {
         self.respond();
     }
 
-    /// β of the contact's part: the trapezoidal rule, but for explicit Newmark, which has none.
+    /// β of the contact's part: the trapezoidal rule, except for explicit Newmark, which has none.
     fn contact_beta(&self) -> f64 {
         if self.integrator == Integrator::Explicit {
             0.0
@@ -174,7 +172,7 @@ impl<V: Vector> StepForm<V> {
         }
     }
 
-    /// What the factor makes of a unit force at the struck degree of freedom.
+    /// The solution for a unit force at the struck degree of freedom.
     #[inline]
     fn respond(&mut self) {
         let (time_step, beta) = (self.time_step, self.contact_beta());
@@ -205,7 +203,7 @@ impl<V: Vector> StepForm<V> {
         }
     }
 
-    /// F of the last step, N.
+    /// F of the last step \[N\].
     #[inline]
     pub fn contact_force(&self) -> f64 {
         self.struck.as_ref().map_or(0.0, |struck| struck.force)
@@ -234,8 +232,8 @@ fn compose<V: Vector>(
 }
 
 impl<V: Vector> StepForm<V> {
-    /// The whole step in tangent form, all but the force that will be read at its end. `decide` gives the contact force, N, from
-    /// `v_free` (m/s) and w (m/s/N).
+    /// The whole step in tangent form, except the force at its end, which is read later. `decide` gives the contact force \[N\] from
+    /// `v_free` \[m/s\] and w \[m/s/N\].
     #[inline]
     pub fn predict(
         &mut self,
@@ -297,7 +295,7 @@ impl<V: Vector> StepForm<V> {
             [from.velocity, from.acceleration],
             |_, [velocity, acceleration]| velocity + time_step * ((1.0 - gamma) * acceleration),
         );
-        // The contact's share of the acceleration goes by the trapezoidal rule.
+        // The contact's share of the acceleration follows the trapezoidal rule.
         if let Some(struck) = self.struck.as_ref().filter(|struck| struck.force > 0.0) {
             let displacements = time_step * time_step * (beta - self.contact_beta());
             add(
@@ -313,7 +311,7 @@ impl<V: Vector> StepForm<V> {
         }
     }
 
-    /// The end of the step that imposed `to.displacement`, where `read` (N) is the force; `decide` as in [`Self::predict`].
+    /// The end of the step that imposed `to.displacement`, with the measured force `read` \[N\]; `decide` as in [`Self::predict`].
     #[inline]
     pub fn correct(
         &mut self,
@@ -378,7 +376,7 @@ impl<V: Vector> StepForm<V> {
         }
     }
 
-    /// `K_t`, N/m.
+    /// `K_t` \[N/m\].
     pub const fn operator(&self) -> &V::Matrix {
         &self.operator
     }
@@ -393,7 +391,7 @@ impl<V: Vector> StepForm<V> {
         &self.mass_factor
     }
 
-    /// M⁻¹ e_s, 1/kg, of the struck degree of freedom.
+    /// M⁻¹ e_s of the struck degree of freedom \[1/kg\].
     pub const fn struck(&self) -> Option<(usize, &V)> {
         match &self.struck {
             Some(struck) => Some((struck.index, &struck.push)),
@@ -401,13 +399,13 @@ impl<V: Vector> StepForm<V> {
         }
     }
 
-    /// C, if it is other than zero.
+    /// C, if it is not zero.
     #[inline]
     pub fn damping(&self) -> Option<&V::Matrix> {
         Some(&self.matrices.damping).filter(|_| self.damped)
     }
 
-    /// The matrices, and two vectors of their order for whoever balances energies between steps.
+    /// The matrices, and two vectors of their order for energy balances between steps.
     #[inline]
     pub fn scratch(&mut self) -> (&Matrices<V>, bool, [&mut V; 2]) {
         (

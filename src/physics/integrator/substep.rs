@@ -1,10 +1,10 @@
-//! Structure and striker between two instants of one step, where a contact law acts at its own instants. In: a structure, the
-//! state at the step's start. Out: the motion after any part of the step. It knows no contact law.
+//! Structure and striker between two instants of one step, for a contact law with its own instants. In: a structure, the state at the
+//! step's start. Out: the motion after any part of the step. It knows no contact law.
 
 use super::step_form::{Moment, Motion, StepForm};
 use crate::structure::matrix::{Factor, Matrix, Vector};
 
-/// The striker, and where it hits.
+/// The striker, and the degree of freedom that it hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Striker {
     /// The struck degree of freedom, from 0.
@@ -48,7 +48,7 @@ impl<V: Vector> Workspace<V> {
 /// A structure between two instants of a step.
 pub(crate) struct Substep<'a, V: Vector> {
     pub form: &'a StepForm<V>,
-    /// The struck degree of freedom, and M⁻¹ e_s, 1/kg.
+    /// The struck degree of freedom, and M⁻¹ e_s \[1/kg\].
     pub struck: usize,
     pub push: &'a V,
     load: [&'a V; 2],
@@ -59,8 +59,8 @@ pub(crate) struct Substep<'a, V: Vector> {
 }
 
 impl<'a, V: Vector> Substep<'a, V> {
-    /// From a step's start; loads go straight from that there to that at the end. Motion, mean velocity and response of the workspace
-    /// are for the contact law. None where nothing can be struck.
+    /// From a step's start; loads vary linearly from their values there to those at the end. Motion, mean velocity and response of the
+    /// workspace are for the contact law. None if no degree of freedom can be struck.
     #[inline]
     pub fn new(
         form: &'a StepForm<V>,
@@ -108,13 +108,13 @@ impl<'a, V: Vector> Substep<'a, V> {
         )
     }
 
-    /// Effective mass of the struck degree of freedom, \[kg\]: the mass that an impulse meets.
+    /// Effective mass of the struck degree of freedom \[kg\]: the mass that an impulse meets.
     #[inline]
     pub fn struck_mass(&self) -> f64 {
         1.0 / self.push.as_slice()[self.struck]
     }
 
-    /// Makes M̂ = M + ½hC + ¼h²K_t, with `joined` kg more on the struck degree of freedom, the matrix that [`Self::solve`] undoes.
+    /// Forms M̂ = M + ½hC + ¼h²K_t, with `joined` kg added to the struck degree of freedom: the matrix for [`Self::solve`].
     #[inline]
     pub fn prepare(&mut self, duration: f64, joined: f64) {
         let half = 0.5 * duration;
@@ -126,7 +126,7 @@ impl<'a, V: Vector> Substep<'a, V> {
         self.effective.multiply(half);
         self.effective.add_scaled(&self.form.matrices.mass, 1.0);
         self.effective.add_at(self.struck, joined);
-        // M̂ is positive definite as M is; if rounding ever denied it, the last factor would serve on.
+        // M̂ is positive definite because M is; if rounding ever prevents it, the last factor remains in use.
         let _ = self.factor.replace(self.effective);
     }
 
@@ -136,7 +136,7 @@ impl<'a, V: Vector> Substep<'a, V> {
         self.factor.solve(x);
     }
 
-    /// f − R at a part of the step, 0 to 1, N.
+    /// f − R at a part of the step, 0 to 1 \[N\].
     #[inline]
     fn pushing(&self, part: f64, force: &V, to: &mut V) {
         to.update(
@@ -145,7 +145,7 @@ impl<'a, V: Vector> Substep<'a, V> {
         );
     }
 
-    /// Eq. (5) from `from` over `duration`, to an end that is `part` of the step away from its start. The matrix prepared is that of
+    /// Eq. (5) from `from` over `duration`, to an end that is `part` of the step away from its start. The prepared matrix is that of
     /// `joined` kg and `weight` N that move with the struck degree of freedom.
     #[inline]
     pub fn follow(
@@ -173,7 +173,7 @@ impl<'a, V: Vector> Substep<'a, V> {
             .mul_add(-1.0, self.drift, &mut to.acceleration);
         let [mass, weight] = joined.unwrap_or([0.0; 2]);
         to.acceleration.as_mut_slice()[self.struck] += weight;
-        // The factor of a whole step is at hand.
+        // The factor of a whole step exists already.
         if joined.is_none() && duration == self.form.time_step {
             self.form.factor().solve(&mut to.acceleration);
         } else {
@@ -226,7 +226,7 @@ impl<'a, V: Vector> Substep<'a, V> {
         self.form.mass_factor().solve(acceleration);
     }
 
-    /// ∫ ẊᵀCẊ dt over `duration` with the mean velocity v, J.
+    /// ∫ ẊᵀCẊ dt over `duration` with the mean velocity v \[J\].
     #[inline]
     pub fn damped(&mut self, mean_velocity: &V, duration: f64) -> f64 {
         self.form.damping().map_or(0.0, |damping| {
@@ -235,7 +235,7 @@ impl<'a, V: Vector> Substep<'a, V> {
         })
     }
 
-    /// The same of an even acceleration between two instants.
+    /// The same for a constant acceleration between two instants.
     #[inline]
     pub fn damped_between(&mut self, from: &Motion<V>, to: &Motion<V>, duration: f64) -> f64 {
         self.form.damping().map_or(0.0, |damping| {
@@ -248,7 +248,7 @@ impl<'a, V: Vector> Substep<'a, V> {
         })
     }
 
-    /// On over a part of this `duration` with the mean velocity v: X + hv, 2v − Ẋ, R + `K_t` hv.
+    /// Continues over a part of this `duration` with the mean velocity v: X + hv, 2v − Ẋ, R + `K_t` hv.
     #[inline]
     pub fn drift(&mut self, motion: &mut Motion<V>, mean_velocity: &V, duration: f64) {
         self.drift
@@ -264,7 +264,7 @@ impl<'a, V: Vector> Substep<'a, V> {
             .mul_add(1.0, self.drift, &mut motion.force);
     }
 
-    /// Momentum p (N·s) passes to the structure; what the dampers add to M Ẍ comes with it.
+    /// Momentum p \[N·s\] passes to the structure, with the contribution of the dampers to M Ẍ.
     #[inline]
     pub fn strike(&mut self, impulse: f64, motion: &mut Motion<V>) {
         motion
@@ -281,7 +281,7 @@ impl<'a, V: Vector> Substep<'a, V> {
         }
     }
 
-    /// A contact force (N) comes or goes: M Ẍ changes by it on the struck degree of freedom.
+    /// A contact force \[N\] begins or ends: M Ẍ changes by it on the struck degree of freedom.
     #[inline]
     pub fn press(&self, force: f64, motion: &mut Motion<V>) {
         motion
@@ -292,7 +292,7 @@ impl<'a, V: Vector> Substep<'a, V> {
     }
 }
 
-/// Memory that a contact law has for itself; the motion is that at the step's start.
+/// Memory for a contact law; the motion is that at the step's start.
 pub(crate) struct Scratch<'a, V> {
     pub now: &'a mut Motion<V>,
     pub mean: &'a mut V,

@@ -1,35 +1,35 @@
-//! The tangent stiffness from the readings (Melo et al. 2006, eq. 6). In: pairs of displacement and force, one a step.
-//! Out: a stiffness inside its bounds. Noise must never become a stiffness, nor keep the stiffness of long ago.
+//! The tangent stiffness from the readings (Melo et al. 2006, eq. 6). In: pairs of displacement and force, one per step. Out: a stiffness
+//! inside its bounds. Noise must never appear as a stiffness, nor preserve an old stiffness.
 //!
-//! A step whose change of displacement exceeds the noise gives the secant of eq. (6). A shorter step does not determine a slope
-//! alone: then the last readings do together, by least squares over the fewest of them whose displacements span as
-//! much as one step would have had to. With σ the noise of one reading and n readings spread evenly over the span S, the
-//! slope has a standard deviation of about √(12/n)·σ/S, less than the secant's √2·σ/S for n > 6 and never more than it for
-//! two. Until a span exceeds the noise, the last stiffness is kept.
+//! A step whose change of displacement exceeds the noise gives the secant of eq. (6). A shorter step does not determine a slope alone.
+//! The last readings then determine it together, by least squares over the fewest of them whose displacements span as much as one step
+//! would need. With σ the noise of one reading and n readings spread evenly over the span S, the slope has a standard deviation of about
+//! √(12/n)·σ/S, less than the secant's √2·σ/S for n > 6 and never more than it for two. Until a span exceeds the noise, the last
+//! stiffness is kept.
 
 use std::collections::VecDeque;
 
-/// A tangent stiffness needs a change of force this many times the load cell's noise. Smaller, and noise becomes a
-/// stiffness (at 10 a secant errs by 14 %, one standard deviation); larger, and it follows the specimen late. A ratio of forces.
+/// A tangent stiffness needs a change of force this many times the load cell's noise. With less, noise appears as a stiffness (at 10 a
+/// secant errs by 14 %, one standard deviation); with more, it follows the specimen late. A ratio of forces.
 pub const NOISE_MULTIPLE: f64 = 10.0;
-/// Readings of a window, at most: a longer window would lag too far behind.
+/// Largest number of readings of a window: a longer window would lag too far behind.
 const MOST_READINGS: usize = 4096;
 
-/// `K_t` as it is followed.
+/// The current tangent stiffness `K_t`.
 #[derive(Clone, Debug)]
 pub struct TangentStiffness {
-    /// m, the smallest change of measured displacement that gives a stiffness; 0 where readings are exact.
+    /// The smallest change of measured displacement that gives a stiffness \[m\]; 0 if readings are exact.
     least_change: f64,
     largest: f64,
     value: f64,
     last: (f64, f64),
-    /// Readings since a span last determined the stiffness, newest last. Empty where readings are exact.
+    /// Readings since a span last determined the stiffness, newest last. Empty if readings are exact.
     window: VecDeque<(f64, f64)>,
 }
 
 impl TangentStiffness {
-    /// From `initial` (N/m), never beyond `largest_ratio` times that; `force_noise` in N, `resolution` in m; the first
-    /// reading as (m, N).
+    /// Begins with `initial` \[N/m\] and never exceeds `largest_ratio` times it; `force_noise` \[N\], `resolution` \[m\]. The first
+    /// reading is (m, N).
     #[must_use]
     pub fn new(
         initial: f64,
@@ -53,13 +53,13 @@ impl TangentStiffness {
         }
     }
 
-    /// N/m
+    /// \[N/m\]
     #[must_use]
     pub const fn value(&self) -> f64 {
         self.value
     }
 
-    /// Takes the reading at the end of a step, m and N.
+    /// Adds the reading at the end of a step \[m\], \[N\].
     #[inline]
     pub fn take(&mut self, displacement: f64, force: f64) {
         let change = displacement - self.last.0;
@@ -72,7 +72,7 @@ impl TangentStiffness {
         self.last = (displacement, force);
     }
 
-    /// Keeps the fewest of the last readings that span enough; where the step alone did not, they determine the stiffness together.
+    /// Keeps the fewest of the last readings that span enough; if the step alone does not, they determine the stiffness together.
     fn widen(&mut self, displacement: f64, force: f64, determined: bool) {
         self.window.push_back((displacement, force));
         if determined {
@@ -117,7 +117,7 @@ mod tests {
 
     const INITIAL: f64 = 1000.0;
 
-    /// No noise of its own: the readings are exact, the window is what they are told.
+    /// The readings have no noise; the window follows from the stated one.
     fn followed(force_noise: f64, readings: impl IntoIterator<Item = (f64, f64)>) -> f64 {
         let mut tangent = TangentStiffness::new(INITIAL, 2.0, force_noise, 0.0, (0.0, 0.0));
         for (displacement, force) in readings {
@@ -141,7 +141,7 @@ mod tests {
         );
     }
 
-    /// 10 σ/K = 10 mm: no step of 1 mm tells, eleven together do. The line of the last ones is what is told.
+    /// 10 σ/K = 10 mm: no step of 1 mm determines a slope, eleven together do. The result is the line through the last ones.
     #[test]
     fn steps_too_short_to_tell_alone_tell_together() {
         let line =
@@ -157,7 +157,7 @@ mod tests {
         assert!(followed(1.0, kink(12)).abs() < 1e-9);
     }
 
-    /// A long step tells alone; what lay before it does no more, but it helps the short ones after it.
+    /// A long step determines the slope alone. Earlier readings no longer contribute, but the long step supports the short ones after it.
     #[test]
     fn a_step_long_enough_forgets_the_window() {
         let short = || (1..=5).map(|step| (f64::from(step) * 1e-3, f64::from(step)));

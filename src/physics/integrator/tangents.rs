@@ -1,5 +1,5 @@
-//! The tangent stiffness of a structure, storey by storey (Melo et al. 2006, eq. 6): the secant of its shear over its drift;
-//! one degree of freedom is one storey. In: what the actuators read. Out: storey stiffnesses, and whether one changed.
+//! The tangent stiffness of a structure, storey by storey (Melo et al. 2006, eq. 6): the secant of its shear over its storey drift; one
+//! degree of freedom is one storey. In: the readings of the actuators. Out: storey stiffnesses, and whether one changed.
 
 use std::fmt::Debug;
 
@@ -10,32 +10,32 @@ use crate::structure::{SymmetricBand, set_storeys, storeys_of};
 /// `K_t` of the tangent form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tangents {
-    /// K0 throughout: for a frame whose matrix has no storeys.
+    /// K0 throughout: for a frame without storeys in its matrix.
     Initial,
     /// Each storey's own secant, within `[0, largest_ratio · k0]`. The frame is a shear building.
     Storeys { largest_ratio: f64 },
 }
 
-/// How far rounding may move a secant, over the first-order bound of it: products and the specimen's own arithmetic take
-/// their share too. Smaller, and a linear frame is factored again in every step; far larger, and a slow change is missed.
+/// Largest effect of rounding on a secant, over its first-order bound: products and the specimen's own arithmetic contribute too. With
+/// less, a linear frame is factored again in every step; with much more, a slow change is missed.
 const ROUNDING_MARGIN: f64 = 4.0;
 
-/// What tangents are followed with.
+/// The parameters for the update of tangents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Following {
     /// c of `K_t within [0, c·K0]`
     pub largest_ratio: f64,
-    /// Standard deviation of a load cell, N.
+    /// Standard deviation of a load cell \[N\].
     pub force_noise: f64,
-    /// Of a displacement reading, m.
+    /// Resolution of a displacement reading \[m\].
     pub resolution: f64,
 }
 
-/// `K_t` as it is followed.
+/// The current tangent stiffness `K_t`.
 pub trait FollowedTangents: Clone + Debug {
     type Vector: Vector;
 
-    /// From the first readings (m, N); none where the stiffness is not that of storeys.
+    /// From the first readings (m, N); None if the stiffness is not that of storeys.
     fn new(
         stiffness: &<Self::Vector as Vector>::Matrix,
         following: Following,
@@ -43,30 +43,30 @@ pub trait FollowedTangents: Clone + Debug {
         force: &Self::Vector,
     ) -> Option<Self>;
 
-    /// N/m, from the ground up.
+    /// From the ground up \[N/m\].
     fn stiffness(&self) -> &Self::Vector;
 
     /// `K_t` into `operator`.
     fn compose(&self, operator: &mut <Self::Vector as Vector>::Matrix);
 
-    /// Takes the readings at the end of a step. True if some storey's stiffness is another than before by more than rounding can
-    /// make it: only then is a new factor worth its price.
+    /// Adds the readings at the end of a step. True if the stiffness of a storey changed by more than rounding: only then is a new
+    /// factorisation necessary.
     fn take(&mut self, displacement: &Self::Vector, force: &Self::Vector) -> bool;
 }
 
-/// One degree of freedom as it is followed.
+/// The tangent of one degree of freedom.
 #[derive(Clone, Debug)]
 pub struct StoreyTangent {
     storey: Storey,
-    /// N/m
+    /// \[N/m\]
     stiffness: f64,
 }
 
-/// Storeys as they are followed.
+/// The tangents of storeys.
 #[derive(Clone, Debug)]
 pub struct StoreyTangents {
     storeys: Vec<Storey>,
-    /// N/m
+    /// \[N/m\]
     stiffnesses: Vec<f64>,
 }
 
@@ -79,11 +79,11 @@ struct Storey {
 /// One storey at one instant.
 #[derive(Clone, Copy, Debug)]
 struct Reading {
-    /// m
+    /// \[m\]
     drift: f64,
-    /// N
+    /// \[N\]
     shear: f64,
-    /// m and N: how far rounding may have moved them.
+    /// \[m\] and \[N\]: the largest effect of rounding on them.
     drift_rounding: f64,
     shear_rounding: f64,
 }
@@ -114,7 +114,7 @@ impl Storey {
         changed
     }
 
-    /// Takes the next reading of one storey of several; whether `stiffness` (N/m) became another by more than rounding.
+    /// Adds the next reading of one storey of several; returns whether `stiffness` \[N/m\] changed by more than rounding.
     #[inline]
     fn take(&mut self, now: Reading, stiffness: &mut f64) -> bool {
         self.followed.take(now.drift, now.shear);
@@ -132,8 +132,8 @@ impl Storey {
     }
 }
 
-/// Calls with each storey's reading, from the top down: a drift is the difference of two displacements, a shear the sum of
-/// the restoring forces of the floors above.
+/// Calls with each storey's reading, from the top down: a storey drift is the difference of two displacements, a shear the sum of the
+/// restoring forces of the floors above.
 #[inline]
 fn each_reading(displacement: &[f64], force: &[f64], mut take: impl FnMut(usize, Reading)) {
     let (mut shear, mut size, mut cells) = (0.0, 0.0, 0.0);
@@ -207,7 +207,7 @@ impl FollowedTangents for StoreyTangents {
         let stiffnesses = storeys_of(stiffness)?;
         let mut storeys = Vec::with_capacity(stiffnesses.len());
         each_reading(displacement, force, |storey, first| {
-            // Independent cells add as squares; a drift above the first storey is the difference of two readings.
+            // Independent cells add as squares; a storey drift above the first storey is the difference of two readings.
             #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
             let cells = (stiffnesses.len() - storey) as f64;
             let Following {
@@ -296,7 +296,7 @@ mod tests {
         .expect("storeys")
     }
 
-    /// Any small linear motion leaves every storey at its very number.
+    /// A small linear motion leaves the stiffness of every storey exactly as it is.
     #[test]
     fn rounding_is_no_stiffness() {
         let mut tangents = at_rest(0.0, 0.0);
@@ -317,7 +317,7 @@ mod tests {
         assert_eq!(tangents.stiffness(), &INITIAL);
     }
 
-    /// One storey softens, another stiffens beyond its bound: each by its own drift, the third is as it was.
+    /// One storey softens, a second one stiffens beyond its bound: each by its own storey drift. The third does not change.
     #[test]
     fn each_storey_is_followed_by_its_own_drift() {
         let mut tangents = at_rest(0.0, 0.0);
@@ -328,7 +328,7 @@ mod tests {
         assert!((found[1] - 500.0).abs() < 1e-9);
     }
 
-    /// Load cells of 1 N: a shear of three has √3 N, so that the first storey needs 10·√3/3000 m to tell, the third 10/1000.
+    /// Load cells of 1 N: a shear of three has √3 N, so that the first storey needs 10·√3/3000 m for a slope, the third 10/1000.
     #[test]
     fn a_change_too_small_to_tell_tells_nothing() {
         let told = |drift: [f64; 3], storey: usize| {

@@ -1,8 +1,8 @@
-//! Loops over the floors of a frame. In: vectors, matrices. Out: vectors and sums. They know no striker and keep nothing.
+//! Loops over the floors of a frame. In: vectors, matrices. Out: vectors and sums. They know no striker and have no state.
 //!
-//! Vectors come as arguments, the written ones apart: so they are known not to overlap, and cut to one length they need no
-//! check in the loop. A step of few floors waits longest for what it has just written; a tridiagonal frame is therefore set
-//! out in one loop, whose neighbours are still at hand.
+//! Vectors come as arguments, the written ones separate. The compiler therefore knows that they do not overlap; cut to one length, they
+//! need no check in the loop. A step of few floors is delayed most by the values that it has just written. A tridiagonal frame is
+//! therefore evaluated in one loop, with its neighbours still in registers.
 
 use crate::structure::SymmetricBand;
 use crate::structure::matrix::SetOut;
@@ -40,7 +40,7 @@ pub(crate) fn set_out_tridiagonal(
         stiffness.band(0),
         stiffness.band(1),
     );
-    // Of damper and spring each: the travel of the floor below and of this one, and the entry that couples them.
+    // For damper and spring each: the travel of the floor below and of this one, and the entry that couples them.
     let (mut below, mut coupling) = ((0.0, 0.0), (0.0, 0.0));
     let mut here = travel(velocity[0], acceleration[0]);
     let forces = load_end[..last].iter().zip(&force[..last]);
@@ -65,7 +65,7 @@ pub(crate) fn set_out_tridiagonal(
     *top = load_end[last] - force[last] - braking - pull;
 }
 
-/// Each entry becomes what `entry` makes of it and of the same entry of the others.
+/// Each entry becomes the value of `entry` for it and for the same entries of the others.
 #[inline(never)]
 pub(crate) fn update<const N: usize>(
     to: &mut [f64],
@@ -102,7 +102,7 @@ pub(crate) fn travel(
     }
 }
 
-/// Numbers side by side: one sum waits for each addition before the next.
+/// Number of parallel partial sums: in a single sum each addition waits for the one before.
 const LANES: usize = 8;
 
 /// xᵀ y.
@@ -138,7 +138,7 @@ pub(crate) fn weighed(x: &[f64], weights: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
-/// (x₀ + x₁)ᵀ (y₁ ± y₀), as `join` says.
+/// (x₀ + x₁)ᵀ (y₁ ± y₀), with the sign from `join`.
 pub(crate) fn trapezoid(x: [&[f64]; 2], y: [&[f64]; 2], join: impl Fn(f64, f64) -> f64) -> f64 {
     let order = x[0].len();
     let (x0, x1) = (
@@ -170,7 +170,7 @@ mod tests {
     use super::*;
     use crate::structure::matrix::{Vector as _, set_out_by_products};
 
-    /// Both loops give the same numbers to the last bit, from two floors to more than one vector register holds.
+    /// Both loops give bit-identical numbers, from two floors to more than one vector register contains.
     #[test]
     fn one_loop_gives_what_the_products_give() {
         for order in 2..20_u32 {

@@ -18,18 +18,18 @@ use crate::integrator::tangents::Tangents;
 use crate::reintegration::perturbation::Perturbation;
 use crate::structure::{FrameMatrices, drifts, shears};
 
-/// How a frame is integrated.
+/// The settings with which a frame is integrated.
 #[derive(Clone, Debug)]
 pub struct FrameRun {
     pub matrices: FrameMatrices,
     pub integrator: Integrator,
     pub i_modification: bool,
     pub tangents: Tangents,
-    /// s
+    /// \[s\]
     pub time_step: f64,
-    /// At most.
+    /// Largest number of steps.
     pub steps: u64,
-    /// N and m, as the run took them.
+    /// \[N\] and \[m\], as the run used them.
     pub force_noise: f64,
     pub resolution: f64,
     /// Whether the floors passed their targets without a stop.
@@ -43,22 +43,22 @@ pub struct Blow {
     pub struck: usize,
     pub law: ContactLaw,
     pub until: Until,
-    /// The struck floor and the striker as an impact on one degree of freedom has them.
+    /// The struck floor and the striker, as for an impact on one degree of freedom.
     pub body: ImpactInput,
 }
 
-/// What the floors come to, SI; an entry a floor or a storey.
+/// The results of the floors in SI, with one entry per floor or storey.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Floors {
     pub max_displacement: Vec<f64>,
     pub max_drift: Vec<f64>,
-    /// At the end.
+    /// Storey drift at the end.
     pub final_drift: Vec<f64>,
     pub max_base_shear: f64,
 }
 
 impl Floors {
-    /// Peak |X| of all floors \[m\]; NaN where one is NaN.
+    /// Peak |X| of all floors \[m\]; NaN if one is NaN.
     #[must_use]
     pub fn farthest(&self) -> f64 {
         self.max_displacement
@@ -72,9 +72,9 @@ impl Floors {
 pub struct FloorsOutcome {
     pub ends: Floors,
     pub between: Floors,
-    /// The latter at the departure of the run from the record.
+    /// The interpolated ones at the departure of the run from the record.
     pub before_departure: Option<Floors>,
-    /// Velocities predicted for the floors at the targets of a continuous motion \[m/s\]; given where the path does not know them.
+    /// Velocities predicted for the floors at the targets of a continuous motion \[m/s\]; given if the path does not know them.
     pub velocities: Vec<Vec<f64>>,
 }
 
@@ -84,14 +84,14 @@ pub struct BlowOutcome {
     pub blow: Outcome,
     pub floors: FloorsOutcome,
     pub striker: StrikerOutcome,
-    /// The latter at the departure of the run from the record.
+    /// The interpolated ones at the departure of the run from the record.
     pub before_departure: Option<StrikerOutcome>,
 }
 
 /// Results of an impact on one floor beside those of the impact and of the floors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrikerOutcome {
-    /// ∫ shear d(drift) of each storey \[J\].
+    /// ∫ shear d(storey drift) of each storey \[J\].
     pub storey_energy: Vec<f64>,
     /// Steps in contact from the first touch on.
     pub first_blow: u64,
@@ -124,7 +124,7 @@ impl FrameRun {
     /// Re-integrates a ground-motion test; ground accelerations \[m/s²\] at the ends of the finer steps from 0 on.
     ///
     /// # Errors
-    /// The frame, with what was moved, cannot be stepped.
+    /// The frame, with its inputs perturbed, cannot be stepped.
     pub fn shaken(
         &self,
         ground: &[f64],
@@ -230,7 +230,7 @@ struct StruckFloors<'a> {
     first_is_over: bool,
     /// At the end of the last step.
     last: ImpactState,
-    /// Whether the reading of the step under way departed from the record.
+    /// Whether the reading of the step in progress departed from the record.
     departed: &'a Cell<bool>,
     before_departure: Option<StrikerOutcome>,
 }
@@ -254,9 +254,9 @@ impl Sink<Vec<f64>> for StruckFloors<'_> {
     }
 }
 
-/// How fast the floors of a run without stops pass their targets, m/s.
+/// Velocities of the floors at their targets in a run without stops \[m/s\].
 struct Passing {
-    /// At the end of the step under way; of a run that stops, nothing.
+    /// At the end of the step in progress; empty for a run that stops.
     now: Vec<f64>,
     gathers: bool,
     gathered: Vec<Vec<f64>>,
@@ -297,9 +297,9 @@ struct Peaks {
     base_shear: Peak,
     time_step: f64,
     velocity: Vec<f64>,
-    /// Drift and its velocity at the end of the last step.
+    /// Storey drift and its velocity at the end of the last step.
     last: Vec<(f64, f64)>,
-    /// Inside the last step, where the run ends.
+    /// Storey drift inside the last step, where the run ends.
     final_inside: Vec<f64>,
     before_departure: Option<Floors>,
 }
@@ -326,7 +326,7 @@ impl Peaks {
         }
     }
 
-    /// Takes the end of a step, of which the run counts this share.
+    /// Adds the end of a step, of which the run counts this fraction.
     fn take(&mut self, state: &FrameState, share: f64) {
         drifts(&state.displacement, &mut self.ends.final_drift);
         drifts(&state.velocity, &mut self.velocity);
@@ -367,7 +367,7 @@ impl Peaks {
         self.base_shear.take(shear);
     }
 
-    /// From the next step on the path is not that of the record.
+    /// From the next step on the path differs from the record.
     fn departs(&mut self) {
         if self.before_departure.is_none() {
             self.before_departure = Some(self.between());
@@ -394,7 +394,7 @@ impl Peaks {
     }
 }
 
-/// ∫ shear d(drift) of each storey by the trapezoid, J.
+/// ∫ shear d(storey drift) of each storey by the trapezoidal rule \[J\].
 struct StoreyWork {
     drift: Vec<f64>,
     shear: Vec<f64>,
@@ -414,7 +414,7 @@ impl StoreyWork {
         work
     }
 
-    /// Takes the end of a step, of which the run counts this share.
+    /// Adds the end of a step, of which the run counts this fraction.
     fn take(&mut self, state: &FrameState, share: f64) {
         let (mut drift, mut shear) = (vec![0.0; self.drift.len()], vec![0.0; self.shear.len()]);
         drifts(&state.displacement, &mut drift);

@@ -1,24 +1,24 @@
-//! A frame as a run recorded it: the shear of each storey over its drift, along the way it went, so that the run can be taken
-//! again with an input moved a little and no model of the frame. In: targets of all floors and what was read at them, in
-//! order. Out: what would be read at targets near those, step by step.
+//! A frame as a run recorded it: the shear of each storey over its storey drift, along the path. The run can be re-integrated with an
+//! input perturbed a little and without a model of the frame. In: targets of all floors and the readings there, in order. Out: the
+//! readings at targets near those, step by step.
 //!
-//! Each storey of a shear building has a path of its own (`recorded_path`), so that what is exact of one specimen is exact of every storey.
-//! A frame whose stiffness is not that of storeys is taken for what it
-//! was at the same step and, off its recorded place, for as stiff as it was at first: exact where it is elastic. At the recorded targets
-//! the recorded readings come back as they were, to the bit.
+//! Each storey of a shear building has its own path (`recorded_path`): a result that is exact for one specimen is exact for every storey.
+//! If the stiffness of a frame is not that of storeys, its readings are those of the same step of the record. Away from the recorded
+//! position they change with the initial stiffness: this is exact for an elastic frame. At the recorded targets the readings are
+//! bit-identical to the recorded ones.
 
 use super::hysteresis_replay::{Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
 use crate::structure::{SymmetricBand, drifts, shears, storeys_of};
 
-/// One step of the record, an entry a floor.
+/// One step of the record, one entry per floor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameReading {
-    /// Commanded, m.
+    /// Commanded displacement \[m\].
     pub target: Vec<f64>,
-    /// m
+    /// \[m\]
     pub displacement: Vec<f64>,
-    /// N
+    /// \[N\]
     pub force: Vec<f64>,
 }
 
@@ -40,8 +40,8 @@ enum Bends {
 }
 
 impl FramePath {
-    /// `velocities` are those predicted for the targets \[m/s\] of a continuous motion with a reading each `time_step` \[s\]; `stiffness` is the
-    /// initial K; `force_noise` \[N\] and `resolution` \[m\] are those of one floor. None without readings.
+    /// `velocities` are those predicted for the targets \[m/s\] of a continuous motion with a reading each `time_step` \[s\]; `stiffness`
+    /// is the initial K; `force_noise` \[N\] and `resolution` \[m\] are those of one floor. None without readings.
     #[must_use]
     pub fn new(
         readings: Vec<FrameReading>,
@@ -89,7 +89,7 @@ impl FramePath {
                         displacement: displacements[step][storey],
                         force: forces[step][storey],
                     };
-                    // A shear is the sum of the cells above, a drift the difference of two floors.
+                    // A shear is the sum of the cells above, a storey drift the difference of two floors.
                     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
                     let cells = (floors - storey) as f64;
                     let quantum = if storey == 0 {
@@ -129,19 +129,19 @@ impl FramePath {
         })
     }
 
-    /// Whether it was told how fast its targets were passed.
+    /// Whether the velocities at its targets are known.
     #[must_use]
     pub const fn knows_velocities(&self) -> bool {
         !self.velocities.is_empty()
     }
 
-    /// What it was told, without what it made of it.
+    /// The readings, without the branches derived from them.
     #[must_use]
     pub fn into_readings(self) -> Vec<FrameReading> {
         self.readings
     }
 
-    /// Takes the way again from its beginning.
+    /// Begins a re-run along the path.
     #[must_use]
     pub fn retrace<'a>(&'a self, readings: &'a Perturbation) -> FrameRetrace<'a> {
         let walks = match &self.bends {
@@ -174,47 +174,47 @@ impl FramePath {
     }
 }
 
-/// Storeys of floors, by `to_storeys`.
+/// Quantities of the storeys from those of the floors, by `to_storeys`.
 fn to(to_storeys: fn(&[f64], &mut [f64]), floors: &[f64]) -> Vec<f64> {
     let mut storeys = vec![0.0; floors.len()];
     to_storeys(floors, &mut storeys);
     storeys
 }
 
-/// The way as it is taken again.
+/// The path during a re-run.
 #[derive(Clone, Debug)]
 pub struct FrameRetrace<'a> {
     path: &'a FramePath,
     readings: &'a Perturbation,
     storeys: Vec<(&'a RecordedPath, Retrace<'a>)>,
-    /// Of its own steps.
+    /// Number of its own steps so far.
     own_step: usize,
-    /// The step of the record that is nearest.
+    /// The nearest step of the record.
     step: usize,
-    /// Where it begins, m.
+    /// The first position \[m\].
     target: Vec<f64>,
     /// The last targets, in metres of the record.
     position: Vec<f64>,
-    /// With which they were passed, m/s, in metres of the record.
+    /// The velocities at the last targets \[m/s\], in metres of the record.
     velocity: Vec<f64>,
     displacement: Vec<f64>,
     force: Vec<f64>,
 }
 
 impl FrameRetrace<'_> {
-    /// Where it begins, m.
+    /// The first position \[m\].
     #[must_use]
     pub fn start(&self) -> &[f64] {
         &self.target
     }
 
-    /// The last reading of displacements, m.
+    /// The last reading of displacements \[m\].
     #[must_use]
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
     }
 
-    /// The last reading of forces, N.
+    /// The last reading of forces \[N\].
     #[must_use]
     pub fn force(&self) -> &[f64] {
         &self.force
@@ -226,7 +226,7 @@ impl FrameRetrace<'_> {
         self.storeys.iter().any(|(_, retrace)| retrace.departed())
     }
 
-    /// Goes to the targets of the next step, m, passing them with these velocities (m/s) if it does not stop there, and reads.
+    /// Moves to the targets of the next step \[m\] and reads. `velocities` \[m/s\] are those at the targets if it does not stop there.
     pub fn move_to(&mut self, targets: &[f64], velocities: &[f64]) {
         self.own_step += 1;
         self.step = nearest(self.own_step, self.readings.finer);
@@ -268,7 +268,7 @@ impl FrameRetrace<'_> {
         self.read();
     }
 
-    /// What every storey does off its recorded drift, added to the recorded readings.
+    /// Adds the force changes of every storey away from its recorded storey drift to the recorded readings.
     fn bend_storeys(&mut self) {
         let (mut below, mut slower, mut off) = (0.0, 0.0, 0.0);
         for storey in 0..self.storeys.len() {
@@ -357,11 +357,11 @@ mod tests {
         }
     }
 
-    /// R = D_f·K·D_d⁻¹·X + zero, whatever the way and past its end: each axis has factors of its own.
+    /// R = D_f·K·D_d⁻¹·X + zero offset, whatever the path and past its end: each axis has its own factors.
     #[test]
     fn an_elastic_frame_off_its_targets_is_elastic() {
         for stiffness in [storey_stiffness(&STIFFNESSES), {
-            // As a frame of no storeys: the same numbers are off its own first row.
+            // The same frame without storeys: its first row is not that of storeys.
             let mut other = storey_stiffness(&STIFFNESSES);
             other.set(0, 0, 5000.5);
             other
@@ -392,7 +392,7 @@ mod tests {
                 for (axis, by_hand) in by_hand.iter().enumerate() {
                     let expected =
                         readings.axes[axis].force_scale * by_hand + readings.axes[axis].zero_offset;
-                    // The other frame is 0.5 N/m stiffer off its way, of at most 50 mm.
+                    // Away from its path, of at most 50 mm, the frame without storeys is stiffer by 0.5 N/m.
                     let within = if storeys { 1e-9 } else { 0.5 * 0.05 * 1.2 };
                     assert!(
                         (retrace.force()[axis] - expected).abs() < within,

@@ -12,7 +12,7 @@ use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink};
 use crate::integrator::state::State;
 use crate::reintegration::perturbation::Perturbation;
 
-/// Results of an impact, SI; NaN where a result does not exist.
+/// Results of an impact, SI; NaN if a result does not exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     /// As the run itself reports them, at the ends of steps.
@@ -77,7 +77,7 @@ pub fn rerun(
     )
 }
 
-/// Predicted velocities at the targets of a run with continuous motion \[m/s\]; `readings` are all of its own.
+/// Predicted velocities at the targets of a run with continuous motion \[m/s\]; `readings` are all readings of that run.
 #[must_use]
 pub fn predicted_velocities(
     input: &ImpactInput,
@@ -99,8 +99,8 @@ pub fn predicted_velocities(
     velocities
 }
 
-/// The impact from a place (m) and the displacement (m) and force (N) read there, on whatever is `read` at its
-/// targets, for each of which a velocity (m/s) is foretold: `read` gives displacement (m) and force (N).
+/// Integrates the impact from a position \[m\] with its displacement \[m\] and force \[N\]. For each target \[m\] and its predicted
+/// velocity \[m/s\], `read` gives displacement \[m\] and force \[N\].
 ///
 /// # Errors
 /// As [`ImpactSolver::new`].
@@ -116,7 +116,7 @@ pub fn integrate(
     })
 }
 
-/// The same of a path that also says whether it has departed from its record.
+/// As [`integrate`], for a path that also reports whether it has departed from its record.
 fn run(
     input: &ImpactInput,
     until: Until,
@@ -205,7 +205,7 @@ impl ImpactResults {
         }
     }
 
-    /// Adds the end of a step; `over` where the run ends with it.
+    /// Adds the end of a step; `over`: the run ends with this step.
     pub fn take(&mut self, now: &ImpactState, over: bool) {
         let before = std::mem::replace(&mut self.before, *now);
         self.summary.push(now);
@@ -219,20 +219,20 @@ impl ImpactResults {
         );
     }
 
-    /// Share of the last step at which the run ends.
+    /// Fraction of the last step at which the run ends.
     #[must_use]
     pub const fn share(&self) -> f64 {
         self.end.share
     }
 
-    /// From the next step on the path is not that of the record.
+    /// From the next step on the path differs from the record.
     pub fn departs(&mut self) {
         if self.before_departure.is_none() {
             self.before_departure = Some(self.values(&self.summary.clone().finish()));
         }
     }
 
-    /// The results, as far as steps were taken.
+    /// The results of the steps so far.
     #[must_use]
     pub fn finish(&self) -> Outcome {
         let summary = self.summary.clone().finish();
@@ -270,20 +270,20 @@ impl ImpactResults {
     }
 }
 
-/// Fraction of a step at which a velocity that falls linearly from `before` to `now` is zero; None where it does not reach zero.
+/// Fraction of a step at which a velocity that falls linearly from `before` to `now` is zero; None if it does not reach zero.
 fn crossing(before: f64, now: f64) -> Option<f64> {
     (before > 0.0 && now <= 0.0).then(|| before / (before - now))
 }
 
 /// The peak and the stop, inside their steps.
 struct Between {
-    /// m
+    /// \[m\]
     displacement: f64,
-    /// s
+    /// \[s\]
     time: f64,
-    /// J
+    /// \[J\]
     absorbed: f64,
-    /// s
+    /// \[s\]
     stop_time: Option<f64>,
 }
 
@@ -321,13 +321,13 @@ impl Between {
     }
 }
 
-/// The end of the run, inside its last step where the run ends by a velocity of zero.
+/// The end of the run, inside its last step if the run ends at a velocity of zero.
 struct Ending {
-    /// Of the last step.
+    /// Fraction of the last step.
     share: f64,
-    /// m
+    /// \[m\]
     displacement: f64,
-    /// J
+    /// \[J\]
     restoring: f64,
     damping: f64,
 }
@@ -395,8 +395,8 @@ mod tests {
         RecordedPath::new(vec![reading(0.0), reading(0.05)], STIFFNESS, 0.0, 0.0).unwrap()
     }
 
-    /// Perfectly plastic: both go on with V = `Ms·V0/(M + Ms)`, to V/ω after a quarter period, ω = √(K/(M + Ms)). The ends of
-    /// steps miss peak and stop by up to a step; what is told between them does not.
+    /// Perfectly plastic: both continue with V = `Ms·V0/(M + Ms)`, to V/ω after a quarter period, ω = √(K/(M + Ms)). The ends of steps
+    /// miss peak and stop by up to a step; the interpolated values do not.
     #[test]
     fn peak_and_stop_are_told_between_the_ends_of_steps() {
         let frequency = (STIFFNESS / 11.0_f64).sqrt();
@@ -423,7 +423,7 @@ mod tests {
             );
             assert!((0.0..=time_step).contains(&missed));
             assert_eq!(found.values[1], found.values[2]);
-            // The scheme's own period is long by (ωΔt)²/12; the peak only loses what is left of rounding.
+            // The period of the scheme is longer by (ωΔt)²/12; the peak only has a rounding error.
             assert!(
                 (found.values[0] / peak - 1.0).abs() < 0.2 * (frequency * time_step).powi(2),
                 "{time_step}"

@@ -1,7 +1,7 @@
-//! Readings as instruments with other errors would have given them. In: a reading of the record. Out: the reading with the scale factors,
-//! zero offsets and simulated errors of a re-run. It knows no path, no procedure and no plan.
+//! Readings that instruments with different errors would have given. In: a reading of the record. Out: the reading with the scale
+//! factors, zero offsets and simulated errors of a re-run. It knows no path, no procedure and no plan.
 
-/// The instruments of one axis in a re-run; each load cell and each transducer is an instrument of its own.
+/// The instruments of one axis in a re-run; each load cell and each transducer is a separate instrument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instruments {
     /// Newtons in one newton of the record.
@@ -41,7 +41,7 @@ impl ReadingErrors {
 /// All readings of a re-run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Perturbation {
-    /// One an axis.
+    /// One per axis.
     pub axes: Vec<Instruments>,
     /// The Monte Carlo trial whose errors the readings have.
     pub trial: Option<u16>,
@@ -50,7 +50,7 @@ pub struct Perturbation {
 }
 
 impl Perturbation {
-    /// The readings as they were.
+    /// The unchanged readings.
     #[must_use]
     pub fn none(axes: usize) -> Self {
         let instruments = Instruments {
@@ -72,9 +72,9 @@ impl Perturbation {
         value / self.axes[axis].displacement_scale
     }
 
-    /// Displacement \[m\] and force \[N\] of an axis as these instruments read them. `reading` numbers the readings of the run, each of which
-    /// is the mean of so many samples. Every reading has errors of its own: noise, which a mean averages, and q/√12. All readings of an
-    /// axis have q/√12 in common.
+    /// Displacement \[m\] and force \[N\] of an axis as these instruments read them. `reading` numbers the readings of the run; each is
+    /// the mean of so many samples. Every reading has its own errors: noise, which a mean averages, and q/√12. All readings of an axis
+    /// have q/√12 in common.
     #[must_use]
     pub fn read(
         &self,
@@ -107,16 +107,16 @@ impl Perturbation {
     }
 }
 
-/// Numbers that no reading has.
+/// Numbers that do not belong to any reading.
 const COMMON: u64 = u64::MAX >> 16;
 
-/// Signs of an input that is drawn in a trial, by its place among them.
+/// Signs of an input in a Monte Carlo trial, by its index among the inputs.
 #[must_use]
 pub fn sign_of_input(trial: u16, place: usize) -> f64 {
     signs(trial, COMMON - 1 - place as u64, 0)[0]
 }
 
-/// Two signs of a reading of an axis in a trial: two bits an axis; past the last of a word, another word.
+/// Two signs of a reading of an axis in a trial: two bits per axis; after the last bits of a word, a new word.
 fn signs(trial: u16, reading: u64, axis: usize) -> [f64; 2] {
     let bits = drawn(trial, reading ^ (axis as u64 / 32) << 40) >> (2 * (axis % 32));
     [1, 2].map(|bit| if bits & bit == 0 { 1.0 } else { -1.0 })

@@ -1,4 +1,5 @@
-//! Readings of a specimen at rest, from which relaxation is identified. In: what a rig did and read. Out: [`Hold`]s. It knows no model.
+//! Readings of a specimen at rest, from which relaxation is identified. In: moves and readings of a rig. Out: [`Hold`]s. It knows no
+//! model.
 
 /// A dwell: a specimen held at one displacement, and its readings.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +75,7 @@ pub(super) fn geometric((low, high): (f64, f64), count: u32) -> impl Iterator<It
     (0..count).map(move |index| low * (high / low).powf(f64::from(index) / f64::from(count - 1)))
 }
 
-/// Why there is no fit.
+/// The reason why there is no fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unrelaxed {
     /// Fewer readings than parameters.

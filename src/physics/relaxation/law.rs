@@ -1,5 +1,5 @@
-//! Laws of relaxation of an instantaneous force. In: the time since a move ended, its duration, the time of the law. Out: the lost fraction of
-//! the increment of force, for a share of 1, and its rate. It knows no specimen and no fit.
+//! Laws of relaxation of an instantaneous force. In: the time since a move ended, its duration, the time of the law. Out: the lost
+//! fraction of the increment of force, for a share of 1, and its rate. It knows no specimen and no fit.
 //!
 //! A force that is applied instantly and held loses, per newton, `share` times
 //! - 1 − e^(−t/τ): exponential, as a Maxwell branch;
@@ -22,8 +22,8 @@ pub enum RelaxationLaw {
 impl RelaxationLaw {
     pub const BOTH: [Self; 2] = [Self::Exponential, Self::Logarithmic];
 
-    /// Loss of 1 N with a share of 1, `since` \[s\] the end of a move that brought it at a constant rate in `moved_for` \[s\]: the mean of the
-    /// law over the instants of the move. `time` is τ or t₀ \[s\].
+    /// Loss of 1 N with a share of 1, `since` \[s\] the end of a move that brought it at a constant rate in `moved_for` \[s\]: the mean of
+    /// the law over the instants of the move. `time` is τ or t₀ \[s\].
     ///
     /// Exponential: 1 − e^(−u/τ)·(1 − e^(−m/τ))·τ/m. Logarithmic, with A = 1 + u/t₀ and r = m/(t₀A):
     /// ln A + (1 + r) ln(1 + r)/r − 1.

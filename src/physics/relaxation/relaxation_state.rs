@@ -6,9 +6,9 @@ use super::maxwell::{MaxwellBranch, Motion};
 use crate::specimen::Behaviour;
 use crate::specimen::{RestoringForce, SpecimenModel};
 
-/// Within a move, a force that is off the line between its ends by less than this fraction is proportional to the displacement.
+/// Within a move, the force is proportional to the displacement if its distance from the straight line is below this fraction.
 const STRAIGHT: f64 = 1e-7;
-/// A move is halved so often, at most: the part in which a yield point lies is then a millionth of it.
+/// Largest number of halvings of a move: the part with a yield point is then a millionth of it.
 const MAX_HALVINGS: u32 = 20;
 
 /// Displacement \[m\] of a specimen and its instantaneous (unrelaxed) force there \[N\].
@@ -27,7 +27,7 @@ pub struct RelaxationState {
 }
 
 impl RelaxationState {
-    /// Of a specimen that has not moved yet.
+    /// The state of a specimen that has not moved yet.
     #[must_use]
     pub fn new(behaviour: &Behaviour) -> Self {
         let mut inner = behaviour;
@@ -197,8 +197,8 @@ impl Path<'_> {
 mod tests {
     use super::*;
 
-    /// Loss of a specimen of 2 kN/mm that yields at 6 kN, over `distance` (m) in `moves` at constant velocity in `seconds` and a rest of
-    /// the same time.
+    /// Loss of a specimen of 2 kN/mm that yields at 6 kN, over `distance` \[m\] in `moves` at constant velocity in `seconds` and a rest
+    /// of the same time.
     fn lost(inner: &Behaviour, distance: f64, moves: u32, seconds: f64) -> f64 {
         let behaviour = Behaviour::Logarithmic {
             of: Box::new(inner.clone()),
@@ -262,7 +262,7 @@ mod tests {
         }
     }
 
-    /// An actuator that lags and comes to rest.
+    /// An actuator that lags and then stops.
     #[test]
     fn the_parts_of_a_motion_add_up_to_the_whole() {
         let start = crate::tracking::trajectory::Rate {

@@ -7,7 +7,7 @@ use crate::structure::beam::{self, Beam};
 use crate::structure::portal::Portal;
 use crate::structure::portal::mass::{self, EquivalentMasses};
 
-/// Restoring force of a virtual specimen against displacement.
+/// Restoring force of a simulated specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Behaviour {
     /// R = K X, K \[N/m\].
@@ -27,8 +27,8 @@ pub enum Behaviour {
     },
     /// A beam by geometry.
     Beam(Beam),
-    /// Piecewise linear, with kinematic hardening: backbone points, displacement \[m\] and force \[N\], both rising, each segment softer than
-    /// the one before; the last one continues.
+    /// Piecewise linear, with kinematic hardening: backbone points, displacement \[m\] and force \[N\], both rising, each segment softer
+    /// than the one before; the last one continues.
     Multilinear { corners: Vec<[f64; 2]> },
     /// Smooth hysteresis after Bouc and Wen. `sharpness` is n; γ = 1 − `beta`.
     BoucWen {
@@ -107,9 +107,9 @@ impl Behaviour {
         }
     }
 
-    /// Largest slope dR/dX on any path \[N/m\], which determines stability. Most behaviours are stiffest at first; a joint that bears before
-    /// its faces slip is twice as stiff, a Bouc–Wen spring unloads at up to 2β of its hysteretic part, and measured points have the slope of
-    /// their steepest segment.
+    /// Largest slope dR/dX on any path \[N/m\], which determines stability. Most behaviours are stiffest at first; a joint that bears
+    /// before its faces slip is twice as stiff, a Bouc–Wen spring unloads at up to 2β of its hysteretic part, and measured points have the
+    /// slope of their steepest segment.
     #[must_use]
     pub fn largest_stiffness(&self) -> f64 {
         match self {
@@ -139,8 +139,8 @@ impl Behaviour {
         }
     }
 
-    /// Stiffness of a combination \[N/m\], from `of` each part: in series the flexibilities add, in parallel the stiffnesses, with that of a
-    /// Maxwell branch.
+    /// Stiffness of a combination \[N/m\], from `of` each part: in series the flexibilities add, in parallel the stiffnesses, with that of
+    /// a Maxwell branch.
     fn stiffness_of_parts(&self, of: fn(&Self) -> f64) -> f64 {
         let parts = self.parts().iter().map(of);
         match self {
@@ -241,7 +241,7 @@ impl Behaviour {
                 at: Breaks::Force(force),
             } => of.capacity().min(*force),
             Self::Fracture { of, .. } | Self::Rate { of, .. } => of.capacity(),
-            // What was lost one way is felt more the other way.
+            // The loss in one direction increases the force in the other direction.
             Self::Logarithmic {
                 of,
                 share,

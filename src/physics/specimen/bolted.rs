@@ -1,5 +1,5 @@
-//! A bolted joint: clamped faces that slip, then the bolt bears on the edge of its hole, which grows where it yields. In: a
-//! displacement. Out: the force there, by exact return maps.
+//! A bolted joint: clamped faces that slip, then the bolt bears on the edge of its hole, which grows when it yields. In: a displacement.
+//! Out: the force there, by exact return maps.
 
 use super::{Bilinear, RestoringForce};
 

@@ -3,9 +3,9 @@
 
 use super::RestoringForce;
 
-/// R = α K X + (1 − α) F_y z, dz/dX = (K/F_y) [1 − |z|ⁿ (γ + β sign(z dX))], the form that goes by the names of Bouc and Wen, normalised to γ = 1 − β, so
-/// that z tends to ±1. Its dissipation beyond the elastic energy ½z² F_y/K is z dX − (F_y/K) z dz = |z|ⁿ⁺¹ |dX| (β + γ sign(z dX)), which is
-/// not negative on any path where β ≥ |γ|, that is β ≥ ½.
+/// R = α K X + (1 − α) F_y z, dz/dX = (K/F_y) [1 − |z|ⁿ (γ + β sign(z dX))], known as the Bouc–Wen model, normalised to γ = 1 − β, so
+/// that z tends to ±1. Its dissipation beyond the elastic energy ½z² F_y/K is z dX − (F_y/K) z dz = |z|ⁿ⁺¹ |dX| (β + γ sign(z dX)). This
+/// is not negative on any path if β ≥ |γ|, that is β ≥ ½.
 ///
 /// With y = |ΔX| K/F_y and u = z counted along the move, du/dy = 1 − uⁿ loading (u ≥ 0) and 1 + (2β − 1)|u|ⁿ unloading (u < 0).
 /// Unloading ends at u = 0, where the right-hand side loses derivatives: the part up to it is integrated first, so that no step
@@ -82,7 +82,7 @@ impl BoucWen {
             let longest = (0.25 * along.abs())
                 .max(SHORTEST)
                 .min(1.0 / (STEPS * self.sharpness));
-            // An even share of what is left, so that no last step is a sliver.
+            // An equal part of the rest, so that the last step is not very short.
             let step = if length <= longest {
                 length
             } else {
@@ -95,7 +95,7 @@ impl BoucWen {
     }
 
     fn runge_kutta(&self, along: f64, step: f64) -> f64 {
-        // Trial places stay on the side of the start.
+        // Trial values stay on the side of the start.
         let side = |u: f64| {
             if along < 0.0 {
                 u.min(-f64::MIN_POSITIVE)
@@ -118,7 +118,7 @@ impl RestoringForce for BoucWen {
             let mut length = moved.abs() * self.stiffness / self.yield_force;
             let mut along = self.plastic * moved.signum();
             if along < 0.0 {
-                // du/dy is largest here, so that no shorter way leads to 0.
+                // du/dy is largest here, so that no shorter distance leads to 0.
                 let to_zero = if length * self.rate(along) < -along {
                     f64::INFINITY
                 } else {
@@ -184,8 +184,8 @@ mod tests {
         );
     }
 
-    /// The right-hand side as the papers print it, extrapolated midpoint steps (Gragg–Bulirsch–Stoer) that share nothing
-    /// with the model.
+    /// The right-hand side as printed in the papers, with extrapolated midpoint steps (Gragg–Bulirsch–Stoer) that share no code with the
+    /// model.
     fn independent(sharpness: f64, beta: f64, path: &[f64]) -> f64 {
         let (mut place, mut z) = (0.0_f64, 0.0_f64);
         let rate = |z: f64, length: f64| {

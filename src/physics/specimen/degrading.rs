@@ -15,7 +15,7 @@ pub struct Degrading {
 }
 
 impl Degrading {
-    /// `stiffness` K (N/m), `half_displacement` h (m), `residual` r, 0 to 1.
+    /// `stiffness` K \[N/m\], `half_displacement` h \[m\], `residual` r, 0 to 1.
     #[must_use]
     pub const fn new(stiffness: f64, half_displacement: f64, residual: f64) -> Self {
         Self {

@@ -5,8 +5,9 @@ use super::RestoringForce;
 use super::deterioration::Degradation;
 use crate::specimen::Deterioration;
 
-/// The bilinear spring (`Bilinear`: K between two lines of slope k, R = kX ± Y, Y = (1 − h)F_y, k = hK) with two of the modes of deterioration of
-/// Ibarra, Medina & Krawinkler (Earthquake Engng Struct. Dyn. 34 (2005) 1489–1511), in the order of `IMKBilin` of OpenSees:
+/// The bilinear spring (`Bilinear`: K between two lines of slope k, R = kX ± Y, Y = (1 − h)F_y, k = hK) with two of the modes of
+/// deterioration of Ibarra, Medina & Krawinkler (Earthquake Engng Struct. Dyn. 34 (2005) 1489–1511), in the order of `IMKBilin` of
+/// OpenSees:
 /// - at zero force, where the next excursion begins, Y of that side and k lose the fraction of `Degradation`. The slope is one for both
 ///   sides: two lines of different slopes would cross, and a spring between them would release energy that it never absorbed;
 /// - at the reversal of a loaded excursion, the stiffness between the lines. The energy stored between them, ½(R − kX)²/(K − k), grows
@@ -183,7 +184,7 @@ mod tests {
     use super::super::tests::energy_along;
     use super::*;
 
-    /// Capacities without end.
+    /// Infinite capacities.
     const NO_WEAR: Deterioration = Deterioration {
         strength: f64::INFINITY,
         capping: f64::INFINITY,
@@ -198,7 +199,7 @@ mod tests {
         DeterioratingBilinear::new(1e6, 1000.0, hardening, rule)
     }
 
-    /// Turns of all kinds: elastic, yielding, under a force that is not gone, on either side, tiny.
+    /// Reversals of all kinds: elastic, yielding, before zero force, on either side, tiny.
     fn ways() -> impl Iterator<Item = f64> {
         let places = [
             0.003, -0.002, 0.006, 0.001, 0.0055, -0.007, -0.004, -0.0065, 0.009, -0.012, 0.02,
@@ -209,7 +210,7 @@ mod tests {
         })
     }
 
-    /// Capacities without end: the bilinear spring, bit for bit, also where it hardens so much that it yields before its force is gone.
+    /// Infinite capacities: bit-identical to the bilinear spring, also if its hardening is so large that it yields before zero force.
     #[test]
     fn without_wear_it_is_the_bilinear_spring() {
         for hardening in [0.0, 0.03, 0.1, 0.6, 1.0] {
@@ -227,8 +228,8 @@ mod tests {
         }
     }
 
-    /// To 5 mm and back to no force it takes 4 J of 40 J: β = 4/36, and backwards it yields at 8/9 of 1 kN. From 4 mm there to −3 mm it takes
-    /// F·(4 + 3) mm − F²/K, of which the forward strength is lost.
+    /// To 5 mm and back to zero force it absorbs 4 J of 40 J: β = 4/36, and in the opposite direction it yields at 8/9 of 1 kN. From 4 mm
+    /// there to −3 mm it absorbs F·(4 + 3) mm − F²/K, by which the forward strength is reduced.
     #[test]
     fn strength_is_lost_by_the_energy_of_each_excursion() {
         let rule = Deterioration {
@@ -253,8 +254,8 @@ mod tests {
         assert!((model.move_to(0.003) - forwards).abs() < 1e-9);
     }
 
-    /// With hardening, the slope goes with the strength: on the line backwards R = −sY + skX, s = 1 − β of what the first excursion took. It is
-    /// 1 kN at 1 mm and 1.4 kN at 5 mm, and unloads to 3.6 mm.
+    /// With hardening, the slope falls with the strength: on the opposite yield line R = −sY + skX, with s = 1 − β of the energy of the
+    /// first excursion. It is 1 kN at 1 mm and 1.4 kN at 5 mm, and unloads to 3.6 mm.
     #[test]
     fn hardening_wears_with_the_strength() {
         let mut model = spring(
@@ -276,7 +277,7 @@ mod tests {
         }
     }
 
-    /// To 5 mm it has taken 4.5 J, of which 0.5 J come back: β = 4/36, and it unloads with 8/9 of K; back up the same line.
+    /// To 5 mm it has absorbed 4.5 J, of which 0.5 J are released: β = 4/36. It unloads with 8/9 of K, and reloads along the same line.
     #[test]
     fn the_unloading_stiffness_falls_by_what_it_took() {
         let mut model = spring(
@@ -301,8 +302,8 @@ mod tests {
         assert!((model.move_to(-0.004) + 1000.0).abs() < 1e-9);
     }
 
-    /// Elastic cycles lose nothing; plastic ones wear it out within its capacity, unless it softens so much that they are elastic; it never gives back
-    /// more than it took, and what it counts is the work done.
+    /// Elastic cycles lose nothing. Plastic cycles use up its capacity, unless it softens so much that they are elastic. It never
+    /// releases more energy than it absorbed, and the counted energy is the work done.
     #[test]
     fn it_wears_out_and_gives_back_no_more_than_it_took() {
         for (hardening, unloading) in [(0.0, f64::INFINITY), (0.0, 30.0), (0.05, 60.0), (0.4, 60.0)]

@@ -2,15 +2,15 @@
 //! unloading stiffness, and the extension of the reloading target. It knows no path.
 //!
 //! After Ibarra, Medina & Krawinkler (*Hysteretic models that incorporate strength and stiffness deterioration*, Earthquake Engng Struct.
-//! Dyn. 34 (2005) 1489–1511), in the order of `IMKPinching` of OpenSees: each mode has its own γ and loses the fraction
-//! β = (`E_i`/(γ F_y x_y − ΣE_j))^c, with the energy `E_i` of the excursion and ΣE_j of all with it; β = 1 where less is left than `E_i`.
+//! Dyn. 34 (2005) 1489–1511), in the order of `IMKPinching` of OpenSees: each mode has its own γ and loses the fraction β = (`E_i`/(γ F_y
+//! x_y − ΣE_j))^c, with the energy `E_i` of the excursion and ΣE_j of all including it; β = 1 if less than `E_i` remains.
 //! - At zero force, where the next excursion begins in a direction: the strength of that side, yield force and post-yield stiffness alike,
 //!   times 1 − `β_s`, down to the residual; its post-capping line, by its force at zero displacement, times 1 − `β_c`; its peak times
 //!   1 + `β_a`.
-//! - At the reversal of a loaded excursion: the unloading stiffness of both sides times 1 − `β_k`, with `E_i` and ΣE_j less the elastic
-//!   energy that is released.
+//! - At the reversal of a loaded excursion: the unloading stiffness of both sides times 1 − `β_k`, with `E_i` and ΣE_j minus the released
+//!   elastic energy.
 
-/// Parameters of cyclic deterioration: for each mode the energy capacity γ over `F_y` `x_y`, infinite where the mode is off.
+/// Parameters of cyclic deterioration: for each mode the energy capacity γ over `F_y` `x_y`, infinite if the mode is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deterioration {
     pub strength: f64,
@@ -23,7 +23,7 @@ pub struct Deterioration {
     pub residual: f64,
 }
 
-/// Deterioration of a hysteresis so far; none where no capacity is stated.
+/// Deterioration of a hysteresis so far; none if no capacity is stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Degradation {
     rule: Option<Deterioration>,

@@ -1,6 +1,5 @@
-//! Restoring-force models of virtual specimens, one file each. In: the parameters of a model, then
-//! displacements. Out: restoring forces, from a [`SpecimenModel`]. A model knows its own path and
-//! nothing of time.
+//! Restoring-force models of simulated specimens, one file each. In: the parameters of a model, then displacements. Out: restoring
+//! forces, from a [`SpecimenModel`]. A model has its own path and is independent of time.
 
 mod behaviour;
 mod bilinear;

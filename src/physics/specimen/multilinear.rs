@@ -14,7 +14,7 @@ pub struct Multilinear {
     displacement: f64,
 }
 
-/// k (x − p), at most k x_y either way; moved by the return map of perfect plasticity.
+/// k (x − p), at most k x_y in either direction; updated by the return map of perfect plasticity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Element {
     stiffness: f64,

@@ -44,7 +44,7 @@ pub struct Capping {
 /// - unloading has the stiffness K (x_y/x_p)^a, with the peak displacement x_p of that direction (as in Takeda's model), but at least
 ///   that of the peak's chord, F_p/x_p; a reversal before zero force reloads along the same line;
 /// - from zero force at u₀, reloading runs to the break point U = (1 − κ_D)·U_p, F = κ_F·F_p (U − u₀)/(x_p − u₀), with the residual
-///   displacement U_p of the peak of that direction, and on to the peak; where u₀ is past the break point, straight to the peak;
+///   displacement U_p of the peak of that direction, and on to the peak; if u₀ is past the break point, straight to the peak;
 /// - beyond the peak it is the backbone;
 /// - basic strength, post-capping strength, unloading stiffness and the target of reloading deteriorate by the energy of its excursions
 ///   (`Degradation`); not while it is elastic.
@@ -294,12 +294,13 @@ pub(super) mod tests {
         let path = [
             (0.0005, 500.0),
             (0.0050, 1000.0),
-            // Unloads with K; back up before the force is gone; no force at 4 mm.
+            // Unloads with K; reloads before zero force; zero force at 4 mm.
             (0.0045, 500.0),
             (0.0048, 800.0),
             (0.0045, 500.0),
             (0.0040, 0.0),
-            // Backwards to the peak at −1 mm: its permanent displacement is 0, so is the break point's; −400·4/5 = −320 N there.
+            // In the opposite direction to the peak at −1 mm: its permanent displacement is 0, and so is the break point's; −400·4/5 =
+            // −320 N there.
             (0.0020, -160.0),
             (0.0000, -320.0),
             (-0.0010, -1000.0),
@@ -342,7 +343,7 @@ pub(super) mod tests {
         );
     }
 
-    /// A hair before the displacement of zero force the force rounds to zero. Loading the other way begins there, not at the
+    /// Just before the displacement of zero force the force rounds to zero. Loading in the opposite direction begins there, not at the
     /// reversal point.
     #[test]
     fn an_unloading_that_rounds_to_zero_force_has_ended() {
@@ -356,8 +357,8 @@ pub(super) mod tests {
         assert!((next - 500.0).abs() < 1e-9, "{next} N");
     }
 
-    /// A settled cycle ±A of the perfectly plastic one with κ_D = 1 (break points at no displacement): by hand, with A = 5 x_y,
-    /// the reloading polygon (−4, 0), (0, 400·4/9), (5, 1000), unloading to (4, 0), and the same mirrored: areas in N·mm.
+    /// A settled cycle ±A of the perfectly plastic one with κ_D = 1 (break points at zero displacement): by hand, with A = 5 x_y, the
+    /// reloading polygon (−4, 0), (0, 400·4/9), (5, 1000), unloading to (4, 0), and the same mirrored: areas in N·mm.
     #[test]
     fn energy_of_a_settled_cycle() {
         let mut model = PinchedHysteresis::new(Pinching {

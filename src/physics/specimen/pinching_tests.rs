@@ -1,5 +1,5 @@
-//! Pinched hysteresis that wears: each mode of deterioration by hand, nothing where no capacity is stated, and no more energy taken than
-//! there is capacity for.
+//! Pinched hysteresis with cyclic deterioration: each mode by hand, no deterioration without a stated capacity, and never more dissipated
+//! energy than the capacity.
 
 use super::RestoringForce;
 use super::pinching::PinchedHysteresis;
@@ -7,7 +7,7 @@ use super::pinching::tests::PLAN;
 use super::tests::energy_along;
 use crate::specimen::{Capping, Deterioration, Pinching};
 
-/// Capacities without end.
+/// Infinite capacities.
 const NO_WEAR: Deterioration = Deterioration {
     strength: f64::INFINITY,
     capping: f64::INFINITY,
@@ -26,15 +26,15 @@ const TIRES: Pinching = Pinching {
     ..PLAN
 };
 
-/// Perfectly plastic to 5 mm and back to no force: 1000·(5 − 1) mN·m = 4 J of γ F_y x_y = 40 J. β = 4/(40 − 4): backwards it
-/// yields at 8/9 of 1 kN. There to −3 mm from −1 mm, and so on.
+/// Perfectly plastic to 5 mm and back to zero force: 1000·(5 − 1) mN·m = 4 J of γ F_y x_y = 40 J. β = 4/(40 − 4): in the opposite
+/// direction it yields at 8/9 of 1 kN. There to −3 mm from −1 mm, and so on.
 #[test]
 fn strength_is_lost_by_the_energy_of_each_excursion() {
     let mut model = PinchedHysteresis::new(TIRES);
     model.move_to(0.005);
     assert!((model.move_to(0.004)).abs() < 1e-9);
     let weaker = 1000.0 * (1.0 - 4.0 / 36.0);
-    // Break point at no displacement: 0.4 of it times 4/5 of the way.
+    // Break point at zero displacement: 0.4 of the force at 4/5 of the distance.
     assert!((model.move_to(0.0) + 0.4 * weaker * 4.0 / 5.0).abs() < 1e-9);
     assert!(
         (model.move_to(-0.001) + weaker).abs() < 1e-9
@@ -53,8 +53,8 @@ fn strength_is_lost_by_the_energy_of_each_excursion() {
     );
 }
 
-/// Elastic cycles take nothing and lose nothing; plastic ones lose strength at every reversal, never gain it, never below the
-/// residual; and what it took is what ∫R dX says, by trapezia so fine that nothing is left of their error.
+/// Elastic cycles dissipate nothing and lose no strength. Plastic cycles lose strength at every reversal, never gain it, and never fall
+/// below the residual. The absorbed energy equals ∫R dX, with trapezoids fine enough for a negligible error.
 #[test]
 fn deterioration_is_monotone_and_its_energy_is_the_work_done() {
     let mut model = PinchedHysteresis::new(TIRES);
@@ -95,8 +95,8 @@ const fn degraded(rule: Deterioration) -> Pinching {
     }
 }
 
-/// To 5 mm it has taken 4.5 J, of which 0.5 J come back: β = 4/(40 − 4), and it unloads with 8/9 of K, to 1.125 mm before. A return before
-/// the force is gone and another turn there cost nothing more; 1 mm farther costs its 1 J.
+/// To 5 mm it has absorbed 4.5 J, of which 0.5 J are released: β = 4/(40 − 4). It unloads with 8/9 of K, to 1.125 mm before. A return
+/// before the force is zero and a second reversal there cost nothing more; 1 mm farther costs its 1 J.
 #[test]
 fn the_unloading_stiffness_falls_by_what_it_took_until_it_turned() {
     let mut model = PinchedHysteresis::new(degraded(Deterioration {
@@ -115,7 +115,7 @@ fn the_unloading_stiffness_falls_by_what_it_took_until_it_turned() {
         "and down it again"
     );
     model.move_to(0.006);
-    // On the way it has taken 5.5 J in all; the old unloading would give back F²/2K_u.
+    // It has now absorbed 5.5 J in all; the old unloading branch would release F²/2K_u.
     let stored = 0.5 * 1e6 / soft;
     let charged = 5.5 - stored - 4.0;
     let softer = soft * (1.0 - charged / (40.0 - 5.5 + stored));
@@ -133,7 +133,7 @@ fn the_unloading_stiffness_falls_by_what_it_took_until_it_turned() {
     assert!((backwards + (1000.0 - 2e-4 * model.degradation.unloading * 1e6)).abs() < 1e-9);
 }
 
-/// 4 J of 40 J until the force is gone at 4 mm: the peak backwards is at −(1 + 1/9) mm; with the break point at no displacement.
+/// 4 J of 40 J until the force is zero at 4 mm: the opposite peak is at −(1 + 1/9) mm, with the break point at zero displacement.
 #[test]
 fn the_peak_that_it_reloads_to_moves_out() {
     let mut model = PinchedHysteresis::new(degraded(Deterioration {
@@ -163,7 +163,7 @@ const CAPPED: Pinching = Pinching {
     ..PLAN
 };
 
-/// Capped at 3 mm, it falls by 100 N a mm to 200 N at 11 mm: 0.5 + 2 + 4.8 + 1.8 J up to 20 mm, in one move.
+/// Capped at 3 mm, it falls by 100 N per mm to 200 N at 11 mm: 0.5 + 2 + 4.8 + 1.8 J up to 20 mm, in one move.
 #[test]
 fn a_capped_backbone_falls_to_its_residual() {
     for moves in [1, 7, 1000] {
@@ -194,7 +194,7 @@ fn a_capped_backbone_falls_to_its_residual() {
     }
 }
 
-/// To 5 mm and back to no force it takes 4.3 J less 0.32 J: backwards the falling line, 1300 N at no displacement, is moved in by β of it.
+/// To 5 mm and back to zero force it absorbs 4.3 J − 0.32 J. The opposite falling line, 1300 N at zero displacement, moves in by β of it.
 #[test]
 fn the_post_capping_line_moves_in() {
     let mut model = PinchedHysteresis::new(Pinching {
@@ -222,7 +222,7 @@ const WAYS: [f64; 12] = [
     0.003, -0.002, 0.006, 0.001, 0.0055, -0.007, -0.004, -0.0065, 0.009, -0.012, 0.02, 0.0,
 ];
 
-/// Capacities without end give the undeteriorated law, bit for bit, also where it is capped.
+/// Infinite capacities give the undeteriorated law, bit-identical, also if it is capped.
 #[test]
 fn without_a_capacity_nothing_wears() {
     for plan in [
@@ -250,8 +250,8 @@ fn without_a_capacity_nothing_wears() {
     }
 }
 
-/// With several modes at once: what is left falls and never grows, no cycle gives back more than it took, and once the whole capacity has
-/// been taken, and not later, the strength is down to its residual. Where it reloads ever farther out, it never takes that much.
+/// With several modes together: the remaining strength never grows, and no cycle releases more than it absorbed. Once the whole capacity
+/// is used, and not before, the strength is down to its residual. If it reloads ever farther, it never absorbs that much.
 #[test]
 fn modes_together_wear_it_out_within_its_capacity() {
     // 1 N · 1 m is the unit: 60 J in all.

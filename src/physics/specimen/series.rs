@@ -2,22 +2,22 @@
 
 use super::{RestoringForce, SpecimenModel};
 
-/// f₁(u) = f₂(x − u). Neither force falls while its displacement grows, so that over a move by Δx the difference
-/// f₁(u) − f₂(x − u) does not fall over u between u₀ and u₀ + Δx and changes its sign there: the root is always bracketed, and each
-/// part moves in the direction of the whole. Where both parts yield at one force there are many roots: the first part moves only as far
-/// as it must, so that many small moves end where a large one does. Found by false position with the
-/// Illinois rule, with bisection where it is slow, to the last bits of u.
+/// f₁(u) = f₂(x − u). Neither force falls while its displacement grows. Over a move by Δx the difference f₁(u) − f₂(x − u) therefore does
+/// not fall over u between u₀ and u₀ + Δx and changes its sign there. The root is always bracketed, and each part moves in the direction
+/// of the whole. If both parts yield at the same force there are many roots: the first part then moves only as far as it must, so that
+/// many small moves end at the same point as a large one. The root is found by false position with the Illinois rule, with bisection if
+/// it is slow, to the last bits of u.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     first: SpecimenModel,
     second: SpecimenModel,
-    /// u, m
+    /// u \[m\]
     first_displacement: f64,
     displacement: f64,
     force: f64,
 }
 
-/// Evaluations of one move, at most: bisection alone from 1 m to 1e-19 m takes 64.
+/// Largest number of evaluations of one move: bisection alone from 1 m to 1e-19 m takes 64.
 const MOST_TRIALS: usize = 200;
 /// Relative resolution of a displacement.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -47,10 +47,10 @@ impl Series {
         )
     }
 
-    /// u of the root that is nearest to where the first part is.
+    /// u of the root that is nearest to the present displacement of the first part.
     fn solve(&self, displacement: f64) -> f64 {
         let moved = displacement - self.displacement;
-        // By how much the first part is ahead of equilibrium: it does not fall along the move.
+        // The displacement of the first part ahead of equilibrium: it does not fall along the move.
         let excess = |first: f64| {
             let (ahead, behind) = self.forces(first, displacement);
             (ahead - behind) * moved.signum()
@@ -73,7 +73,7 @@ impl Series {
                 break;
             }
             let found = excess(middle);
-            // One of many roots is one a little nearer too.
+            // It is one of many roots if a slightly nearer value is a root too.
             if found == 0.0 && excess(middle - ROUNDING * middle.abs() * moved.signum()) < 0.0 {
                 return middle;
             }
@@ -103,7 +103,7 @@ impl RestoringForce for Series {
                 self.first.move_to(first),
                 self.second.move_to(displacement - first),
             );
-            // What is left of their difference is the rounding of u: it counts by the stiffness of either.
+            // The rest of their difference is the rounding of u, multiplied by the stiffness of either part.
             let (stiff, soft) = (
                 self.first.initial_stiffness(),
                 self.second.initial_stiffness(),
@@ -142,8 +142,8 @@ mod tests {
         SpecimenModel::new(&Behaviour::Series(parts.to_vec()))
     }
 
-    /// Elastic 3000 N/m behind bilinear 1500, 10 N, 300 N/m: together bilinear 1000 N/m, 10 N, then
-    /// 1/(1/3000 + 1/300) = 272.73 N/m.
+    /// Elastic 3000 N/m in series with bilinear 1500 N/m, 10 N, 300 N/m: together bilinear 1000 N/m, 10 N, then 1/(1/3000 + 1/300) =
+    /// 272.73 N/m.
     #[test]
     fn a_spring_behind_a_bilinear_one_is_a_bilinear_one() {
         let mut found = series(&[SPRING, YIELDS]);
@@ -170,7 +170,7 @@ mod tests {
         );
     }
 
-    /// The paper's supports: a beam behind a joint with clearance. Free over the clearance, then K of both in series.
+    /// The paper's supports: a beam in series with a joint with clearance. Zero force over the clearance, then K of both in series.
     #[test]
     fn a_beam_behind_a_joint_with_clearance() {
         let joint = Behaviour::Bolted(Bolted {

@@ -2,7 +2,7 @@
 
 use super::{RestoringForce, SpecimenModel};
 
-/// Measured points, from the least displacement to the largest, through the origin.
+/// Measured points, from the smallest displacement to the largest, through the origin.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// Name of the source of the points.
@@ -162,7 +162,7 @@ impl RestoringForce for PlasticCurve {
     fn move_to(&mut self, displacement: f64) -> f64 {
         let trial = self.force + self.stiffness * (displacement - self.displacement);
         let [ahead, behind] = &mut self.farthest;
-        // A strength is reached no later than where it was reached before, so that beyond it stands the curve.
+        // A strength is reached no later than before, so that the curve applies beyond it.
         self.force = if displacement > *ahead {
             *ahead = displacement;
             self.table.force(displacement)
@@ -219,11 +219,11 @@ mod tests {
             (0.0020, 1500.0),
             (0.0040, 1750.0),
             (0.0030, 750.0),
-            // Backwards it yields where it did at first, and flows back to where it did.
+            // In the opposite direction it yields at the initial yield point, and deforms plastically to the initial position.
             (0.0010, -1000.0),
             (-0.0010, -1000.0),
             (-0.0020, -1500.0),
-            // Forwards again at the force reached before, and then on along the curve.
+            // Forwards again at the force reached before, and then along the curve.
             (0.0020, 1750.0),
             (0.0040, 1750.0),
             (0.0050, 1500.0),

@@ -14,16 +14,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Steps of one descent, at most.
+/// Largest number of steps of one descent.
 const MAX_STEPS: usize = 60;
-/// A step is halved so often, at most.
+/// Largest number of halvings of a step.
 const MAX_HALVINGS: usize = 12;
 /// A step shorter than this in every parameter ends the descent. Parameters are therefore chosen of the order of 1.
 const SHORTEST_STEP: f64 = 1e-10;
 
-/// A model of readings, as the residuals that it leaves.
+/// A model of readings, given by its residuals.
 pub trait Residuals {
-    /// r(p), reading minus model; None where the model has no value.
+    /// r(p), reading minus model; None if the model has no value.
     fn residuals(&self, parameters: &DVector<f64>) -> Option<DVector<f64>>;
 
     /// J = ∂r/∂p, one column for each parameter.
@@ -41,7 +41,7 @@ pub trait Residuals {
 }
 
 /// Damped Gauss–Newton from `start`: every step is halved until the sum of squares falls. Ends where it falls no more, or where the
-/// Jacobian is rank-deficient. None where the model has no value at the start.
+/// Jacobian is rank-deficient. None if the model has no value at the start.
 #[must_use]
 pub fn minimize(model: &impl Residuals, start: DVector<f64>) -> Option<DVector<f64>> {
     let mut parameters = start;
@@ -98,7 +98,7 @@ pub fn central_jacobian(
     Some(DMatrix::from_columns(&columns?))
 }
 
-/// Inverse of a normal matrix JᵀJ, scaled to a unit diagonal first; None where the columns of J depend on each other.
+/// Inverse of a normal matrix JᵀJ, scaled to a unit diagonal first; None if the columns of J depend on each other.
 #[must_use]
 pub fn inverse_normal(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale = DMatrix::from_diagonal(&normal.diagonal().map(|square| 1.0 / square.sqrt()));
@@ -111,7 +111,7 @@ pub fn inverse_normal(normal: &DMatrix<f64>) -> Option<DMatrix<f64>> {
 }
 
 /// Parameters of the linear model Σ pⱼ xⱼ, by the normal equations, which Cholesky's decomposition solves alike in any scale of the
-/// columns. In: for each reading the row xⱼ of `count` numbers, and the value. None where the columns depend on each other.
+/// columns. In: for each reading the row xⱼ of `count` numbers, and the value. None if the columns depend on each other.
 #[must_use]
 pub fn linear<R: IntoIterator<Item = f64>>(
     readings: impl Iterator<Item = (R, f64)>,
@@ -161,8 +161,8 @@ impl Covariance {
         self.between(gradient, gradient).max(0.0).sqrt()
     }
 
-    /// The lower triangle L with V = LLᵀ, the parameters taken in `order`: row by row the independent contributions to each of
-    /// them. Zero for readings without scatter.
+    /// The lower triangle L with V = LLᵀ, the parameters in the order `order`: row by row the independent contributions to each of them.
+    /// Zero for readings without scatter.
     #[must_use]
     pub fn independent(&self, order: &[usize]) -> DMatrix<f64> {
         let ordered = self.0.select_rows(order).select_columns(order);

@@ -1,35 +1,35 @@
-//! The largest of many noisy readings. In: readings and their noise. Out: the largest force that was there. It knows no rig.
+//! The largest force behind many noisy readings. In: readings and their noise. Out: the largest force. It knows no rig.
 //!
-//! Where a curve is flat, the largest of many readings is that of their errors: of sixty with a standard deviation σ, 2.3σ too much. By how
-//! much is told by the readings themselves (Cook & Stefanski, *Simulation-extrapolation estimation in parametric measurement error
-//! models*, J. Amer. Stat. Assoc. 89 (1994) 1314–1328): noise of √(1 + λ)σ adds c√(1 + λ)σ to the largest of readings of one force, so that
-//! as much noise once more (λ = 1) adds (√2 − 1)cσ, and no noise at all (λ = −1) takes cσ away. A reading that stands out alone keeps
-//! its size. What comes out scatters as one reading does.
+//! If a curve is flat, the largest of many readings contains the largest error: for sixty readings with a standard deviation σ it is 2.3σ
+//! too large. The readings themselves show this bias (Cook & Stefanski, *Simulation-extrapolation estimation in parametric measurement
+//! error models*, J. Amer. Stat. Assoc. 89 (1994) 1314–1328). Noise of √(1 + λ)σ adds c√(1 + λ)σ to the largest of readings of one force.
+//! The same noise once more (λ = 1) adds (√2 − 1)cσ, and no noise at all (λ = −1) removes cσ. A single outstanding reading keeps its
+//! size. The result scatters as one reading does.
 
 use std::f64::consts::SQRT_2;
 
 use statrs::function::erf::erfc;
 
-/// Readings so many standard deviations below the largest have no part.
+/// Readings this many standard deviations below the largest have no effect.
 const FAR: f64 = 9.0;
-/// The largest of readings with noise once more lies between so many standard deviations below the largest and above it.
+/// With the noise once more, the largest reading lies between this many standard deviations below the largest and above it.
 const BELOW: f64 = 6.0;
 const ABOVE: f64 = 8.0;
-/// Parts of that: a smooth function is integrated by trapezia of a tenth of its width to all digits that count.
+/// Intervals of that range: for a smooth function the trapezoidal rule with a tenth of its width is exact to all significant digits.
 const PARTS: u32 = 140;
 
-/// Takes readings as they come.
+/// Collects readings one by one.
 #[derive(Clone, Debug)]
 pub struct NoisyLargest {
     /// Standard deviation of a reading.
     noise: f64,
-    /// Those that may have a part.
+    /// Readings that may have an effect.
     readings: Vec<f64>,
     largest: Option<f64>,
 }
 
 impl NoisyLargest {
-    /// `noise`: standard deviation of a reading, 0 where there is none.
+    /// `noise`: standard deviation of a reading, 0 without noise.
     #[must_use]
     pub const fn new(noise: f64) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl NoisyLargest {
         }
     }
 
-    /// The same with these readings.
+    /// As [`Self::new`], with these readings.
     #[must_use]
     pub fn of(noise: f64, readings: impl Iterator<Item = f64>) -> Self {
         let mut all = Self::new(noise);
@@ -61,7 +61,7 @@ impl NoisyLargest {
         self.largest = Some(largest);
     }
 
-    /// The largest, less what noise added to it; None of nothing.
+    /// The largest reading minus the bias from noise; None without readings.
     #[must_use]
     pub fn value(&self) -> Option<f64> {
         let largest = self.largest?;
@@ -72,12 +72,12 @@ impl NoisyLargest {
         })
     }
 
-    /// By how much the largest grows, on average, with as much noise once more: ∫ 1 − ∏ Φ((t − Rᵢ)/σ) dt.
+    /// The mean increase of the largest reading with the same noise once more: ∫ 1 − ∏ Φ((t − Rᵢ)/σ) dt.
     fn added(&self, largest: f64) -> f64 {
         let step = (BELOW + ABOVE) / f64::from(PARTS);
         let above: f64 = (0..PARTS)
             .map(|part| {
-                // The lower end counts whole, and nothing is left at the upper one.
+                // The weight is one at the lower end and zero at the upper end.
                 let at = -BELOW + step * (f64::from(part) + 0.5);
                 let below = |reading: &f64| {
                     (0.5 * erfc(-(at + (largest - reading) / self.noise) / SQRT_2)).ln()
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
     use crate::statistics::testing::normal;
 
-    /// Mean error and standard deviation, over σ, of what many readings of a curve come to, and of their largest.
+    /// Mean error and standard deviation, over σ, of the result for a curve, and the mean error of the largest reading.
     fn of_many(curve: &[f64], noise: f64) -> ([f64; 2], f64) {
         const RUNS: u32 = 400;
         let truth = curve.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -124,8 +124,8 @@ mod tests {
         )
     }
 
-    /// Flat, rising to its end, rising slowly, round, of two readings: without bias to 0.6σ where the largest is up to 2.7σ off,
-    /// and with the scatter of one reading.
+    /// Flat, rising to its end, rising slowly, round, of two readings. The result has a bias below 0.6σ while the largest reading is up
+    /// to 2.7σ too large, and it has the scatter of one reading.
     #[test]
     fn it_is_right_on_the_average_whatever_the_curve() {
         let line = |from: f64, to: f64, count: u32| {

@@ -1,17 +1,17 @@
-//! Student's t: how many standard uncertainties hold a share of all cases, where the standard uncertainty itself is known by few
-//! readings. In: degrees of freedom. Out: the factor. It knows no result and no plan.
+//! Student's t: the coverage factor for a standard uncertainty that was estimated from few readings. In: degrees of freedom. Out: the
+//! factor. It knows no result and no plan.
 
 use statrs::function::beta::beta_reg;
 use statrs::function::erf::erfc;
 
-/// The share of the cases that is held: what ±2u hold of a normal distribution, erf √2.
+/// The coverage probability of ±2u for a normal distribution, erf √2.
 pub const LEVEL: f64 = 0.954_499_736_103_641_6;
 
-/// From so many degrees of freedom on the series is exact to nine digits.
+/// From this number of degrees of freedom the series is exact to nine digits.
 const MANY: f64 = 50.0;
 
-/// `t_p(ν)` for p = [`LEVEL`], two-sided (JCGM 100:2008, table G.2): 13.97 of one degree of freedom, 2 of infinitely many. Fewer than one
-/// there are not.
+/// `t_p(ν)` for p = [`LEVEL`], two-sided (JCGM 100:2008, table G.2): 13.97 for one degree of freedom, 2 for infinitely many. Fewer than
+/// one do not exist.
 #[must_use]
 pub fn coverage(degrees: f64) -> f64 {
     if degrees.is_nan() || degrees == f64::INFINITY {
@@ -25,7 +25,7 @@ pub fn coverage(degrees: f64) -> f64 {
     }
 }
 
-/// Share of the cases in which Student's t of these degrees of freedom is at most `t`; of very many, the normal distribution.
+/// Probability that Student's t with these degrees of freedom is at most `t`; for very many, the normal distribution.
 #[must_use]
 pub fn below(t: f64, degrees: f64) -> f64 {
     if t.is_nan() {
@@ -63,7 +63,7 @@ fn expanded_about_normal(degrees: f64) -> f64 {
         .fold(0.0, |sum, term| sum / degrees + term)
 }
 
-/// Where the two tails, `I_x(ν/2, ½)` with x = ν/(ν + t²), are what the level leaves; by halves, for they fall as t grows.
+/// The root at which the two tails, `I_x(ν/2, ½)` with x = ν/(ν + t²), equal 1 − [`LEVEL`]; by bisection, because they fall as t grows.
 fn solved(degrees: f64) -> f64 {
     let tails = |t: f64| beta_reg(0.5 * degrees, 0.5, degrees / (degrees + t * t));
     let (mut low, mut high) = (2.0, 15.0);
@@ -82,8 +82,7 @@ fn solved(degrees: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Normal: Φ(1) = 0.841345, Φ(−2) = 0.022750. Of one degree of freedom ½ + atan(t)/π; k leaves half of what the level leaves on
-    /// either side.
+    /// Normal: Φ(1) = 0.841345, Φ(−2) = 0.022750. For one degree of freedom ½ + atan(t)/π; k leaves half of 1 − level on either side.
     #[test]
     fn shares_below_are_those_of_closed_forms() {
         assert!((below(1.0, f64::INFINITY) - 0.841_344_746).abs() < 1e-8);
@@ -148,7 +147,7 @@ mod tests {
         assert_eq!((coverage(0.3), coverage(f64::NAN)), (coverage(1.0), 2.0));
     }
 
-    /// Roots of the same equation found with forty digits (mpmath 1.3, `betainc`), fractions of a degree among them.
+    /// Roots of the same equation calculated with forty digits (mpmath 1.3, `betainc`), also for fractions of a degree.
     #[test]
     fn it_is_the_root_to_twelve_digits() {
         let roots = [
@@ -168,7 +167,7 @@ mod tests {
         }
     }
 
-    /// Both ways lead to the same where one gives over to the other, and the factor falls with every degree of freedom.
+    /// Both methods agree at the transition between them, and the factor falls with every degree of freedom.
     #[test]
     fn series_and_solution_meet() {
         assert!((solved(MANY) / expanded_about_normal(MANY) - 1.0).abs() < 1e-8);

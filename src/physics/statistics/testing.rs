@@ -1,4 +1,4 @@
-//! Noise for tests of what is fitted. In: a seed. Out: the same numbers on every machine. No run draws from it.
+//! Noise for tests of fits. In: a seed. Out: the same numbers on every machine. No run uses it.
 
 /// Knuth's congruential generator (MMIX), its upper half, from 0 to 1.
 pub(crate) fn uniform(state: &mut u64) -> f64 {
@@ -8,7 +8,7 @@ pub(crate) fn uniform(state: &mut u64) -> f64 {
     f64::from(u32::try_from(*state >> 32).expect("a half")) / f64::from(u32::MAX)
 }
 
-/// The sum of twelve of them less six: unit variance.
+/// The sum of twelve of them minus six: unit variance.
 pub(crate) fn normal(state: &mut u64) -> f64 {
     (0..12).map(|_| uniform(state)).sum::<f64>() - 6.0
 }

@@ -2,41 +2,41 @@
 
 use super::portal::mass::EquivalentMasses;
 
-/// A beam by geometry: already its stiffness at the struck section (N/m), and what it was made from.
+/// A beam by geometry: its stiffness at the struck section \[N/m\], and the data from which it follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
     pub stiffness: f64,
-    /// m
+    /// \[m\]
     pub length: f64,
-    /// Pa
+    /// \[Pa\]
     pub youngs_modulus: f64,
-    /// m⁴
+    /// \[m⁴\]
     pub second_moment: f64,
     pub ends: Ends,
-    /// Shear stiffness κGA, N. None: a slender beam.
+    /// Shear stiffness κGA \[N\]. None: a slender beam.
     pub shear: Option<f64>,
-    /// q·A·L, kg, where the specimen states density, area and length.
+    /// q·A·L \[kg\], if the specimen states density, area and length.
     pub own_mass: Option<f64>,
 }
 
-/// How the ends of a beam are held (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
+/// The supports of a beam (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ends {
     Cantilever,
     SimplySupported,
     BuiltIn,
-    /// Rotational stiffness of each end, N·m/rad.
+    /// Rotational stiffness of each end \[N·m/rad\].
     PartlyBuiltIn {
         rotational_stiffness: f64,
     },
 }
 
-/// Stiffness of a uniform beam at the struck section (tip of a cantilever, middle of the others), N/m. Partly built-in
-/// ends, with `r = k_θ L / EI` at each, run from simply supported (r = 0) to built-in (r = ∞).
+/// Stiffness of a uniform beam at the struck section (tip of a cantilever, middle of the others) \[N/m\]. Partly built-in ends, with `r =
+/// k_θ L / EI` at each, range from simply supported (r = 0) to built-in (r = ∞).
 ///
-/// `shear` is κGA (N) of Timoshenko's beam. The shear force is P along a cantilever and ±P/2 along the halves of the others,
-/// whatever holds their ends, so that the shear strain P/κGA adds PL/κGA to the tip and (P/2)(L/2)/κGA = PL/4κGA to
-/// midspan. Bending is not changed: moments of the symmetric beams follow from rotations of the sections alone.
+/// `shear` is κGA \[N\] of Timoshenko's beam. The shear force is P along a cantilever and ±P/2 along the halves of the others, for any
+/// support of their ends. The shear strain P/κGA therefore adds PL/κGA to the tip and (P/2)(L/2)/κGA = PL/4κGA to midspan. Bending does
+/// not change: moments of the symmetric beams follow from rotations of the sections alone.
 #[must_use]
 pub fn stiffness(
     length: f64,
@@ -97,7 +97,7 @@ pub fn first_mode_mass_factor(beam: &Beam) -> f64 {
     }
 }
 
-/// Of a beam whose own mass is known: by its static deflection, and half of it (Melo et al. 2006, Fig. 5).
+/// For a beam with a known mass: from its static deflection, and half of it (Melo et al. 2006, Fig. 5).
 #[must_use]
 pub fn equivalent_masses(beam: &Beam) -> Option<EquivalentMasses> {
     let whole = beam.own_mass?;
@@ -194,8 +194,8 @@ mod tests {
             let factor = first_mode_mass_factor(&beam(ends));
             assert!((factor - value).abs() < 1e-10, "{ends:?}: {value}");
         }
-        // Between them: the simply supported beam with an end moment m·WL/8, m = r/(r + 2) of the built-in one's, by the
-        // moment-area theorem: shape and its end value from M(s) = W L s/4 − m WL/8, s from a support to the middle.
+        // Between them: the simply supported beam with an end moment m·WL/8, m = r/(r + 2) of that of the built-in beam, by the
+        // moment-area theorem. Shape and end value follow from M(s) = W L s/4 − m WL/8, s from a support to the middle.
         for ratio in [0.3, 4.0, 70.0] {
             let m = ratio / (ratio + 2.0);
             // y'' = −M: y = m s²/4·½ − s³/24 + c s, y'(1) = 0, in units of WL³/(4EI)·½ that cancel.
@@ -231,7 +231,7 @@ mod tests {
         }
     }
 
-    /// κGA = 5000 N: the cantilever gains L/κGA = 0.4 mm/N, the others a quarter.
+    /// κGA = 5000 N: the cantilever gains L/κGA = 0.4 mm/N, the others a quarter of it.
     #[test]
     fn shear_adds_its_flexibility() {
         let half = ends_of_fixity(0.5, 2.0, 2100.0);

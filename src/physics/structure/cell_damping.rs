@@ -6,28 +6,28 @@ use crate::specimen::Behaviour;
 /// Viscous and Coulomb damping on the load cell. Friction keeps the direction of the last motion through a pause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellDamping {
-    /// N·s/m
+    /// \[N·s/m\]
     pub viscous: f64,
-    /// N
+    /// \[N\]
     pub coulomb: f64,
     /// +1 or −1; 0 before the first motion.
     pub last_direction: f64,
-    /// Of a specimen that resists more the faster it is moved.
+    /// For a specimen with a rate-dependent strength.
     pub rate: Option<StrengthRate>,
 }
 
-/// R (1 + (|v|/v₀)^n) while moving (the law of Cowper and Symonds, n = 1/q, here of force and velocity). At rest nothing is left of it: a step-and-pause test does
-/// not see it.
+/// R (1 + (|v|/v₀)^n) in motion (the law of Cowper and Symonds, n = 1/q, here for force and velocity). At rest the increase is zero: a
+/// ramp-and-hold test does not measure it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrengthRate {
-    /// v₀, m/s
+    /// v₀ \[m/s\]
     pub reference_velocity: f64,
     /// n
     pub exponent: f64,
 }
 
 impl StrengthRate {
-    /// The one that `behaviour` states, if it does.
+    /// The rate dependence that `behaviour` states, if any.
     #[must_use]
     pub const fn of(behaviour: &Behaviour) -> Option<Self> {
         match behaviour {
@@ -43,7 +43,7 @@ impl StrengthRate {
         }
     }
 
-    /// What is added to a restoring force, over it, at `velocity` (m/s).
+    /// The relative increase of the restoring force at `velocity` \[m/s\].
     #[must_use]
     pub fn gain(&self, velocity: f64) -> f64 {
         if velocity == 0.0 {
@@ -55,7 +55,7 @@ impl StrengthRate {
 }
 
 impl CellDamping {
-    /// c·v and a constant against v: `viscous` N·s/m, `coulomb` N.
+    /// c·v and a constant friction force: `viscous` \[N·s/m\], `coulomb` \[N\].
     #[must_use]
     pub const fn new(viscous: f64, coulomb: f64) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl CellDamping {
         }
     }
 
-    /// The same, of a specimen of this behaviour.
+    /// The same, for a specimen with this behaviour.
     #[must_use]
     pub const fn with_rate_of(mut self, behaviour: &Behaviour) -> Self {
         self.rate = StrengthRate::of(behaviour);
@@ -87,7 +87,7 @@ impl CellDamping {
         restoring_force + gained + self.force(velocity)
     }
 
-    /// Force at `velocity` (m/s), N: `c·v + F_c·sign` of the last motion.
+    /// Force at `velocity` \[m/s\], in N: `c·v + F_c·sign` of the last motion.
     pub fn force(&mut self, velocity: f64) -> f64 {
         if velocity != 0.0 {
             self.last_direction = velocity.signum();
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(damping.force(0.0), -3.0);
     }
 
-    /// 100 N at v₀/32 and v₀, n = 1/5: half as much again, and twice.
+    /// 100 N at v₀/32 and v₀, n = 1/5: one and a half times, and twice.
     #[test]
     fn strength_grows_with_the_speed_and_is_gone_at_rest() {
         let of = Box::new(Behaviour::Elastic { stiffness: 1.0 });

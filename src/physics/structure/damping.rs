@@ -41,7 +41,7 @@ pub enum DampingError {
     Negative,
 }
 
-/// a (1/s) and b (s) of C = a M + b K: ζ = a/(2ω) + bω/2 in each of two modes.
+/// a (1/s) and b \[s\] of C = a M + b K: ζ = a/(2ω) + bω/2 in each of two modes.
 ///
 /// # Errors
 /// If the two frequencies are one, or a coefficient is negative.
@@ -63,7 +63,7 @@ pub fn rayleigh_coefficients(
     }
 }
 
-/// C, N·s/m. With one degree of freedom Rayleigh damping is 2ζωM with the first ratio.
+/// C \[N·s/m\]. With one degree of freedom Rayleigh damping is 2ζωM with the first ratio.
 ///
 /// # Errors
 /// If the ratios do not fit the modes.

@@ -6,8 +6,8 @@ use super::matrices::Matrices;
 use super::matrix::{Matrix as _, Vector};
 
 /// Energies at the end of a step, all in J, cumulated from the start; of displacements and velocities against the ground
-/// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90; the absolute form adds the work of the ground). They add up:
-/// `kinetic + restoring + damping + error = input`.
+/// (the relative form, Uang and Bertero, Earthquake Engng Struct. Dyn. 19 (1990) 77–90; the absolute form adds the work of the ground).
+/// They add up: `kinetic + restoring + damping + error = input`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct FrameEnergies {
     /// ½ ẊᵀMẊ
@@ -34,8 +34,8 @@ pub(crate) struct Ends<'a, V> {
 }
 
 impl FrameEnergies {
-    /// The balance one step on; `damping_work` where the velocity has jumped inside the step, J, otherwise that of the mean
-    /// velocity. `scratch` is two vectors of the structure's order.
+    /// The balance one step on. `damping_work` \[J\] is given if the velocity has jumped inside the step, otherwise that of the mean
+    /// velocity is used. `scratch` is two vectors of the structure's order.
     #[inline]
     pub(crate) fn advance<V: Vector>(
         &self,

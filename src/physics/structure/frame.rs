@@ -6,15 +6,15 @@ use crate::specimen::Behaviour;
 /// A structure of several floors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// From the ground up; empty where the plan gives the matrices.
+    /// From the ground up; empty if the plan gives the matrices.
     pub storeys: Vec<Storey>,
     /// M, kg, row by row: symmetric, positive definite.
     pub mass: Vec<Vec<f64>>,
     /// K at no displacement, N/m, row by row: symmetric, positive definite.
     pub stiffness: Vec<Vec<f64>>,
-    /// The files of mass and stiffness, where the matrices were read.
+    /// The files of mass and stiffness, if the matrices were read.
     pub files: Option<[String; 2]>,
-    /// Standard, of the matrices of mass and stiffness, each as a whole, relative; 0 where none is stated.
+    /// Relative standard uncertainty of the matrices of mass and stiffness, each as a whole; 0 if none is stated.
     pub matrix_uncertainty: [f64; 2],
 }
 
@@ -23,24 +23,24 @@ pub struct Frame {
 pub struct Storey {
     /// kg, of the floor
     pub mass: f64,
-    /// Standard, kg; 0 where none is stated.
+    /// Standard uncertainty \[kg\]; 0 if none is stated.
     pub mass_uncertainty: f64,
     /// N/m, of all its columns together
     pub stiffness: f64,
-    /// Standard, N/m; 0 where none is stated.
+    /// Standard uncertainty \[N/m\]; 0 if none is stated.
     pub stiffness_uncertainty: f64,
-    /// m
+    /// \[m\]
     pub height: Option<f64>,
     /// Restoring-force model: storey shear against storey drift.
     pub behaviour: Behaviour,
-    /// On the load cells of a virtual rig, N·s/m of drift velocity.
+    /// Damping on the load cells of a simulated rig, per drift velocity of the storey \[N·s/m\].
     pub damping: f64,
     /// The same, N: friction against the drift.
     pub coulomb: f64,
 }
 
 impl Storey {
-    /// Of this mass (kg), stiffness (N/m) and behaviour, and nothing else stated.
+    /// A storey of this mass \[kg\], stiffness \[N/m\] and behaviour, without other properties.
     #[must_use]
     pub const fn new(mass: f64, stiffness: f64, behaviour: Behaviour) -> Self {
         let (mass_uncertainty, stiffness_uncertainty) = (0.0, 0.0);

@@ -1,5 +1,5 @@
-//! What follows from a frame's masses, stiffness and damping before anything moves: matrices, modes, the longest stable step.
-//! In: a frame of the plan, damping. Out: numbers in SI. It integrates nothing.
+//! The properties of a frame from its masses, stiffness and damping before any motion: matrices, modes, the longest stable step. In: a
+//! frame of the plan, damping. Out: numbers in SI. It integrates nothing.
 
 use thiserror::Error;
 
@@ -20,7 +20,7 @@ pub struct FrameProperties {
     pub modes: Modes,
 }
 
-/// Why a frame has no motion.
+/// The reason why the properties of a frame do not exist.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoProperties {
     #[error("{0}")]
@@ -49,13 +49,13 @@ impl FrameProperties {
         })
     }
 
-    /// A tenth of the shortest period, s (Melo et al. 2006, sec. 5).
+    /// A tenth of the shortest period \[s\] (Melo et al. 2006, sec. 5).
     #[must_use]
     pub fn critical_time_step(&self) -> f64 {
         self.modes.critical_time_step()
     }
 
-    /// Effective mass of one floor, 1/(e_sᵀM⁻¹e_s), kg: the mass that an impulse meets there.
+    /// Effective mass of one floor, 1/(e_sᵀM⁻¹e_s) \[kg\]: the mass that an impulse meets there.
     #[must_use]
     pub fn struck_mass(&self, struck: usize) -> f64 {
         let mut push = vec![0.0; self.matrices.order()];
@@ -67,9 +67,9 @@ impl FrameProperties {
         1.0 / push[struck]
     }
 
-    /// A tenth of the shortest period there is while a striker touches a floor, s. Under a contact of finite stiffness that is
-    /// the period of frame and striker with the contact's tangent at its deepest ([`Approach::contact_stiffness`]): a longer step
-    /// would not resolve the impact. None for a contact without stiffness.
+    /// A tenth of the shortest period while a striker touches a floor \[s\]. For a contact of finite stiffness it is the period of frame
+    /// and striker with the contact's tangent at its deepest ([`Approach::contact_stiffness`]). A longer step would not resolve the
+    /// impact. Without a contact stiffness it is that of the frame alone.
     #[must_use]
     pub fn critical_on_impact(&self, struck: usize, approach: &Approach) -> f64 {
         let alone = self.critical_time_step();
@@ -110,8 +110,8 @@ impl FrameProperties {
         self.modes.shapes.iter().enumerate().map(ratio).collect()
     }
 
-    /// Longest stable Δt, s; infinite where there is none. Of a virtual specimen it is also known how its storeys begin to
-    /// bend, which may be stiffer than what the plan integrates with.
+    /// Longest stable Δt \[s\]; infinite if there is no limit. For a simulated specimen the initial stiffness of its storeys is also
+    /// known; it may exceed the stiffness with which the plan integrates.
     #[must_use]
     pub fn longest_stable_step(
         &self,
@@ -137,7 +137,7 @@ impl FrameProperties {
                 .map(|(storey, behaves)| 1.0 - storey.stiffness / behaves)
                 .fold(0.0, f64::max);
             if met.share > 0.0 {
-                // Storeys that are softer count as a trifle: the bound is then a little low, never high.
+                // The small stiffness added to softer storeys makes the bound slightly low, never high.
                 let trifle = |behaves: f64| 1e-12 * behaves;
                 let beyond: Vec<f64> = storeys()
                     .map(|(storey, b)| (b - storey.stiffness).max(trifle(*b)))
@@ -148,7 +148,7 @@ impl FrameProperties {
         longest_stable_step(integrator, &met)
     }
 
-    /// ω² of the highest mode with another stiffness, rad²/s².
+    /// ω² of the highest mode with a different stiffness \[rad²/s²\].
     fn highest(&self, stiffness: &SymmetricBand) -> f64 {
         modes(&self.matrices.mass, stiffness).map_or(0.0, |modes| {
             (std::f64::consts::TAU / modes.shortest_period()).powi(2)

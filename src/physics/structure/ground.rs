@@ -1,7 +1,7 @@
 //! The acceleration of the ground at any instant: linear between the samples of its record, at rest before and after. In:
 //! times and accelerations. Out: one number. It knows no file and no unit.
 
-/// m/s² at `time` (s), of samples at rising `times`.
+/// m/s² at `time` \[s\], of samples at rising `times`.
 #[must_use]
 pub fn acceleration_at(times: &[f64], accelerations: &[f64], time: f64) -> f64 {
     let after = times.partition_point(|sample| *sample <= time);

@@ -2,7 +2,7 @@
 
 use super::matrix::{SymmetricBand, Vector};
 
-/// M, C and K of a structure, of one order: kg, N·s/m, N/m.
+/// M, C and K of a structure, of one order \[kg\], \[N·s/m\], \[N/m\].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matrices<V: Vector> {
     pub mass: V::Matrix,

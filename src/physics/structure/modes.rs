@@ -9,17 +9,17 @@ use super::matrix::{BandFactor, NotPositiveDefinite, SymmetricBand};
 /// The modes, the longest period first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
-    /// s
+    /// \[s\]
     pub periods: Vec<f64>,
-    /// One a mode, scaled so that its largest entry in size is +1.
+    /// One per mode, scaled so that its entry of the largest absolute value is +1.
     pub shapes: Vec<Vec<f64>>,
-    /// Γ = φᵀMι / φᵀMφ under a motion of the ground that moves every mass alike, for the shape as it is scaled.
+    /// Γ = φᵀMι / φᵀMφ under a ground motion that moves every mass equally, for the scaled shape.
     pub participation: Vec<f64>,
     /// (φᵀMι)² / (φᵀMφ · ιᵀMι): fractions of the mass that sum to 1.
     pub effective_mass: Vec<f64>,
 }
 
-/// Why there are no modes.
+/// The reason why there are no modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ModesError {
     #[error("no degree of freedom")]
@@ -35,32 +35,32 @@ pub enum ModesError {
 }
 
 impl Modes {
-    /// 2π/T of a mode, rad/s.
+    /// 2π/T of a mode \[rad/s\].
     #[must_use]
     pub fn angular_frequency(&self, mode: usize) -> f64 {
         2.0 * PI / self.periods[mode]
     }
 
-    /// s; what an explicit integrator has to resolve.
+    /// The period that an explicit integrator has to resolve \[s\].
     #[must_use]
     pub fn shortest_period(&self) -> f64 {
         self.periods.last().copied().unwrap_or(f64::INFINITY)
     }
 
-    /// Critical time step of many degrees of freedom, s: a tenth of the shortest period (Melo et al. 2006, eq. 7).
+    /// Critical time step of many degrees of freedom \[s\]: a tenth of the shortest period (Melo et al. 2006, eq. 7).
     #[must_use]
     pub fn critical_time_step(&self) -> f64 {
         self.shortest_period() / 10.0
     }
 }
 
-/// Most sweeps of the eigenvalue iteration, a row: QR converges in two or three.
+/// Largest number of sweeps of the eigenvalue iteration per row: QR converges in two or three.
 const SWEEPS: usize = 100;
 
 /// K φ = ω² M φ by the symmetric eigenproblem of L⁻¹ K L⁻ᵀ, M = L Lᵀ: n³, once before a run.
 ///
 /// # Errors
-/// If a matrix is not positive definite, or the two are not of one order.
+/// If a matrix is not positive definite, or the two have different orders.
 pub fn modes(mass: &SymmetricBand, stiffness: &SymmetricBand) -> Result<Modes, ModesError> {
     let order = mass.order();
     if order == 0 {
@@ -85,7 +85,7 @@ pub fn modes(mass: &SymmetricBand, stiffness: &SymmetricBand) -> Result<Modes, M
     let whole = lower
         .solve_lower_triangular(&half.transpose())
         .ok_or(ModesError::NoConvergence)?;
-    // Rounding leaves the two halves apart by a last digit: their mean is symmetric.
+    // Rounding makes the two halves differ in the last digit: their mean is symmetric.
     let symmetric = (&whole + whole.transpose()) * 0.5;
     let eigen = SymmetricEigen::try_new(symmetric, f64::EPSILON, SWEEPS * order)
         .ok_or(ModesError::NoConvergence)?;

@@ -1,10 +1,10 @@
-//! Shear buildings: floors of a frame, each connected to the one below by its storey. In: storey stiffnesses, forces of
-//! the floors. Out: stiffness matrices, drifts, shears. Floor 0 here is the lowest that moves.
+//! Shear buildings: floors of a frame, each connected to the one below by its storey. In: storey stiffnesses, forces of the floors. Out:
+//! stiffness matrices, storey drifts, shears. Floor 0 here is the lowest that moves.
 
 use super::matrix::SymmetricBand;
 
-/// K of a shear building from the total stiffness of each storey, N/m, from the ground up (Melo et al. 2006, Fig. 1: two
-/// columns k make 2k): `K_ii = k_i + k_(i+1)`, `K_(i+1,i) = −k_(i+1)`.
+/// K of a shear building from the total stiffness of each storey \[N/m\], from the ground up (Melo et al. 2006, Fig. 1: two columns k
+/// make 2k): `K_ii = k_i + k_(i+1)`, `K_(i+1,i) = −k_(i+1)`.
 #[must_use]
 pub fn storey_stiffness(stiffnesses: &[f64]) -> SymmetricBand {
     let mut matrix = SymmetricBand::zero(stiffnesses.len(), 1);
@@ -30,7 +30,7 @@ pub(crate) fn set_storeys(stiffnesses: &[f64], matrix: &mut SymmetricBand) {
     }
 }
 
-/// The storey stiffnesses of K; none if it is not that of a shear building, to `1e-9` of its largest entry.
+/// The storey stiffnesses of K; None if it is not that of a shear building, to `1e-9` of its largest entry.
 #[must_use]
 pub fn storeys_of(stiffness: &SymmetricBand) -> Option<Vec<f64>> {
     let order = stiffness.order();
@@ -51,7 +51,7 @@ pub fn storeys_of(stiffness: &SymmetricBand) -> Option<Vec<f64>> {
     (same && stiffnesses.iter().all(|stiffness| *stiffness >= 0.0)).then_some(stiffnesses)
 }
 
-/// Drift of each storey, m: displacement of its floor over that of the floor below.
+/// Drift of each storey \[m\]: displacement of its floor relative to that of the floor below.
 pub fn drifts(displacement: &[f64], drift: &mut [f64]) {
     let mut below = 0.0;
     for (drift, displacement) in drift.iter_mut().zip(displacement) {
@@ -60,7 +60,7 @@ pub fn drifts(displacement: &[f64], drift: &mut [f64]) {
     }
 }
 
-/// Shear of each storey, N: the sum of the restoring forces of the floors it carries.
+/// Shear of each storey \[N\]: the sum of the restoring forces of the floors that it carries.
 pub fn shears(restoring_force: &[f64], shear: &mut [f64]) {
     let mut above = 0.0;
     for (shear, force) in shear.iter_mut().zip(restoring_force).rev() {
@@ -69,7 +69,7 @@ pub fn shears(restoring_force: &[f64], shear: &mut [f64]) {
     }
 }
 
-/// Restoring force of each floor, N, from the shears of its own storey and of the one above.
+/// Restoring force of each floor \[N\], from the shears of its own storey and of the one above.
 pub fn floor_forces(shear: &[f64], restoring_force: &mut [f64]) {
     let Some((top, _)) = shear.split_last() else {
         return;
@@ -84,7 +84,7 @@ pub fn floor_forces(shear: &[f64], restoring_force: &mut [f64]) {
 mod tests {
     use super::*;
 
-    /// Storeys of 3 and 2: the matrix of every textbook.
+    /// Storeys of 3 and 2: the matrix of the textbooks.
     #[test]
     fn two_storeys_by_hand() {
         let matrix = storey_stiffness(&[3.0, 2.0]);
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(storeys_of(&coupled), None);
     }
 
-    /// K x is what the storeys' own drifts make of it.
+    /// K x equals the forces from the storey drifts.
     #[test]
     fn drifts_and_shears_say_the_same_as_the_matrix() {
         let stiffnesses = [3.0, 2.0, 5.0];

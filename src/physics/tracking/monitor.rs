@@ -1,6 +1,5 @@
 //! Tracking monitors of a hybrid test, one for each degree of freedom. In: commanded displacement, measured displacement and force of
-//! every step. Out: sums so far.
-//! It holds no rig: whoever does compares them with the limits.
+//! every step. Out: sums so far. It knows no rig: the caller compares the sums with the limits.
 //!
 //! With d_c commanded, d_m measured and r_m the force read, by the trapezoidal rule over the steps:
 //!
@@ -11,47 +10,47 @@
 //! peak error          max |d_m − d_c|                          m
 //! ```
 //!
-//! Where the recursion uses an effective force r* in place of the reading, as under the I-modification, r* = r_m − K_I(d_m − d_c), it
-//! assumes that the specimen moves from d_m to d_c along K_I. So do the monitors:
+//! If the recursion uses an effective force r* in place of the reading, as under the I-modification, r* = r_m − K_I(d_m − d_c). It then
+//! assumes that the specimen moves from d_m to d_c along K_I. The monitors make the same assumption:
 //!
 //! ```text
 //! E_err = ∫ r* dd_c − (∫ r_m dd_m + ∫_{d_m}^{d_c} r dx),    ∫_{d_m}^{d_c} r dx = ½(r_m + r*)(d_c − d_m)
 //! ```
 //!
-//! What the specimen stores on the way that it is behind by is given back when the actuator gets there, and is no error; on a
-//! spring K = K_I nothing is left at any step, however large the lag (without the last term it would swing by sin φ of ½KA²
-//! twice a cycle of A sin ωt, and end as it began). What is left is what the specimen did not do as K_I says.
+//! The energy that the specimen would store between d_m and d_c is released when the actuator arrives there, and is not an error. On a
+//! spring K = K_I the error is zero at every step, however large the lag. Without the last term it would oscillate by sin φ of ½KA² twice
+//! per cycle of A sin ωt and end as it began. Only the difference between the specimen and K_I remains.
 //!
-//! **Energy error**: the recursion believes that the
-//! specimen took ∫ r_m dd_c, it took ∫ r_m dd_m. Negative: tracking puts energy into the test, and its amplitudes grow;
-//! positive: it takes energy out, as damping would. A share of the input, it is the one number to stop a test by.
-//! **Tracking indicator**: the area that command against measurement encloses. It falls as long as
-//! the actuator lags, and rises while it leads; an error in proportion leaves it where it is.
+//! **Energy error**: the recursion assumes that the specimen absorbs ∫ r_m dd_c, but it absorbs ∫ r_m dd_m. Negative: the tracking adds
+//! energy to the test, and its amplitudes grow. Positive: it removes energy, as damping does. As a fraction of the input energy, it is
+//! the one number by which a test is stopped.
+//! **Tracking indicator**: the area that the curve of command against measurement encloses. It falls as long as the actuator lags and
+//! rises while it leads. A proportional error does not change it.
 //! **NRMS and peak error** give the size, not the direction.
 
 use serde::{Deserialize, Serialize};
 
-/// Share of the input energy at which a run is remarked on. Half a damping ratio of a per cent over a dozen cycles is of
-/// this size: more of it shows in the results.
+/// Fraction of the input energy at which the report makes an observation. Half a per cent of damping ratio over a dozen cycles has this
+/// size: a larger error is visible in the results.
 pub const WARN: f64 = 0.02;
 /// Default fraction of the input energy at which the rig is held.
 pub const HOLD: f64 = 0.05;
 
-/// What the monitors show after a step.
+/// The tracking errors after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tracking {
-    /// E_err, J; negative: tracking puts energy in.
+    /// E_err \[J\]; negative: tracking adds energy.
     pub energy_error: f64,
-    /// TI, m²; falling: the actuator lags.
+    /// TI \[m²\]; falling: the actuator lags.
     pub indicator: f64,
     /// Root mean square of the error over that of the command; 0 as long as nothing was commanded.
     pub nrms_error: f64,
-    /// Largest |measured − commanded| so far, m.
+    /// Largest |measured − commanded| so far \[m\].
     pub peak_error: f64,
 }
 
 impl Tracking {
-    /// All axes of a specimen together: energies and areas add, of the others the largest counts.
+    /// All axes of a specimen together: energies and areas add; for the others the largest counts.
     #[must_use]
     pub fn together(axes: &[Self]) -> Self {
         axes.iter().fold(Self::default(), |all, axis| Self {
@@ -62,7 +61,7 @@ impl Tracking {
         })
     }
 
-    /// E_err as a share of the energy put into the test (J), signed; none while nothing was.
+    /// E_err as a fraction of the input energy \[J\], with its sign; None if the input is zero.
     #[must_use]
     pub fn share_of(&self, input_energy: f64) -> Option<f64> {
         (input_energy > 0.0).then(|| self.energy_error / input_energy)
@@ -75,11 +74,11 @@ pub struct Monitor {
     commanded: f64,
     measured: f64,
     force: f64,
-    /// r* − r_m at the last step, N.
+    /// r* − r_m at the last step \[N\].
     corrected: f64,
-    /// ∫ r* dd_c − ∫ r_m dd_m, J.
+    /// ∫ r* dd_c − ∫ r_m dd_m \[J\].
     integrated: f64,
-    /// Work from where it was measured before the first step to where it was sent, J.
+    /// Work between the measured and the commanded displacement before the first step \[J\].
     behind_at_start: f64,
     errors: f64,
     commands: f64,
@@ -93,7 +92,7 @@ impl Monitor {
         Self::with_effective_force(commanded, measured, force, force)
     }
 
-    /// The same, where a correction would have `taken` (N) for the force at the command; the recursion begins with the one read.
+    /// As [`Self::new`], if a correction uses `taken` \[N\] as the force at the command; the recursion begins with the measured force.
     #[must_use]
     pub fn with_effective_force(
         commanded: f64,
@@ -116,12 +115,12 @@ impl Monitor {
         monitor
     }
 
-    /// Takes the end of a step.
+    /// Adds the end of a step.
     pub fn take(&mut self, commanded: f64, measured: f64, force: f64) -> Tracking {
         self.take_effective(commanded, measured, force, force)
     }
 
-    /// The same, where the recursion takes `taken` (N) for the force at the command.
+    /// As [`Self::take`], if the recursion uses `taken` \[N\] as the force at the command.
     pub fn take_effective(
         &mut self,
         commanded: f64,
@@ -163,7 +162,7 @@ impl Monitor {
     }
 }
 
-/// ½(r_m + r*)(d_c − d_m), J; none where no force is corrected, for then nothing is supposed of the way between.
+/// ½(r_m + r*)(d_c − d_m) \[J\]; zero without a force correction, because then nothing is assumed between the two displacements.
 fn work_behind((commanded, measured): (f64, f64), force: f64, corrected: f64) -> f64 {
     if corrected == 0.0 {
         0.0
@@ -179,7 +178,7 @@ mod tests {
     const STIFFNESS: f64 = 1000.0;
     const STEPS: u32 = 4000;
 
-    /// One cycle of A sin ωt; the actuator goes where `place` says.
+    /// One cycle of A sin ωt; the actuator moves to `place`.
     fn cycle(amplitude: f64, place: impl Fn(f64) -> f64) -> Tracking {
         let at = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
         let mut monitor = Monitor::new(0.0, place(0.0), STIFFNESS * place(0.0));
@@ -191,7 +190,7 @@ mod tests {
         monitor.tracking()
     }
 
-    /// Behind by φ on a spring: E_err = −πKA² sin φ and TI = −πA² sin φ a cycle; ahead, the same with the other sign.
+    /// A lag of φ on a spring: E_err = −πKA² sin φ and TI = −πA² sin φ per cycle; a lead gives the opposite sign.
     #[test]
     fn a_lag_puts_energy_in_and_a_lead_takes_it_out() {
         let (amplitude, phase): (f64, f64) = (0.01, 0.1);
@@ -206,7 +205,7 @@ mod tests {
                 (found.indicator - sign * area).abs() < 1e-5 * area,
                 "{found:?}"
             );
-            // |sin(a + φ) − sin a| is at most 2 sin(φ/2), and that is its ratio of root mean squares too.
+            // |sin(a + φ) − sin a| is at most 2 sin(φ/2). This is also its ratio of root mean squares.
             assert!((found.peak_error - 2.0 * amplitude * (0.5 * phase).sin()).abs() < 1e-8);
             assert!(
                 (found.nrms_error - 2.0 * (0.5 * phase).sin()).abs() < 1e-4,
@@ -215,7 +214,7 @@ mod tests {
         }
     }
 
-    /// An error in proportion stores energy and gives it back: nothing is left after a cycle, and no area is enclosed.
+    /// A proportional error stores energy and releases it: nothing remains after a cycle, and no area is enclosed.
     #[test]
     fn an_error_of_gain_shows_in_its_size_only() {
         let found = cycle(0.01, |angle| 0.009 * angle.sin());
@@ -223,7 +222,7 @@ mod tests {
         assert!((found.nrms_error - 0.1).abs() < 1e-12 && (found.peak_error - 0.001).abs() < 1e-12);
     }
 
-    /// A cycle of A sin ωt behind by φ on a spring K, corrected along `operator`: the error at every step.
+    /// A cycle of A sin ωt with a lag of φ on a spring K, corrected along `operator`: the error at every step.
     fn corrected(
         amplitude: f64,
         phase: f64,
@@ -251,8 +250,8 @@ mod tests {
         steps.collect()
     }
 
-    /// Corrected along the spring's own K nothing is an error at any step, where without the correction a cycle puts in
-    /// πKA² sin φ. The recursion begins with a force that nothing has corrected: half of that over the first step.
+    /// Corrected with the spring's own K, the error is zero at every step. Without the correction a cycle adds πKA² sin φ. The recursion
+    /// begins with an uncorrected force: half of that over the first step.
     #[test]
     fn what_a_spring_gives_back_is_no_error() {
         for (amplitude, phase) in [(0.01_f64, 0.1_f64), (0.01, 1.2), (0.03, -0.5)] {
@@ -267,8 +266,7 @@ mod tests {
         }
     }
 
-    /// A `K_I` that is not the spring's corrects by its share alone: r* = K d_m − K_I(d_m − d_c), and of each cycle
-    /// π(K − K_I)A² sin φ is left.
+    /// A `K_I` that differs from the spring corrects only in part: r* = K d_m − K_I(d_m − d_c), and π(K − K_I)A² sin φ remains per cycle.
     #[test]
     fn what_a_correction_leaves_counts() {
         let (amplitude, phase): (f64, f64) = (0.01, 0.2);
@@ -291,8 +289,8 @@ mod tests {
         }
     }
 
-    /// A specimen that flows at ±F where the recursion supposes that it is still elastic: over a way w it is off by K_I·e·w, e
-    /// what the actuator is behind by.
+    /// A specimen that yields at ±F while the recursion assumes that it is still elastic. Over a path w the error is K_I·e·w, with e the
+    /// lag of the actuator.
     #[test]
     fn a_correction_of_what_flows_is_an_error() {
         let (flow, behind, operator, step) = (5.0, 1e-3, STIFFNESS, 1e-4);
@@ -308,7 +306,7 @@ mod tests {
                 flow + operator * behind,
             );
         }
-        // Less half of the first step, which begins with the force that was read.
+        // Minus half of the first step, which begins with the measured force.
         let exact = operator * behind * step * 99.5;
         assert!(
             (last.energy_error - exact).abs() < 1e-12,
@@ -316,13 +314,13 @@ mod tests {
         );
     }
 
-    /// By hand: from rest to 2 mm asked, 1 mm gone, 10 N read: ½·10 N·1 mm; ¼(1·2 − 2·1) mm² is nothing on the first step.
+    /// By hand: from rest to a command of 2 mm, 1 mm reached, 10 N read: ½·10 N·1 mm. ¼(1·2 − 2·1) mm² is zero on the first step.
     #[test]
     fn one_step_by_hand() {
         let mut monitor = Monitor::new(0.0, 0.0, 0.0);
         let first = monitor.take(0.002, 0.001, 10.0);
         assert!((first.energy_error - 0.005).abs() < 1e-15 && first.indicator.abs() < 1e-18);
-        // Back to 0 asked, 1.5 mm gone: ½(10+15)(−2 − 0.5) mm, ¼((1+1.5)(−2) − 2·0.5) mm².
+        // Command 0, 1.5 mm reached: ½(10+15)(−2 − 0.5) mm, ¼((1+1.5)(−2) − 2·0.5) mm².
         let second = monitor.take(0.0, 0.0015, 15.0);
         assert!(
             (second.energy_error - (0.005 - 0.03125)).abs() < 1e-15,

@@ -3,18 +3,18 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Hermite's cubic, in rig time.
+/// Hermite's cubic, in laboratory time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Path {
-    /// m
+    /// \[m\]
     pub from: f64,
-    /// m
+    /// \[m\]
     pub to: f64,
-    /// m/s
+    /// \[m/s\]
     pub start_velocity: f64,
-    /// m/s
+    /// \[m/s\]
     pub end_velocity: f64,
-    /// s
+    /// \[s\]
     pub seconds: f64,
 }
 
@@ -41,7 +41,7 @@ impl Path {
         }
     }
 
-    /// m
+    /// \[m\]
     #[must_use]
     pub fn place(&self, time: f64) -> f64 {
         if time >= self.seconds {
@@ -55,7 +55,7 @@ impl Path {
         self.from + time * (velocity + time * (0.5 * acceleration + time * jerk / 6.0))
     }
 
-    /// Velocity (m/s), acceleration (m/s²) and jerk (m/s³) `time` (s) after its start.
+    /// Velocity \[m/s\], acceleration \[m/s²\] and jerk (m/s³) `time` \[s\] after its start.
     #[must_use]
     pub fn rate(&self, time: f64) -> Rate {
         let Rate {

@@ -1,5 +1,5 @@
-//! The figures of a frame on moving ground, and of one that is unloaded, with their captions, and the curve of a shake on a chart of
-//! several. In: a history. Out: [`Chart`]s in SI.
+//! The figures of a ground-motion test and of an unloaded frame, with their captions, and the curve of a test on a chart of several. In:
+//! a history. Out: [`Chart`]s in SI.
 
 use super::figures;
 use crate::plan::{Figure, FigureKind};
@@ -12,7 +12,7 @@ use crate::schema::ResultKind;
 use crate::schema::procedures::base_excitation as schema;
 use crate::units::Dimension;
 
-/// Figures of a shake, in the order of a report.
+/// Figures of a ground-motion test, in the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::Modes,
     FigureKind::Ground,
@@ -27,7 +27,7 @@ pub(crate) const FIGURES: &[FigureKind] = &[
 /// Figures of a frame that is unloaded.
 pub(crate) const UNLOADING_FIGURES: &[FigureKind] = &[FigureKind::Hysteresis];
 
-/// Figures that several shakes share: one curve of each.
+/// Figures that several ground-motion tests share: one curve for each.
 pub(crate) const SHARED: &[FigureKind] = &[
     FigureKind::Displacement,
     FigureKind::Drift,
@@ -35,7 +35,7 @@ pub(crate) const SHARED: &[FigureKind] = &[
     FigureKind::BaseShear,
 ];
 
-/// A figure of a shake and its caption; None before the first step, or if it is no figure of a shake.
+/// A figure of a ground-motion test and its caption; None before the first step, or for a figure of a different procedure.
 pub(crate) fn chart(
     run: &Run<'_>,
     name: &str,

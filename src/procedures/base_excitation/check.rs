@@ -1,4 +1,4 @@
-//! `shake NAME { … }`: the frame, the ground under it, damping, and a time step that is stable.
+//! `shake NAME { … }`: the frame, the ground motion, damping, and a stable time step.
 
 use crate::language::check::checker::{Checker, Shape};
 use crate::language::check::declarations::specimen::frame;
@@ -42,7 +42,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     }))
 }
 
-/// One number is Rayleigh's, a list has one for each mode.
+/// One number is for Rayleigh damping; a list has one ratio for each mode.
 pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
     let Some((entry, written)) = checker.field(block, "damping_ratio") else {
         return Some(ShakeDamping::Rayleigh(Formula::Constant(0.0)));
@@ -57,7 +57,7 @@ pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
     })
 }
 
-/// Standard, of each ratio: no ratio less its uncertainty is below 0.
+/// Standard uncertainty of each ratio: no ratio minus its uncertainty is below 0.
 pub fn damping_uncertainty(
     checker: &mut Checker,
     block: usize,
@@ -82,8 +82,8 @@ pub fn damping_uncertainty(
     }
 }
 
-/// What the time step of a shake must be held against, as far as it is known before the run: what that of any frame must
-/// be, and the record.
+/// Checks the time step of a ground-motion test, as far as it is known before the run: against the limits of any frame, and against the
+/// time step of the record.
 pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, ground: &Ground) {
     let duration = shake
         .duration

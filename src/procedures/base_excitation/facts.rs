@@ -1,4 +1,4 @@
-//! The facts about a shake that the drivers of check and report need without carrying it out. In: a shake, or its history. Out: facts.
+//! The facts about a ground-motion test that check and report need without running it. In: a test, or its history. Out: facts.
 
 use super::chart;
 use crate::plan::{Dependence, Plan, Shake};

@@ -1,11 +1,12 @@
-//! The motion that a shake leaves to the next procedure. In: a shake and the ground motions. Out: its end, in words, and the help.
+//! The motion at the end of a ground-motion test, for the next procedure. In: the test and the ground motions. Out: a description and the
+//! help.
 
 use crate::physics::structure::Damping;
 use crate::plan::formula::Formula;
 use crate::plan::{Ground, Shake};
 use crate::procedures::facts::Motion;
 
-/// A damped frame comes to rest if the ground rests for long enough.
+/// A damped frame comes to rest if the ground is at rest for long enough.
 pub(crate) fn left(shake: &Shake, grounds: &[Option<Ground>]) -> Motion<'static> {
     Motion {
         what: "shake",
@@ -16,7 +17,7 @@ pub(crate) fn left(shake: &Shake, grounds: &[Option<Ground>]) -> Motion<'static>
     }
 }
 
-/// Whether the ground rests before the run of a damped frame ends.
+/// Whether the ground is at rest before the run of a damped frame ends.
 fn comes_to_rest(shake: &Shake, grounds: &[Option<Ground>]) -> bool {
     let still = grounds
         .get(shake.ground)

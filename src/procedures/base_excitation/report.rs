@@ -15,7 +15,7 @@ use crate::schema::procedures::{base_excitation as schema, unload};
 use crate::units::Dimension;
 use crate::units::display::significant;
 
-/// The blocks below the results of a shake: its integration, the modes, the storeys, the energy.
+/// The blocks below the results of a ground-motion test: its integration, the modes, the storeys, the energy.
 pub(crate) fn shaken(
     run: &Run<'_>,
     index: usize,
@@ -46,7 +46,7 @@ pub(crate) fn shaken(
     }
 }
 
-/// How the frame was integrated, and the ground motion that it was subjected to.
+/// The integration of the frame, and the ground motion on it.
 fn integration(
     run: &Run<'_>,
     shake: &Shake,
@@ -92,7 +92,7 @@ fn of_storeys(frame: &Frame) -> bool {
         .is_ok_and(|stiffness| storeys_of(&stiffness).is_some())
 }
 
-/// How a frame was integrated, and how it was damped.
+/// The integration of a frame, and its damping.
 pub(crate) fn integrated(
     frame: Option<&Frame>,
     integrator: Integrator,
@@ -361,7 +361,7 @@ fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {
     largest
 }
 
-/// The energy that the motion of the ground put in, and where it was at the end.
+/// The input energy of the ground motion, and its parts at the end.
 fn energy_balance(history: &ShakeHistory) -> Block {
     let e = history
         .steps

@@ -1,5 +1,5 @@
-//! The results of a shake: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in the
-//! schema's order. It moves nothing.
+//! The results of a ground-motion test: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in
+//! the schema's order. It moves nothing.
 
 use crate::physics::integrator::state::FrameState;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
@@ -15,14 +15,14 @@ pub(crate) struct ShakeSummary {
     max_drift: Vec<f64>,
     drift: Vec<f64>,
     base_shear: NoisyLargest,
-    /// Largest input or kinetic energy, J.
+    /// Largest input or kinetic energy \[J\].
     largest_energy: f64,
     energy_error: f64,
     steps: u64,
 }
 
 impl ShakeSummary {
-    /// `noise`: standard deviation of the base shear as it is read, N.
+    /// `noise`: standard deviation of the measured base shear \[N\].
     pub(crate) fn new(floors: usize, noise: f64) -> Self {
         let nothing = vec![0.0; floors];
         Self {
@@ -63,7 +63,7 @@ impl ShakeSummary {
         self.energy_error
     }
 
-    /// J
+    /// \[J\]
     pub(crate) const fn largest_energy(&self) -> f64 {
         self.largest_energy
     }

@@ -1,6 +1,6 @@
-//! `shake` (Melo et al. 2006, eqs. 1 and 1a, Figs. 1 and 2): a frame on moving ground, an actuator and a load cell for each
-//! floor. In: a frame, a ground motion, a time step, each inside its domain. Out: every step, and the results that follow from them.
-//! The steps themselves are in `steps`.
+//! `shake` (Melo et al. 2006, eqs. 1 and 1a, Figs. 1 and 2): a frame under ground motion, with an actuator and a load cell for each
+//! floor. In: a frame, a ground motion, a time step, each inside its domain. Out: every step, and the results that follow from them. The
+//! steps themselves are in `steps`.
 
 use super::results::{ShakeSummary, results};
 use super::setting::Setting;

@@ -76,7 +76,7 @@ impl Shaking<'_> {
 }
 
 impl Setting {
-    /// Acceleration of the ground at the end of a step, as it is applied, m/s².
+    /// Applied ground acceleration at the end of a step \[m/s²\].
     fn ground_at(&self, ground: &Ground, step: u64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
         let time = step as f64 * self.frame.steps.time_step;
@@ -89,9 +89,9 @@ struct Shaken<'a> {
     setting: &'a Setting,
     ground: &'a Ground,
     solver: FrameSolver,
-    /// Load of the present step, N.
+    /// Load of the present step \[N\].
     load: Vec<f64>,
-    /// m/s²
+    /// \[m/s²\]
     ground_acceleration: f64,
     history: &'a mut ShakeHistory,
     summary: &'a mut ShakeSummary,

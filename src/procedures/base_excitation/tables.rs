@@ -1,6 +1,6 @@
-//! Tables of floors, one row per step and storey: of a shake with the ground motion, of an impact on a storey with striker and contact, of
-//! an unloading. In: steps. Out: columns in SI. Quantities of the whole frame are the same in every row of a step; the tracking energy is
-//! that of each floor.
+//! Tables of floors, one row per step and storey: for ground motion with its record, for an impact on a storey with striker and contact,
+//! and for an unloading. In: steps. Out: columns in SI. Quantities of the whole frame are the same in every row of a step; the tracking
+//! energy is that of each floor.
 
 use crate::record::{FloorStep, Floors, FloorsAt, ImpactStep, ShakeHistory, ShakeStep, UnloadStep};
 use crate::report::tables::{Column, Table, integers, numbers, texts};
@@ -110,7 +110,7 @@ fn tracking<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
     ]
 }
 
-/// The table of a shake under this name.
+/// The table of a ground-motion test under this name.
 pub(crate) fn table(name: String, history: &ShakeHistory) -> Table<'_> {
     let storeys = history.steps.first().map_or(1, |step| step.computed.len());
     Table::of_steps(name, history.steps.len(), storeys, |range| {

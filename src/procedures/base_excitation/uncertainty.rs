@@ -1,5 +1,5 @@
-//! The uncertainty of the results of a shake. In: its inputs with their sources of uncertainty, and the recorded steps. Out: the
-//! contributions of each source to each number. The frame is re-integrated along its recorded path, under the same ground.
+//! The uncertainty of the results of a ground-motion test. In: its inputs with their sources of uncertainty, and the recorded steps. Out:
+//! the contributions of each source to each number. The frame is re-integrated along its recorded path, under the same ground motion.
 
 use super::setting::Setting;
 use crate::physics::integrator::input::FrameError;
@@ -102,13 +102,13 @@ pub(crate) fn propagate(
     Ok(())
 }
 
-/// A shake along its recorded path.
+/// A ground-motion test along its recorded path.
 struct RecordedShake<'a, 'run> {
     doubts: &'a FrameUncertainty<'run>,
     plan: &'a Shake,
     ground: &'a Ground,
     setting: &'a Setting,
-    /// Of the ground at every finest step \[m/s²\].
+    /// Ground acceleration at every finest step \[m/s²\].
     accelerations: Vec<f64>,
     path: FramePath,
 }

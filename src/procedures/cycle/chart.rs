@@ -1,4 +1,4 @@
-//! The figures of a `cycle`: which there are and what each shows. In: a history. Out: [`Chart`]s in SI with their captions.
+//! The list of figures of a `cycle`, and their content. In: a history. Out: [`Chart`]s in SI with their captions.
 
 use super::figures;
 use crate::plan::FigureKind;
@@ -13,7 +13,7 @@ pub(crate) const FIGURES: &[FigureKind] = &[
     FigureKind::StiffnessDegradation,
 ];
 
-/// A figure and its caption; None where nothing was recorded for it, and of what it does not draw.
+/// A figure and its caption; None if nothing was recorded for it, or if a `cycle` does not have this figure.
 pub(crate) fn chart(
     name: &str,
     history: &CycleHistory,

@@ -72,7 +72,7 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     Some(ProcedureKind::Cycle(cycle))
 }
 
-/// The curve of the backbone; None where a fault was reported.
+/// The curve of the backbone; None if an error was reported.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"
@@ -86,7 +86,7 @@ fn fit(checker: &mut Checker, block: usize) -> Option<Option<BreakCount>> {
     curve::breaks(checker, &chosen, place).map(Some)
 }
 
-/// The amplitudes in order, each with its number of cycles; None where a fault was reported.
+/// The amplitudes in order, each with its number of cycles; None if an error was reported.
 fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
     let declared = &checker.scope.blocks[block];
     let repeats = match checker.field(block, "repeats") {
@@ -138,10 +138,10 @@ fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
 
 /// The ratio of one amplitude to the one before in protocols like that of FEMA 461 (2007).
 const FEMA_RATIO: f64 = 1.4;
-/// Cycles that it runs at each amplitude.
+/// Number of cycles at each amplitude of such a protocol.
 const FEMA_CYCLES: u32 = 2;
 
-/// The amplitudes of a protocol, and the cycles it runs at each.
+/// The amplitudes of a protocol, and the number of cycles at each.
 fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<Formula>, u32)> {
     let chosen = checker.choice(block, "protocol")?;
     let levels = checker
@@ -164,7 +164,7 @@ fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<
                 ));
             }
             let amplitude = |level: u32| {
-                // The ends are what was written, with no rounding.
+                // The ends are the stated values, without rounding.
                 match (level, levels - 1) {
                     (0, _) => first.clone(),
                     (level, steps) if level == steps => last.clone(),

@@ -1,5 +1,5 @@
-//! What the plan says of the cycles of a `cycle` beforehand: entries that are read of them, and their ends against the limits. In:
-//! procedures. Out: E401 where an entry is read past the last cycle; an error where a cycle leaves the limits.
+//! Checks of the cycles that the plan declares: the entries that are read from them, and their ends against the limits. In: procedures.
+//! Out: E401 if an entry past the last cycle is read; an error if a cycle exceeds the limits.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::limits::CheckedLimits;
@@ -8,7 +8,7 @@ use crate::plan::{Procedure, ProcedureKind};
 use crate::schema::procedures::cycle as schema;
 use crate::units::Dimension;
 
-/// Lists of a `cycle`, all of one entry for each of its cycles.
+/// Lists of a `cycle` with one entry for each of its cycles.
 const BY_CYCLE: [&str; 4] = [
     schema::AMPLITUDES.name,
     "energies",
@@ -16,7 +16,7 @@ const BY_CYCLE: [&str; 4] = [
     schema::STIFFNESSES.name,
 ];
 
-/// An entry past the last cycle, which would never come; asked for only where no error stands.
+/// An entry past the last cycle, which can never exist; called only if there is no error.
 pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     for (reference, place, span) in std::mem::take(&mut checker.taken) {
         let Some((_, Some(procedure))) = procedures.get(reference.procedure.0) else {
@@ -34,7 +34,7 @@ pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedur
     }
 }
 
-/// Ends of cycles (m), known before the run, against the limits.
+/// Compares the ends of cycles \[m\] that are known before the run with the limits.
 pub fn hold_cycles(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],

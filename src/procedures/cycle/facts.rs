@@ -1,4 +1,4 @@
-//! What the drivers of check and report must know of a `cycle` without carrying it out. In: it. Out: facts.
+//! The facts about a `cycle` that check and report need without running it. In: the `cycle`. Out: facts.
 
 use super::{chart, report};
 use crate::procedures::facts::{Facts, Recorded};

@@ -12,7 +12,7 @@ pub(crate) fn loops(history: &CycleHistory) -> Chart {
     let point = |step: &crate::record::CycleStep| (step.displacement, step.restoring_force);
     let last = history.cycles.last().map_or(u64::MAX, |cycle| cycle.cycle);
     let all = history.steps.iter().map(point).collect();
-    // Its own readings, and the one that it begins at.
+    // Its own readings, and the one at which it begins.
     let before = history.steps.iter().rposition(|step| step.cycle < last);
     let of_last = before.map_or_else(Points::default, |from| {
         history.steps[from..].iter().map(point).collect()
@@ -39,7 +39,7 @@ pub(crate) fn loops(history: &CycleHistory) -> Chart {
     )
 }
 
-/// The ends of the first cycle at each amplitude, and of the last one where there are more.
+/// The ends of the first cycle at each amplitude, and of the last one if there are more.
 pub(crate) fn backbone(history: &CycleHistory) -> Chart {
     let mut first: Vec<&WholeCycle> = history
         .cycles
@@ -61,7 +61,7 @@ pub(crate) fn backbone(history: &CycleHistory) -> Chart {
     let mut series = vec![Series {
         label: "first cycle of each amplitude".to_owned(),
         points: envelope(&mut first),
-        // A fitted curve is the line through them.
+        // A fitted curve is drawn as the line through them.
         style: match history.backbone {
             Some(_) => Style::marker(palette::BLUE, Marker::Disc(3.6)),
             None => Style {
@@ -90,7 +90,7 @@ pub(crate) fn backbone(history: &CycleHistory) -> Chart {
     )
 }
 
-/// The curve on either side that the cycles went to; one name for both.
+/// The curve on each side that the cycles reached; one name for both.
 fn sides(fit: &MultilinearFit, history: &CycleHistory) -> Vec<Series> {
     let middle = history.middle();
     let reach = history
@@ -126,7 +126,7 @@ fn sides(fit: &MultilinearFit, history: &CycleHistory) -> Vec<Series> {
         .collect()
 }
 
-/// What each cycle took, and all so far.
+/// The energy dissipated by each cycle, and the sum so far.
 pub(crate) fn energy(history: &CycleHistory) -> Chart {
     let mut sum = 0.0;
     let cumulated = history

@@ -1,4 +1,4 @@
-//! The cycles of a `cycle`, one row each, and what the numbers mean. In: the history. Out: a table.
+//! The cycles of a `cycle`, one row each, and the meaning of the numbers. In: the history. Out: a table.
 
 use crate::procedures::stiffness_ramp::curve_report;
 use crate::record::{CycleHistory, WholeCycle};
@@ -9,7 +9,7 @@ use crate::units::Dimension;
 /// How the contributions to its uncertainty were found.
 pub(crate) const UNCERTAINTY: &str = "each input in turn was moved by its standard uncertainty, and the loops were reckoned again from their readings";
 
-/// Cycles printed; the tables hold every one.
+/// Number of cycles printed; the tables contain every one.
 const PRINTED: usize = 40;
 
 pub(crate) fn table(history: &CycleHistory, body: &mut Vec<Block>) {
@@ -41,7 +41,7 @@ pub(crate) fn table(history: &CycleHistory, body: &mut Vec<Block>) {
     ));
 }
 
-/// Every number of a column in the unit of its largest.
+/// Every number of a column in the unit of its largest value.
 fn rows(cycles: &[WholeCycle]) -> Block {
     let most = |read: fn(&WholeCycle) -> f64| {
         cycles

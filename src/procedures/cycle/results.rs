@@ -1,4 +1,4 @@
-//! The results of displacement cycles. In: the loops as they were read. Out: results in the order of the reference.
+//! The results of displacement cycles. In: the recorded loops. Out: results in the order of the reference.
 
 use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::plan::formula::ResultValue;
@@ -7,7 +7,7 @@ use crate::record::{CycleHistory, NamedResult, WholeCycle};
 use crate::schema::ResultKind;
 use crate::schema::procedures::cycle as schema;
 
-/// In the order of the reference; `noise` is the standard deviation of a force at its place, N.
+/// In the order of the reference; `noise` is the standard deviation of a force at its position \[N\].
 pub(crate) fn results(history: &CycleHistory, noise: f64) -> Vec<NamedResult> {
     let cycles = &history.cycles;
     let largest = |sign: f64| {

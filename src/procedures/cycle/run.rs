@@ -1,6 +1,6 @@
-//! `cycle`: cycles of displacement about one place, amplitude by amplitude. In: amplitudes, sides, how they are read. Out:
-//! every reading, and energy, stiffness and damping of each whole cycle. Step and pause by default; with a rate the
-//! actuator goes from end to end without stopping.
+//! `cycle`: displacement cycles about one position, amplitude by amplitude. In: amplitudes, sides, the kind of readings. Out: every
+//! reading, and energy, stiffness and damping of each complete cycle. Ramp-and-hold (`step_and_pause`) by default; with a rate the
+//! actuator moves from end to end without stopping.
 
 use super::results::results;
 use super::uncertainty::RecordedLoops;
@@ -30,7 +30,7 @@ pub(crate) fn perform(
         cycle: 0,
     };
     let stop = cycling.run(plan, inputs, session).err();
-    // Means of the samples at a target; on the way every reading stands alone.
+    // Means of the samples at a target; in motion each reading is a single sample.
     let samples = if plan.rate.is_some() {
         1
     } else {
@@ -74,12 +74,12 @@ pub(crate) fn perform(
     }
 }
 
-/// Of the energy of a cycle: more of it, left open between the points of its loop, is worth a word.
+/// Fraction of the energy of a cycle: if its points leave more of the area undetermined, an observation is made.
 const OPEN: f64 = 0.05;
-/// A loop with less energy than this share of its height times its width has none to speak of.
+/// A loop with less energy than this fraction of its height times its width counts as having none.
 const THIN: f64 = 1e-3;
 
-/// What a person should know of loops whose area their points leave open, by so many joules each.
+/// An observation on loops with an undetermined part of the area, in J each.
 fn few_points(history: &CycleHistory, left_open: &[f64]) -> Option<String> {
     let loops = history.cycles.iter().zip(left_open);
     let share = |(cycle, open): (&WholeCycle, &f64)| {
@@ -106,26 +106,26 @@ fn few_points(history: &CycleHistory, left_open: &[f64]) -> Option<String> {
     })
 }
 
-/// How one way is gone.
+/// How one quarter is travelled.
 #[derive(Clone, Copy)]
 struct Manner {
     /// Readings at each target.
     samples: u32,
-    /// s
+    /// \[s\]
     pause: f64,
-    /// m/s
+    /// \[m/s\]
     speed: Option<f64>,
-    /// Hz, and the speed (m/s) it is read at.
+    /// Sampling frequency \[Hz\] and speed \[m/s\] during the motion.
     moving: Option<(f64, f64)>,
-    /// m from the middle to the end of a quarter has so many targets.
+    /// Number of targets of a quarter, from the middle to an end.
     points: u32,
-    /// They stand evenly.
+    /// The targets are evenly spaced.
     evenly: bool,
 }
 
 struct Cycling {
     history: CycleHistory,
-    /// Asked for, m.
+    /// Requested amplitude \[m\].
     amplitude: f64,
     cycle: u64,
 }
@@ -194,7 +194,7 @@ impl Cycling {
             let largest = of_level
                 .map(|cycle| cycle.found.max_force.max(-cycle.found.min_force))
                 .fold(0.0, f64::max);
-            // After the last amplitude nothing follows that a look could stop.
+            // After the last amplitude nothing follows that an inspection could stop.
             let more = self.history.cycles.len() as u64 != plan.cycles();
             if let Some(reason) = looks
                 .after(&plan.inspect, amplitude, largest)
@@ -206,7 +206,7 @@ impl Cycling {
         Ok(())
     }
 
-    /// From where the piston is to `to` (m): on this part of the stretch from one turn to the next.
+    /// Moves from the present position to `to` \[m\], which is this part of the branch from one reversal to the next.
     fn way(
         &mut self,
         to: f64,
@@ -220,7 +220,7 @@ impl Cycling {
             session.guard.pause(manner.pause)?;
             return Ok(());
         }
-        // Quarters of the way from the middle to an end; half a billionth for the rounding of the amplitude.
+        // The number of quarters; 5e-10 allows for the rounding of the amplitude.
         let quarters = ((to - from).abs() / self.amplitude - 5e-10).ceil().max(1.0);
         #[expect(
             clippy::cast_possible_truncation,
@@ -247,7 +247,7 @@ impl Cycling {
         Ok(())
     }
 
-    /// Reads where the piston stands: once for the relaxation, then the samples after the pause.
+    /// Reads at the present position: once for the relaxation, then the samples after the pause.
     fn target(
         &mut self,
         command: f64,
@@ -281,7 +281,7 @@ impl Cycling {
         self.take(command, point, force_scatter, relaxation, time, session)
     }
 
-    /// To `to` without a stop, read on the way.
+    /// Moves to `to` without a stop and reads during the motion.
     fn moving(
         &mut self,
         from: f64,
@@ -342,7 +342,7 @@ impl Cycling {
         session.measured(step, wall_time, displacement, restoring_force)
     }
 
-    /// Keeps a step; its number.
+    /// Records a step and returns its number.
     fn keep(
         &mut self,
         command: f64,
@@ -375,7 +375,7 @@ impl Cycling {
         step
     }
 
-    /// The cycle whose first point is step `from`, now that it is whole.
+    /// Evaluates the complete cycle whose first point is step `from`.
     fn whole(&mut self, from: usize, repeat: u32) {
         let points: Vec<LoopPoint> = self.history.steps[from..]
             .iter()
@@ -393,11 +393,11 @@ impl Cycling {
     }
 }
 
-/// When a person is to look.
+/// When the operator must inspect the specimen.
 #[derive(Default)]
 struct Looks {
     levels: u32,
-    /// N, since the last look that a fall called for.
+    /// Largest force since the last inspection that a force drop required \[N\].
     largest: f64,
 }
 

@@ -15,7 +15,7 @@ use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
-/// Results with an entry a cycle.
+/// Results with one entry per cycle.
 const LISTS: [&str; 4] = [
     schema::AMPLITUDES.name,
     schema::ENERGIES.name,
@@ -33,14 +33,14 @@ const OF_LOOPS: [&str; 6] = [
     schema::LAST_STIFFNESS.name,
 ];
 
-/// Loops as they were read.
+/// The recorded loops.
 pub(crate) struct RecordedLoops<'a> {
     pub history: &'a CycleHistory,
-    /// Of which each reading is the mean.
+    /// Number of samples of which each reading is the mean.
     pub samples: u32,
-    /// Of the cell in this run \[N\].
+    /// Noise of the cell in this run \[N\].
     pub noise: f64,
-    /// By how much the points of each loop leave its energy open \[J\].
+    /// The part of the energy of each loop that its points leave undetermined \[J\].
     pub left_open: &'a [f64],
 }
 
@@ -122,7 +122,7 @@ pub(crate) fn propagate(
         reported: None,
     };
     let layout = loops.layout();
-    // Inputs have no bounds here, and nobody waits.
+    // Inputs have no bounds here, and no one waits for progress.
     if let Ok(mut contributions) = study.contributions::<Infallible>(&mut |_, _| Ok(())) {
         for (name, entry, amount) in of_sampling(loops.history, loops.left_open) {
             let before = layout
@@ -139,7 +139,7 @@ pub(crate) fn propagate(
     }
 }
 
-/// By how much the points of each loop leave its energy open \[J\]; each reading is the mean of so many samples.
+/// The part of the energy of each loop that its points leave undetermined \[J\]; each reading is the mean of so many samples.
 pub(crate) fn left_open_by_points(
     history: &CycleHistory,
     samples: u32,
@@ -158,7 +158,7 @@ pub(crate) fn left_open_by_points(
     history.cycles.iter().map(of_cycle).collect()
 }
 
-/// Uncertainties of the results by the points of the loops. Loops are alike, and so are their corners.
+/// Uncertainties of the results due to the points of the loops. Loops are alike, and so are their corners.
 fn of_sampling(history: &CycleHistory, open: &[f64]) -> Vec<(&'static str, usize, f64)> {
     let uncertain: Vec<f64> = open.iter().copied().map(of_open).collect();
     // ζ = E_D/(4π·½K a²)

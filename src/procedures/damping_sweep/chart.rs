@@ -1,4 +1,4 @@
-//! The figure of a damping sweep and what it shows. In: a history. Out: a [`Chart`] in SI with its caption.
+//! The figure of a damping sweep and its content. In: a history. Out: a [`Chart`] in SI with its caption.
 
 use crate::plan::FigureKind;
 use crate::procedures::stiffness_ramp;
@@ -8,7 +8,7 @@ use crate::report::figures::chart::Chart;
 /// In the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::DampingFit];
 
-/// A figure and its caption; None where nothing was recorded for it, and of what it does not draw.
+/// A figure and its caption; None if nothing was recorded for it, or if a sweep does not have this figure.
 pub(crate) fn chart(
     name: &str,
     history: &SweepHistory,

@@ -1,4 +1,4 @@
-//! What the drivers of check and report must know of a damping sweep without carrying it out. In: it. Out: facts.
+//! The facts about a damping sweep that check and report need without running it. In: the sweep. Out: facts.
 
 use super::chart;
 use crate::procedures::facts::{Facts, Recorded};

@@ -13,7 +13,7 @@ const FEW: usize = 3;
 /// Relative velocity error of the piston that has no observation.
 const OFF_SPEED: f64 = 0.05;
 
-/// The K of the strokes contradicts that of the plan if the two differ by so many standard errors, and by this fraction.
+/// The K of the strokes contradicts that of the plan if the two differ by this many standard errors, and by the fraction below.
 const CONTRADICTS: f64 = 5.0;
 const OFF_STIFFNESS: f64 = 0.1;
 
@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// The properties of the specimen that the strokes show beside c.
 pub(super) struct Findings {
-    /// K of the strokes that count and its standard error, N/m, where they show it.
+    /// K of the valid strokes and its standard error \[N/m\], if they show it.
     pub stiffness: Option<(f64, f64)>,
     /// First steps of the strokes with plastic deformation, where others had none.
     pub left_out: Vec<usize>,

@@ -51,7 +51,7 @@ pub(super) fn paired_by_position(out: &[SweepStep], back: &[SweepStep]) -> Vec<O
     sparse.iter().filter_map(pair).collect()
 }
 
-/// Force (N) at `position` (m), interpolated between two readings; they are sorted by position.
+/// Force \[N\] at `position` \[m\], interpolated between two readings; they are sorted by position.
 fn interpolated(steps: &[SweepStep], position: f64) -> Option<f64> {
     let after = steps
         .iter()
@@ -65,7 +65,7 @@ fn interpolated(steps: &[SweepStep], position: f64) -> Option<f64> {
     Some(below.restoring_force + fraction * (above.restoring_force - below.restoring_force))
 }
 
-/// The line of measured position over time on the steady part: its slope is the velocity, m/s.
+/// The line of measured position over time on the steady part: its slope is the velocity \[m/s\].
 pub(super) fn velocity_of(pass: &[SweepStep]) -> Option<LineFit> {
     let steady = pass.iter().filter(|step| step.steady);
     let (times, positions): (Vec<f64>, Vec<f64>) = steady

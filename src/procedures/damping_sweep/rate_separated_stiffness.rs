@@ -26,7 +26,7 @@ impl RateSeparatedFit {
         self.points.clear();
     }
 
-    /// Adds a reading (m, N). Gives K and its standard error (N/m); the standard deviations of the readings are `noise` (N, m).
+    /// Adds a reading (m, N). Gives K and its standard error \[N/m\]; the standard deviations of the readings are `noise` (N, m).
     pub(crate) fn add(&mut self, reading: (f64, f64), noise: (f64, f64)) -> Option<(f64, f64)> {
         if let [before, at] = self.last[..] {
             let velocity = 0.5 * (reading.0 - before.0);

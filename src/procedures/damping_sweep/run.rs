@@ -1,15 +1,15 @@
 //! `damping sweep` (Melo et al. 2006, sec. 6 (b)): constant-velocity passes over one stroke and back, at increasing velocities.
 //! In: velocities, stroke, the K of an earlier ramp. Out: c and the Coulomb force by `F_d = R − K·X = c·v + F_c·sign v`.
 //!
-//! X and R are as measured, X from the rig's zero. A zero offset of the load cell adds the same force to both directions at one
-//! position. The fit uses half the difference between a reading and the one at the same position on the return, so that the offset does
-//! not affect c, `F_c` or their standard errors. The K of the plan does not affect them either: a lagging actuator is behind in both
-//! directions, and the distance between the two positions of a pair is corrected with the stiffness of the strokes themselves, whose
-//! error is one of c. Yielding of the specimen does not affect them: with `about`, one unread stroke precedes the first that is read,
-//! and a stroke with plastic deformation is left out.
+//! X and R are as measured, X from the rig's zero. A zero offset of the load cell adds the same force to both directions at one position.
+//! The fit uses half the difference between a reading and the one at the same position on the return. The offset therefore does not
+//! affect c, `F_c` or their standard errors. The K of the plan does not affect them either. A lagging actuator is behind in both
+//! directions: the distance between the two positions of a pair is corrected with the stiffness of the strokes themselves, whose error
+//! contributes to c. Yielding of the specimen does not affect them: with `about`, one unread stroke precedes the first that is read, and
+//! a stroke with plastic deformation is left out.
 //!
-//! A rig that reads at the times that are asked for has nearly the same positions out and back. For a rig that reads when it can, the
-//! measured fraction of the stroke determines the steady part, and the pass with fewer readings is paired with the other one
+//! A rig that reads at the requested times has nearly the same positions out and back. For a rig that reads at its own times, the
+//! measured fraction of the stroke determines the steady part. The pass with fewer readings is then paired with the other one
 //! interpolated.
 
 use std::ops::Range;
@@ -40,7 +40,7 @@ const END: f64 = 0.1;
 /// reversal (2·exp(−5)). Three would leave a tenth, and bias c.
 const LAGS: f64 = 5.0;
 
-/// Readings on the steady part where the plan gives no rate.
+/// Readings on the steady part if the plan gives no rate.
 const STEADY_SAMPLES: f64 = 50.0;
 
 /// Readings of one pass, at most.
@@ -88,7 +88,7 @@ pub(crate) fn perform(
         effects: effects_of_stiffness(kept().flat_map(|(_, pairs)| pairs)),
     };
     let instruments = InstrumentUncertainty::of(whole, session.guard.declared_noise(), 1);
-    // With a lag, or readings at other times than asked for, the displacements out and back differ.
+    // With a lag, or readings at other times than requested, the displacements out and back differ.
     let apart = whole.rig.link.as_real().is_some() || together.effects != [0.0; 2];
     let of_reading = instruments.stated_variance(0, 1);
     let force = 0.5 * of_reading.about(if apart { stiffness } else { 0.0 });
@@ -153,7 +153,7 @@ fn steady_from(seconds: f64, lag: f64) -> f64 {
     END.max(LAGS * lag / seconds)
 }
 
-/// Readings of one pass that takes `seconds`, at a rate (Hz) or by the default.
+/// Readings of one pass that takes `seconds`, at a rate \[Hz\] or by the default.
 pub(crate) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
     let steady = 1.0 - END - steady_from(seconds, lag);
     match rate {
@@ -164,7 +164,7 @@ pub(crate) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
     }
 }
 
-/// `stated`: of half the difference of two readings.
+/// `stated`: the variance of half the difference of two readings.
 fn fit_of(pairs: &[(f64, f64)], stated: StatedVariance) -> Option<LineFit> {
     let (velocities, forces): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
     let speeds: Vec<f64> = velocities
@@ -175,7 +175,7 @@ fn fit_of(pairs: &[(f64, f64)], stated: StatedVariance) -> Option<LineFit> {
     fit_damping(&velocities, &forces).map(|fit| fit.stated(&speeds, stated, 0.0))
 }
 
-/// ∂c/∂K (s) and ∂F_c/∂K (m), K the stiffness that brings the readings of each pair to one place.
+/// ∂c/∂K \[s\] and ∂F_c/∂K \[m\], with K the stiffness that corrects the readings of each pair to one position.
 fn effects_of_stiffness<'a>(pairs: impl Iterator<Item = &'a OutAndBack>) -> [f64; 2] {
     let moving = pairs.filter(|pair| pair.velocity != 0.0);
     let (speeds, apart): (Vec<f64>, Vec<f64>) = moving
@@ -194,9 +194,9 @@ fn effects_of_stiffness<'a>(pairs: impl Iterator<Item = &'a OutAndBack>) -> [f64
 pub(super) struct Stroke {
     pub out: Range<usize>,
     pub back: Range<usize>,
-    /// Commanded, m/s.
+    /// Commanded \[m/s\].
     pub speed: f64,
-    /// Whether every reading was made at the time that was asked for.
+    /// Whether every reading was made at the requested time.
     pub on_grid: bool,
 }
 
@@ -204,23 +204,23 @@ pub(super) struct Sweep {
     pub steps: Vec<SweepStep>,
     /// The steps of each stroke that was completed, out and back.
     pub strokes: Vec<Stroke>,
-    /// K of the plan, N/m.
+    /// K of the plan \[N/m\].
     pub stiffness: Option<Estimate>,
-    /// s
+    /// \[s\]
     pub lag: f64,
-    /// Whether the rig reads at the times that are asked for.
+    /// Whether the rig reads at the requested times.
     pub exact: bool,
 }
 
 /// A commanded constant-velocity pass.
 #[derive(Clone, Copy)]
 struct Pass {
-    /// m
+    /// \[m\]
     from: f64,
     to: f64,
-    /// Signed, m/s.
+    /// With its sign \[m/s\].
     velocity: f64,
-    /// s
+    /// \[s\]
     seconds: f64,
     samples: usize,
 }
@@ -293,7 +293,7 @@ impl Sweep {
                 speed: speed.abs(),
                 on_grid,
             });
-            // A pass ends in motion: the piston comes to rest at home before the next reading or command.
+            // A pass ends in motion: the piston stops at home before the next reading or command.
             session.guard.move_to(&[home], None)?;
         }
         Ok(())
@@ -383,7 +383,7 @@ impl Sweep {
             .collect()
     }
 
-    /// K of the plan, N/m.
+    /// K of the plan \[N/m\].
     pub(super) fn planned(&self) -> f64 {
         self.stiffness.map_or(0.0, |stiffness| stiffness.value)
     }

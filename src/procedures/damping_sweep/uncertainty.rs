@@ -37,7 +37,7 @@ pub(crate) fn propagate(
     );
 }
 
-/// What the stiffness that brought the pairs of a sweep to one place makes of its line: that of the strokes, else that of the plan.
+/// Effect on the line of the stiffness that corrects the pairs to one position: that of the strokes, otherwise that of the plan.
 fn of_stroke_stiffness(
     together: &BroughtTogether,
     planned: &Formula,
@@ -76,8 +76,8 @@ fn of_stroke_stiffness(
     }
 }
 
-/// ζ = c/(2√(KM)): by first order, ζ/c of what is in c, −ζ/(2K) of what is in K and −ζ/(2M) of what is in M; `mass` is what
-/// the mass hangs on and its relative uncertainty.
+/// ζ = c/(2√(KM)), to first order: contributions to c times ζ/c, to K times −ζ/(2K), to M times −ζ/(2M). `mass` gives the sources of the
+/// mass with its relative uncertainty.
 fn damping_ratio(
     results: &mut [NamedResult],
     (stiffness, own): (&Formula, Option<(f64, f64)>),

@@ -1,5 +1,5 @@
-//! The facts about an impact that the drivers of check and report need without carrying it out. In: an impact of the plan, or its
-//! history. Out: facts, the motion that it leaves behind, the parts of the program that it uses.
+//! The facts about an impact that check and report need without running it. In: an impact of the plan, or its history. Out: facts, the
+//! motion at its end, the parts of the program that it uses.
 
 use super::{figures, report};
 use crate::physics::self_test::Part;
@@ -60,7 +60,7 @@ pub(crate) fn recorded(history: &ImpactHistory) -> Recorded {
 /// The state in which an impact leaves the specimen.
 pub(crate) const PEAK: &str = "ends near its largest displacement";
 
-/// The motion that an impact leaves. A frame comes to rest by itself if the run goes on for long enough.
+/// The motion at the end of an impact. A frame comes to rest if the run continues for long enough.
 pub(crate) fn motion(impact: &Impact) -> Motion<'static> {
     match &impact.target {
         ImpactTarget::Point(_) => Motion {
@@ -79,7 +79,7 @@ pub(crate) fn motion(impact: &Impact) -> Motion<'static> {
     }
 }
 
-/// The parts of the self-test that an impact uses, each with those it is combined with.
+/// The parts of the self-test that an impact uses, each with the parts in combination with it.
 pub(crate) fn self_tested(impact: &Impact) -> Vec<Vec<Part>> {
     let of_frame = matches!(impact.target, ImpactTarget::Storey(_));
     let [point, storey] = match impact.contact {

@@ -1,6 +1,5 @@
-//! `impact`: a computed striker hits the specimen on the rig, one degree of freedom or one storey
-//! of a frame. In: its block, a rig behind the guard. Out: parameters, history, results, figures,
-//! report text.
+//! `impact`: a calculated striker hits the specimen on the rig, on one degree of freedom or one storey of a frame. In: its block, a rig
+//! behind the guard. Out: parameters, history, results, figures, report text.
 
 pub(crate) mod check;
 pub(crate) mod delay;

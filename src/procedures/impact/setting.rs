@@ -23,7 +23,7 @@ pub(crate) struct Setting {
     pub input: ImpactInput,
     /// The approach that the critical time step belongs to: in a series of impacts, that of the fastest.
     pub approach: Approach,
-    /// Velocity of its striker at the start, before the gap, m/s.
+    /// Velocity of its striker at the start, before the gap \[m/s\].
     pub fastest: f64,
     pub structure: StruckStructure,
 }
@@ -166,7 +166,7 @@ impl Setting {
         }
     }
 
-    /// Adds mass to a struck degree of freedom, kg; the critical time step follows.
+    /// Adds mass to a struck degree of freedom \[kg\] and adapts the critical time step.
     pub(crate) fn add_mass(&mut self, mass: f64) {
         self.input.mass += mass;
         if let StruckStructure::Point(steps) = &mut self.structure {

@@ -28,7 +28,7 @@ pub(crate) struct ImpactSteps<'a> {
     pub before: u64,
 }
 
-/// The record of an impact under way.
+/// The record of an impact in progress.
 pub(crate) struct Kept {
     /// The struck degree of freedom and the striker.
     pub steps: Vec<ImpactStep>,
@@ -86,7 +86,7 @@ impl ImpactSteps<'_> {
     }
 }
 
-/// The structure under way, with its striker.
+/// The structure in motion, with its striker.
 struct Struck<'a, V: Vector> {
     solver: ImpactSolver<V>,
     until: Until,

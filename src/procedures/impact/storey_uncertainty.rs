@@ -121,7 +121,7 @@ struct RecordedStoreyImpact<'a, 'run> {
 struct Inputs {
     run: FrameRun,
     blow: Blow,
-    /// s
+    /// \[s\]
     periods: Vec<f64>,
     critical_time_step: f64,
 }

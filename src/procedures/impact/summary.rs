@@ -24,7 +24,7 @@ impl StruckSummary {
         }
     }
 
-    /// On one floor; `body` is that floor with the striker, `noise` the standard deviation of the base shear as it is read, N.
+    /// On one floor; `body` is that floor with the striker, `noise` the standard deviation of the measured base shear \[N\].
     pub(crate) fn of_frame(body: &ImpactInput, floors: usize, noise: f64) -> Self {
         Self {
             impact: SummaryBuilder::new(body),
@@ -56,7 +56,7 @@ pub(crate) struct FloorSummary {
     time_step: f64,
     pub floor_displacement: Vec<f64>,
     pub max_drift: Vec<f64>,
-    /// Storey drifts at the end of the last step, m; their shears, N, are of the effective forces of the recursion.
+    /// Storey drifts at the end of the last step \[m\]; their shears \[N\] follow from the effective forces of the recursion.
     pub drift: Vec<f64>,
     shear: Vec<f64>,
     storey_energy: Vec<f64>,
@@ -121,23 +121,23 @@ impl FloorSummary {
         self.striker_velocity = state.striker_velocity;
     }
 
-    /// ∫ shear d(drift) of each storey so far, J.
+    /// ∫ shear d(drift) of each storey so far \[J\].
     pub(crate) fn storey_energy(&self) -> &[f64] {
         &self.storey_energy
     }
 
-    /// Virtual time of the first contact, s; None where there was none.
+    /// Simulated duration of the first contact \[s\]; None without contact.
     pub(crate) fn contact_duration(&self) -> Option<f64> {
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
         (self.first_impact > 0).then_some(self.first_impact as f64 * self.time_step)
     }
 
-    /// Rebound speed of the striker, m/s; None where it does not move back.
+    /// Rebound speed of the striker \[m/s\]; None if it does not move back.
     pub(crate) fn rebound_velocity(&self) -> Option<f64> {
         Some(-self.striker_velocity).filter(|back| *back > 0.0)
     }
 
-    /// Largest base shear, N.
+    /// Largest base shear \[N\].
     pub(crate) fn max_base_shear(&self) -> Option<f64> {
         self.base_shear.value()
     }

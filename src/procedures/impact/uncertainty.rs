@@ -25,7 +25,7 @@ use crate::uncertainty::engine::{
 };
 use crate::uncertainty::{InstrumentUncertainty, Source};
 
-/// Everything uncertain about a blow.
+/// The uncertain inputs of an impact.
 #[derive(Clone, Copy)]
 pub(crate) struct ImpactUncertainty<'run> {
     plan: &'run Impact,
@@ -34,9 +34,9 @@ pub(crate) struct ImpactUncertainty<'run> {
     results: &'run dyn Results,
     procedure: ProcedureId,
     noise: DeclaredNoise,
-    /// By how much its damping was raised to none.
+    /// The amount by which its damping ratio was raised to zero.
     lift: f64,
-    /// Which blow of the procedure it is, from 0: each has errors of its own.
+    /// Index of the impact in the procedure, from 0: each impact has its own errors.
     blow: u16,
 }
 
@@ -60,7 +60,7 @@ impl<'run> ImpactUncertainty<'run> {
         }
     }
 
-    /// Of another blow of the same procedure, from 0.
+    /// For a later impact of the same procedure, counted from 0.
     pub(crate) fn of_blow(self, index: usize) -> Self {
         Self {
             blow: u16::try_from(index).unwrap_or(u16::MAX),
@@ -120,7 +120,7 @@ impl<'run> ImpactUncertainty<'run> {
         Ok(())
     }
 
-    /// The path that was recorded; None of no reading.
+    /// The recorded path; None without readings.
     fn path(&self, setting: &Setting, steps: &[ImpactStep]) -> Option<RecordedPath> {
         let readings = steps.iter().map(|step| Reading {
             target: step.command,
@@ -147,7 +147,7 @@ impl<'run> ImpactUncertainty<'run> {
         )
     }
 
-    /// Uncertain inputs, each once.
+    /// The uncertain inputs, each once.
     fn sources(&self) -> Vec<Source> {
         let Impact {
             striker,
@@ -201,7 +201,7 @@ impl RecordedImpact<'_, '_> {
 impl Evaluate for RecordedImpact<'_, '_> {
     type Inputs = Setting;
 
-    /// The time step stays: it was chosen, not measured.
+    /// The time step does not change: it was chosen, not measured.
     fn inputs(&self, shifts: Shifts<'_>) -> Result<Setting, String> {
         let ImpactUncertainty {
             plan,
@@ -221,12 +221,12 @@ impl Evaluate for RecordedImpact<'_, '_> {
                 Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
                 Source::StrikerVelocity(_) => striker.velocity += by * striker.velocity_uncertainty,
                 Source::SpecimenMass(_) => heavier += by * point.mass_uncertainty,
-                // Formulas follow it where they read it; the others are of the instruments.
+                // Formulas that read the source change with it; the other sources are those of the instruments.
                 _ => {}
             }
         }
-        // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion; they share the
-        // critical time step of the fastest.
+        // Impacts of one striker at several speeds have the relative uncertainty of the stated one. They share the critical time step of
+        // the fastest impact.
         let faster = striker.velocity / declared.velocity;
         striker.velocity = self.setting.fastest * faster;
         let mut found = with_shifts(results, shifts, &mut |results| {
@@ -267,7 +267,7 @@ impl Evaluate for RecordedImpact<'_, '_> {
     }
 }
 
-/// What a contact law reads.
+/// The formulas that a contact law reads.
 pub(crate) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
     match contact {
         Contact::Rigid => Vec::new(),
@@ -281,13 +281,13 @@ pub(crate) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
     }
 }
 
-/// Times that are told to a whole step, with the standard uncertainty of a quantum Δt, Δt/√12 (s).
+/// The results that are times at the end of a step, with the standard uncertainty of a step Δt, Δt/√12 \[s\].
 pub(crate) fn whole_steps(time_step: f64) -> [(&'static str, f64); 2] {
     [schema::STOP_TIME, schema::TIME_OF_MAX_DISPLACEMENT]
         .map(|kind| (kind.name, time_step / 12.0_f64.sqrt()))
 }
 
-/// Lets the time step contribute so much at least to the number at a place.
+/// Raises the contribution of the time step to the number at an index to at least this amount.
 pub(crate) fn at_least(
     most: f64,
     procedure: ProcedureId,
@@ -304,7 +304,7 @@ pub(crate) fn at_least(
     }
 }
 
-/// A largest contact force that follows the time step is known to nobody: what inputs do to it is not its uncertainty.
+/// A peak contact force that depends on the time step has no known value: the effects of inputs on it are not its uncertainty.
 pub(crate) fn no_known_force(
     law: ContactLaw,
     recorded: &ImpactSummary,
@@ -319,7 +319,7 @@ pub(crate) fn no_known_force(
     }
 }
 
-/// Whether two runs came to the same.
+/// Whether two runs have the same results.
 pub(crate) fn same(one: &ImpactSummary, other: &ImpactSummary) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
     let read: [fn(&ImpactSummary) -> f64; 6] = [

@@ -21,7 +21,7 @@ pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
     FigureKind::Displacement,
 ];
 
-/// A figure and its caption; None where nothing was recorded for it, or it is no figure of a series.
+/// A figure and its caption; None if nothing was recorded for it, or for a figure of a different procedure.
 pub(crate) fn chart(
     name: &str,
     history: &EscalateHistory,

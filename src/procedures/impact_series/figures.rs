@@ -26,7 +26,7 @@ pub(crate) fn force_displacement(history: &EscalateHistory) -> Chart {
     )
 }
 
-/// Displacement against the virtual time of each impact.
+/// Displacement against the simulated time of each impact.
 pub(crate) fn displacement(history: &EscalateHistory) -> Chart {
     let of = |step: &ImpactStep| (step.time, step.command);
     let displaced = Quantity {
@@ -150,7 +150,7 @@ fn displaced(history: &EscalateHistory) -> Cow<'static, str> {
     }
 }
 
-/// Labels of impacts, at most: more of them hide the curves.
+/// Largest number of labels of impacts: more of them hide the curves.
 const MOST_LABELS: usize = 7;
 
 /// One curve per impact, earlier ones lighter, the last one in a separate colour. Each is labelled with its energy; of many impacts, every

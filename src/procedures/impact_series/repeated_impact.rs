@@ -1,5 +1,5 @@
 //! The impact that a series repeats, on one degree of freedom or on one storey of a frame. In: the impact of the plan, evaluated once; a
-//! velocity for each repetition. Out: each repetition as an impact of its own. It decides nothing about the next one.
+//! velocity for each repetition. Out: each repetition as a separate impact. It decides nothing about the next one.
 
 use crate::physics::impact::ImpactInput;
 use crate::physics::structure::Unloading;
@@ -21,7 +21,7 @@ pub(crate) struct RepeatedImpact<'a> {
 }
 
 impl<'a> RepeatedImpact<'a> {
-    /// The impact at the highest of these velocities, m/s: all have its time step, the shortest under a contact of finite stiffness.
+    /// The impact at the highest of these velocities \[m/s\]. All have its time step, the shortest under a contact of finite stiffness.
     pub(crate) fn evaluate<'record: 'a>(
         plan: &'a Escalate,
         velocities: &[f64],
@@ -53,7 +53,7 @@ impl<'a> RepeatedImpact<'a> {
         self.setting.steps()
     }
 
-    /// ½ Ms v² of an impact at this velocity, J.
+    /// ½ Ms v² of an impact at this velocity \[J\].
     pub(crate) fn energy(&self, striker_velocity: f64) -> f64 {
         ImpactInput {
             striker_velocity,
@@ -62,7 +62,7 @@ impl<'a> RepeatedImpact<'a> {
         .striker_energy()
     }
 
-    /// Impact number `index`, from 0, at this velocity (m/s); `before` steps of the procedure are done already.
+    /// Impact number `index`, from 0, at this velocity \[m/s\]; `before` steps of the procedure are done already.
     pub(crate) fn strike(
         &mut self,
         index: usize,
@@ -81,7 +81,7 @@ impl<'a> RepeatedImpact<'a> {
     }
 }
 
-/// The velocity of the striker in each impact, m/s, each above 0.
+/// The velocity of the striker in each impact \[m/s\], each above 0.
 pub(crate) fn velocities(plan: &Escalate, inputs: &Inputs<'_>) -> Result<Vec<f64>, Stop> {
     let velocities = inputs.list("speeds", &plan.velocities)?;
     match velocities

@@ -137,7 +137,7 @@ fn of_storeys(blows: &[Blow], left: &Left) -> [NamedResult; 3] {
     ]
 }
 
-/// The displacement of the struck degree of freedom after an impact, m.
+/// The displacement of the struck degree of freedom after an impact \[m\].
 fn position(blow: &Blow) -> Option<f64> {
     blow.rest_of_struck().map(|(displacement, _)| displacement)
 }
@@ -147,7 +147,7 @@ fn contributions_to_position(blow: &Blow) -> Vec<Contribution> {
         .map_or_else(Vec::new, |[position, _]| position)
 }
 
-/// A number of every impact; NaN where an impact does not have it.
+/// A number of every impact; NaN if an impact does not have it.
 fn of_each(blows: &[Blow], kind: ResultKind) -> Vec<f64> {
     blows
         .iter()

@@ -177,7 +177,7 @@ fn as_brought(blow: &Blow, between: Between) -> Vec<NamedResult> {
     results
 }
 
-/// Brings the specimen to where the next impact begins.
+/// Moves the specimen to the start position of the next impact.
 fn bring(
     between: Between,
     home: &[f64],

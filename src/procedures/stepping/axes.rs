@@ -11,17 +11,17 @@ use crate::run::{AxisReport, StepReport};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AxesState<'a> {
     pub step: u64,
-    /// s
+    /// \[s\]
     pub time: f64,
-    /// m
+    /// \[m\]
     pub target: &'a [f64],
-    /// Measured, m.
+    /// Measured \[m\].
     pub displacement: &'a [f64],
-    /// m/s
+    /// \[m/s\]
     pub velocity: &'a [f64],
-    /// m/s²
+    /// \[m/s²\]
     pub acceleration: &'a [f64],
-    /// Measured, N.
+    /// Measured \[N\].
     pub force: &'a [f64],
 }
 
@@ -39,11 +39,11 @@ impl<'a> AxesState<'a> {
     }
 }
 
-/// A monitor of tracking for every axis.
+/// A tracking monitor for every axis.
 pub(crate) struct Monitors(Vec<Monitor>);
 
 impl Monitors {
-    /// `taken` are the effective forces of the recursion at the commands, N.
+    /// `taken` are the effective forces of the recursion at the commanded displacements \[N\].
     pub(crate) fn new(commanded: &[f64], reading: &Reading, taken: &[f64]) -> Self {
         let axes = commanded.iter().zip(
             reading
@@ -62,7 +62,7 @@ impl Monitors {
         self.0.iter().map(Monitor::tracking).collect()
     }
 
-    /// Adds a step; `taken` are the effective forces of the recursion at the commands, N.
+    /// Adds a step; `taken` are the effective forces of the recursion at the commanded displacements \[N\].
     pub(crate) fn take(
         &mut self,
         commanded: &[f64],
@@ -85,7 +85,7 @@ pub(crate) struct Errors {
     pub tracking_energy_error: Option<f64>,
 }
 
-/// A step of all axes, the first one first.
+/// The step of all axes; the first axis is reported first.
 pub(crate) fn report(state: &AxesState<'_>, errors: &Errors) -> StepReport {
     let axis = |axis: usize| AxisReport {
         command: state.target[axis],

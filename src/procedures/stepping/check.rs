@@ -70,7 +70,7 @@ pub fn stepping(
     })
 }
 
-/// The steps of a frame, and their duration, s, where it is known before the run.
+/// The steps of a frame, and their duration \[s\], if it is known before the run.
 pub struct FrameSteps<'a> {
     pub specimen: usize,
     pub frame: &'a Frame,
@@ -80,7 +80,7 @@ pub struct FrameSteps<'a> {
 }
 
 /// Checks the time step of a frame as far as it is known before the run: stability, the critical step (of the modes, or `critical`'s),
-/// the number of steps. Gives the properties of the frame and the step (s) where further checks are possible.
+/// the number of steps. Gives the properties of the frame and the step \[s\] where further checks are possible.
 pub fn judge(
     checker: &mut Checker,
     block: usize,

@@ -1,12 +1,12 @@
 //! Continuous motion: the actuators do not stop at the steps. They follow smooth paths together, and are read as they pass their
 //! targets. In: for each step the waypoints with their velocities. Out: the reading there. It knows no equation of motion.
 //!
-//! A step of Δt takes `time_scale`·Δt of laboratory time. While its reading is made durable and its targets are computed, the
-//! actuators continue along parabolas, from their position and velocity with the mean acceleration of the step before: this part does
-//! not depend on the reading. If a contact force contributed to that acceleration, it is no trend, and the velocity stays constant.
-//! For the rest of the step each actuator follows a cubic to its target, which it passes with the velocity that the integrator
-//! predicts there, divided by the time scale. Position and velocity are continuous everywhere (the guard refuses a path that does not
-//! join). The last reading is made at the target.
+//! A step of Δt takes `time_scale`·Δt of laboratory time. While its reading is stored and its targets are computed, the actuators
+//! continue along parabolas, from their position and velocity with the mean acceleration of the step before. This part does not depend on
+//! the reading. If a contact force contributed to that acceleration, it is not a trend, and the velocity stays constant. For the rest of
+//! the step each actuator follows a cubic to its target. It passes the target with the velocity that the integrator predicts there,
+//! divided by the time scale. Position and velocity are continuous everywhere (the guard refuses a path that does not join). The last
+//! reading is made at the target.
 
 use crate::physics::tracking::trajectory::Path;
 use crate::rig::{Reading, RigFault};
@@ -23,9 +23,9 @@ const BRAKING: f64 = 5.0;
 /// The point that an actuator passes at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Passing {
-    /// m
+    /// \[m\]
     pub place: f64,
-    /// m/s, of virtual time.
+    /// \[m/s\] of simulated time.
     pub velocity: f64,
     /// Whether a contact force contributes to the velocity.
     pub struck: bool,
@@ -34,11 +34,11 @@ pub(crate) struct Passing {
 /// The motion of an actuator at the end of the last path.
 #[derive(Clone, Copy)]
 struct Motion {
-    /// m
+    /// \[m\]
     place: f64,
-    /// m/s, of rig time.
+    /// \[m/s\] of laboratory time.
     velocity: f64,
-    /// Mean over the last step, m/s²: the next parabola has it.
+    /// Mean over the last step \[m/s²\]; the next parabola uses it.
     acceleration: f64,
 }
 
@@ -46,12 +46,12 @@ struct Motion {
 pub(crate) struct Gliding {
     axes: Vec<Motion>,
     time_scale: f64,
-    /// Rig time of a step, s.
+    /// Laboratory time of a step \[s\].
     step_time: f64,
 }
 
 impl Gliding {
-    /// From rest at these positions (m); `time_step` of virtual time, s.
+    /// From rest at these positions \[m\]; `time_step` in simulated time \[s\].
     pub(crate) fn from_rest(places: &[f64], time_scale: f64, time_step: f64) -> Self {
         let axes = places
             .iter()
@@ -68,8 +68,8 @@ impl Gliding {
         }
     }
 
-    /// One step: the reading at its end; or the one that violated a limit, with the stop that follows. `predict` is called while the
-    /// actuators move.
+    /// One step: the reading at its end. If a reading violates a limit, that reading with the stop that follows. `predict` is called
+    /// while the actuators move.
     pub(crate) fn step(
         &mut self,
         predict: impl FnOnce() -> Vec<Passing>,
@@ -111,7 +111,7 @@ impl Gliding {
         follow(&paths, READINGS.1, session)
     }
 
-    /// Comes to rest at constant deceleration.
+    /// Stops with constant deceleration.
     pub(crate) fn brake(&self, session: &mut Session<'_>) -> Result<(), Stop> {
         let seconds = BRAKING * self.step_time;
         let brake = |axis: &Motion| {
@@ -126,7 +126,7 @@ impl Gliding {
     }
 }
 
-/// Follows paths: the reading at their end; or the one that violated a limit, with the stop that follows.
+/// Follows paths and returns the reading at their end. If a reading violates a limit, that reading with the stop that follows.
 fn follow(
     paths: &[Path],
     readings: usize,

@@ -1,4 +1,4 @@
-//! The delay of the actuators of a virtual rig, to first order. In: the lag and the undershoot of the rig, the time steps of a
+//! The delay of the actuators of a simulated rig, to first order. In: the lag and the undershoot of the rig, the time steps of a
 //! procedure. Out: delays in simulated time.
 
 use crate::physics::structure::frame_properties::FrameProperties;
@@ -6,8 +6,8 @@ use crate::plan::formula::NoResults;
 use crate::plan::{Frame, Link, Mode, Plan, ShakeDamping, Stepping, VirtualLink};
 use crate::procedures::facts::Delay;
 
-/// Delay of the actuators of a rig to first order, in simulated time \[s\]: the fraction t of each increment is missed, which is Δt·t/(1 − t), and
-/// of a lag τ the part that remains after a pause, or in continuous mode τ over the time scale.
+/// Delay of the actuators of a rig to first order, in simulated time \[s\]. An undershoot t of each increment gives Δt·t/(1 − t). A lag τ
+/// gives the part that remains after a pause, or in continuous mode τ over the time scale.
 pub(crate) fn late(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
     let Link::Virtual(VirtualLink {
         tracking: short,

@@ -1,5 +1,5 @@
-//! The energy balance of a procedure that integrates: an observation where it does not close, its curves, its table. In: energies.
-//! Out: an event, series of a chart, a table of a report. It knows no procedure.
+//! The energy balance of a procedure that integrates: an observation if it does not close, its curves, its table. In: energies. Out: an
+//! event, series of a chart, a table of a report. It knows no procedure.
 
 use crate::physics::impact::energy::UNBALANCED;
 use crate::record::EventKind;
@@ -27,15 +27,15 @@ pub(crate) fn observe_imbalance(energy_error: f64, session: &mut Session<'_>) {
     }
 }
 
-/// One energy of a step over virtual time.
+/// One energy of a step over simulated time.
 pub(crate) struct EnergyCurve<S> {
     pub label: &'static str,
-    /// J
+    /// \[J\]
     pub read: fn(&S) -> f64,
     pub style: Style,
 }
 
-/// The curves of the energies that are not 0 throughout; `time` gives the virtual time of a step, s.
+/// The curves of the energies that are not 0 throughout; `time` gives the simulated time of a step \[s\].
 pub(crate) fn nonzero_curves<S>(
     steps: &[S],
     time: fn(&S) -> f64,
@@ -55,7 +55,7 @@ pub(crate) fn nonzero_curves<S>(
         .collect()
 }
 
-/// An energy of the balance, J, by its name.
+/// An energy of the balance \[J\], by its name.
 pub(crate) type NamedEnergy = (&'static str, f64);
 
 /// The balance at the end of a run: the input, and each part as a fraction of it.
@@ -86,7 +86,7 @@ pub(crate) fn balance_table(input: NamedEnergy, parts: &[NamedEnergy]) -> Block 
     })
 }
 
-/// An energy as a fraction of the input; a dash where there is no input.
+/// An energy as a fraction of the input; a dash if the input is zero.
 pub(crate) fn fraction(energy: f64, input: f64) -> String {
     if input > 0.0 {
         percent(energy / input)

@@ -1,6 +1,6 @@
-//! What the uncertainty of the inputs makes of the results of a frame, shaken or struck: what every such run shares. In: a
-//! frame of the plan, its damping, the rig's calibration. Out: the sources, inputs with sources moved, the runs to take again.
-//! The run itself is not touched, and no rig is moved.
+//! Effect of the uncertain inputs on the results of a frame under ground motion or impact: the part that all such runs share. In: a frame
+//! of the plan, its damping, the rig's calibration. Out: the sources, inputs with sources perturbed, and the runs to re-integrate. The
+//! run itself does not change, and no rig moves.
 
 use super::run::FrameSteps;
 use crate::physics::reintegration::frame::{Floors, FrameRun};
@@ -18,13 +18,13 @@ use crate::schema::procedures::base_excitation as schema;
 use crate::uncertainty::engine::{CLOSE, Contributions, Evaluate, Shifts, Study, Tick, Unknown};
 use crate::uncertainty::{InstrumentUncertainty, Source};
 
-/// Everything uncertain about a frame.
+/// The uncertain inputs of a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameUncertainty<'run> {
     pub whole: &'run Plan,
-    /// By its place among the plan's specimens.
+    /// Index among the plan's specimens.
     pub specimen: usize,
-    /// None of a specimen that is no frame, of which nothing is asked.
+    /// None for a specimen that is not a frame; no result of it is evaluated.
     pub frame: Option<&'run Frame>,
     pub damping: &'run ShakeDamping,
     pub damping_uncertainty: f64,
@@ -32,9 +32,9 @@ pub(crate) struct FrameUncertainty<'run> {
     pub results: &'run dyn Results,
     pub procedure: ProcedureId,
     pub noise: DeclaredNoise,
-    /// By how much its damping ratio was raised to none.
+    /// The amount by which its damping ratio was raised to zero.
     pub lift: f64,
-    /// Which blow of the procedure it is, from 0: each has errors of its own.
+    /// Index of the impact in the procedure, from 0: each impact has its own errors.
     pub blow: u16,
 }
 
@@ -109,7 +109,7 @@ impl<'run> FrameUncertainty<'run> {
         }
     }
 
-    /// Of another blow of the same procedure, from 0.
+    /// For a later impact of the same procedure, counted from 0.
     pub fn of_blow_number(self, index: usize) -> Self {
         Self {
             blow: u16::try_from(index).unwrap_or(u16::MAX),
@@ -122,8 +122,8 @@ impl<'run> FrameUncertainty<'run> {
         self.frame.map_or(0, Frame::degrees_of_freedom)
     }
 
-    /// Every uncertain input of the frame and of the `formulas` that the procedure reads; `stated` are more, with
-    /// their uncertainties.
+    /// Every uncertain input of the frame and of the `formulas` that the procedure reads; `stated` adds further sources with their
+    /// uncertainties.
     pub fn sources(&self, formulas: &[&Formula], stated: &[(Source, f64)]) -> Vec<Source> {
         let ratios = self.ratios();
         let formulas: Vec<&Formula> = formulas.iter().copied().chain(ratios).collect();
@@ -166,7 +166,7 @@ impl<'run> FrameUncertainty<'run> {
         }
     }
 
-    /// Contributions to the values of a layout, of a run in so many recorded steps.
+    /// Contributions to the values of a layout, for a run of so many recorded steps.
     pub fn contributions<P: Evaluate>(
         &self,
         evaluate: &P,
@@ -187,7 +187,7 @@ impl<'run> FrameUncertainty<'run> {
         study.contributions(tick)
     }
 
-    /// The frame with its storeys as they are moved.
+    /// The frame with its storeys perturbed.
     pub fn moved_frame(&self, shifts: Shifts<'_>) -> Result<Frame, String> {
         let frame = self.frame.ok_or_else(|| out_of_bounds(&Stop::no_frame()))?;
         let mut factors = [1.0; 2];
@@ -220,7 +220,7 @@ impl<'run> FrameUncertainty<'run> {
         }))
     }
 
-    /// The damping as it is moved.
+    /// The damping with its sources perturbed.
     pub fn moved_damping(&self, shifts: Shifts<'_>) -> ShakeDamping {
         let moved = |(mode, ratio): (usize, &Formula)| {
             let source = Source::DampingRatio {
@@ -246,7 +246,7 @@ impl<'run> FrameUncertainty<'run> {
         }
     }
 
-    /// Calls with inputs that read results with the sources moved.
+    /// Calls with inputs that evaluate results with the sources perturbed.
     pub fn with_inputs<T>(
         &self,
         shifts: Shifts<'_>,
@@ -258,7 +258,7 @@ impl<'run> FrameUncertainty<'run> {
         .map_err(|stop| out_of_bounds(&stop))
     }
 
-    /// How the run was integrated.
+    /// The integration settings of the run.
     pub fn run(&self, steps: &FrameSteps) -> FrameRun {
         FrameRun {
             matrices: steps.properties.matrices.clone(),
@@ -273,7 +273,7 @@ impl<'run> FrameUncertainty<'run> {
         }
     }
 
-    /// The way that was recorded.
+    /// The recorded path.
     pub fn path(
         &self,
         steps: &FrameSteps,
@@ -282,7 +282,7 @@ impl<'run> FrameUncertainty<'run> {
         self.passed(steps, readings, Vec::new())
     }
 
-    /// The same way, once it is known how fast its targets were passed (m/s).
+    /// The recorded path with the velocities at its targets \[m/s\].
     pub fn under_way(
         &self,
         steps: &FrameSteps,
@@ -314,13 +314,13 @@ impl<'run> FrameUncertainty<'run> {
     }
 }
 
-/// Whether the floors came to the recorded results; `displacement` is the result with the peaks of the floors.
+/// Whether the re-run reproduces the recorded results of the floors; `displacement` is the result with the peaks of the floors.
 pub(crate) fn leads_there(
     floors: &Floors,
     displacement: ResultKind,
     results: &[NamedResult],
 ) -> bool {
-    // The largest shear is reported without the part of noise: the drifts show whether the path is the recorded one.
+    // The largest shear is reported without the part of noise: the storey drifts show whether the path is the recorded one.
     let lists = [
         (displacement.name, floors.max_displacement.as_slice()),
         (schema::MAX_DRIFT.name, &floors.max_drift),

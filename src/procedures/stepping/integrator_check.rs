@@ -66,7 +66,7 @@ pub fn meets_the_contact(
 }
 
 /// Compares the time step with the longest stable one, as far as both are known before the run: for the initial stiffness of the
-/// procedure, and for the model of a virtual specimen.
+/// procedure, and for the model of a simulated specimen.
 pub fn stable(
     checker: &mut Checker,
     block: usize,

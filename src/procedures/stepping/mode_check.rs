@@ -8,7 +8,7 @@ use crate::language::syntax::ast::{Argument, ExprKind};
 use crate::plan::{Dialect, Impact, Mode, PointTarget, ShakeDamping, Specimen};
 use crate::schema::Kind;
 
-/// The mode a block names, else step and pause.
+/// The mode that a block names, otherwise ramp-and-hold (`step_and_pause`).
 pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
     let Some((entry, written)) = checker.field(block, "mode") else {
         return Some(Mode::StepAndPause);

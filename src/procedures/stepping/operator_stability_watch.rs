@@ -27,13 +27,13 @@ const GROWN: f64 = 0.05;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Judged {
     pub integrator: Integrator,
-    /// `K_I`, N/m
+    /// `K_I` \[N/m\]
     pub operator_stiffness: f64,
-    /// 1/M of one degree of freedom; of a storey the sum of 1/M of the floors it joins, 1/kg.
+    /// 1/M of one degree of freedom; for a storey the sum of 1/M of the floors that it joins \[1/kg\].
     pub mobility: f64,
-    /// s
+    /// \[s\]
     pub time_step: f64,
-    /// Standard deviation of a force, N, and of a displacement, m.
+    /// Standard deviation of a force \[N\] and of a displacement \[m\].
     pub noise: (f64, f64),
     /// Whether it is read in motion: the force then includes dampers.
     pub moving: bool,
@@ -48,16 +48,16 @@ pub(crate) struct Stiffer {
     last: (f64, f64),
     /// The reading before it.
     before: (f64, f64),
-    /// m, the last step's; 0 before the first.
+    /// The last step \[m\]; 0 before the first.
     moved: f64,
-    /// Whether the last step turned.
+    /// Whether the last step reversed.
     turned: bool,
     in_motion: RateSeparatedFit,
     observed: bool,
 }
 
 impl Stiffer {
-    /// `first` is the reading before the first step, m and N.
+    /// `first` is the reading before the first step \[m\], \[N\].
     pub(crate) fn new(judged: Judged, first: (f64, f64)) -> Self {
         Self {
             judged,
@@ -155,7 +155,7 @@ impl Stiffer {
 }
 
 impl Stiffer {
-    /// Secant stiffness of the last step with its standard deviation, N/m; None where the move is too small, or reversed: friction
+    /// Secant stiffness of the last step with its standard deviation \[N/m\]; None if the move is too small, or reversed: friction
     /// reverses with it. In a response that reverses at every step, as an unstable one does, the last reading but one has the same
     /// friction: both were reached in the same direction, if the amplitude has grown enough.
     fn secant(&mut self, reading: (f64, f64)) -> Option<(f64, f64)> {
@@ -362,8 +362,8 @@ mod tests {
         assert_eq!(stiffer.judge((0.004, 3.2), "the specimen"), None, "once");
     }
 
-    /// It turns at every step from the first: 900 N/m and friction of 0.1 N, each place −1.3 times the one before. Friction is in
-    /// no two readings that came the same way; a response that alternates without growing tells nothing.
+    /// The response reverses at every step from the first: 900 N/m and friction of 0.1 N, each position −1.3 times the one before. Two
+    /// readings reached in the same direction have the same friction. A response that alternates without growing gives no result.
     #[test]
     fn a_response_that_turns_at_every_step_is_judged_by_every_other_reading() {
         let of = |integrator: Integrator, growth: f64, stiffness: f64| {

@@ -3,9 +3,9 @@
 /// The number of steps and their times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pace {
-    /// Δt, s
+    /// Δt \[s\]
     pub time_step: f64,
     pub steps: u64,
-    /// s
+    /// \[s\]
     pub pause: f64,
 }

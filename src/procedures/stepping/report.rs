@@ -8,5 +8,5 @@ pub(crate) const UNCERTAINTY: &str = "each input in turn was moved by ± its sta
     An input at its bound was moved to the other side alone. The time step contributes the most that the same path, integrated \
     again in half and a quarter of it, differs by. The contact law and the slowness of the test are not among the inputs";
 
-/// Results of a frame that have a budget where no requirement reads any.
+/// Results of a frame that have a budget even if no requirement reads any.
 pub(crate) const FRAME_BUDGET: &[&str] = &[schema::MAX_DRIFT.name, schema::MAX_BASE_SHEAR.name];

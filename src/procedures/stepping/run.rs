@@ -19,9 +19,9 @@ use crate::units::display::stated;
 /// The steps of a procedure, as many as its duration needs.
 #[derive(Clone, Copy)]
 pub(crate) struct Steps {
-    /// Δt, s
+    /// Δt \[s\]
     pub time_step: f64,
-    /// s
+    /// \[s\]
     pub critical_time_step: f64,
     /// Number of steps.
     pub count: u64,
@@ -156,7 +156,7 @@ fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64
     })
 }
 
-/// The time step, s, `critical` (s) the critical one.
+/// The time step \[s\]; `critical` is the critical one \[s\].
 pub(crate) fn time_step(
     plan: &Stepping,
     critical: f64,

@@ -1,5 +1,5 @@
-//! The state of rig and structure before the first time step. In: the first reading, the frame of the plan. Out: what a solver starts
-//! from.
+//! The state of rig and structure before the first time step. In: the first reading, the frame of the plan. Out: the initial state of a
+//! solver.
 
 use std::fmt::Display;
 
@@ -12,7 +12,7 @@ use crate::units::Dimension;
 
 /// The state when the first step begins.
 pub(crate) struct Start {
-    /// Commanded positions of the actuators, m: X starts there.
+    /// Commanded positions of the actuators \[m\]: X starts there.
     pub commanded: Vec<f64>,
     /// One reading there: it contains R₀.
     pub reading: Reading,
@@ -20,7 +20,7 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// The initial state of a frame, with these loads on its floors (N).
+    /// The initial state of a frame, with these loads on its floors \[N\].
     pub(crate) fn input<'a>(
         &'a self,
         frame: &'a FrameSteps,
@@ -44,7 +44,7 @@ impl Start {
     }
 }
 
-/// The input error of a structure that cannot be integrated with `time_step` (s).
+/// The input error of a structure that cannot be integrated with `time_step` \[s\].
 pub(crate) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
     let wanted = format!("one that can be stepped: {error}").into();
     Stop::BadInput {

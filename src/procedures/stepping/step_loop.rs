@@ -21,7 +21,7 @@ use crate::run::StepReport;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 
-/// The energy of a test at the end of a step, J.
+/// The energy of a test at the end of a step \[J\].
 pub(crate) struct Balance {
     /// Energy error.
     pub error: f64,
@@ -34,16 +34,16 @@ pub(crate) trait Stepped {
     /// The end of the last step.
     fn axes(&self) -> AxesState<'_>;
 
-    /// Target of each axis at the end of the next step, m. Within one step it is always the same.
+    /// Target of each axis at the end of the next step \[m\]. Within one step it is always the same.
     fn predict(&mut self) -> Vec<f64>;
 
-    /// Predicted velocity of each axis at its target, m/s. True if a contact force contributes to it.
+    /// Predicted velocity of each axis at its target \[m/s\]. True if a contact force contributes to it.
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool;
 
-    /// Effective forces of the recursion at the start, N.
+    /// Effective forces of the recursion at the start \[N\].
     fn taken_at_start(&self, start: &Start) -> Vec<f64>;
 
-    /// Effective forces of the recursion at the targets of the last step, N.
+    /// Effective forces of the recursion at the targets of the last step \[N\].
     fn taken(&self) -> Vec<f64>;
 
     /// Ends the step with a reading.

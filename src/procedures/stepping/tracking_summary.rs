@@ -18,7 +18,7 @@ pub(crate) struct Followed {
 }
 
 impl Followed {
-    /// Adds a step, `energy` (J) that of the test so far. Gives all axes together, and their energy error over that energy.
+    /// Adds a step, `energy` \[J\] that of the test so far. Gives all axes together, and their energy error over that energy.
     pub(crate) fn judge(
         &mut self,
         axes: &[Tracking],

@@ -9,7 +9,7 @@ pub(crate) struct Triggers {
 
 struct Armed {
     trigger: InspectTrigger,
-    /// Largest |R| since the last time it went off, N.
+    /// Largest |R| since its last trigger \[N\].
     largest_force: f64,
     gone_off: bool,
 }
@@ -26,7 +26,7 @@ impl Triggers {
         }
     }
 
-    /// The first reason for an inspection after `step` at virtual time `time` (s) with restoring force `force` (N).
+    /// The first reason for an inspection after `step` at the simulated time `time` \[s\] with restoring force `force` \[N\].
     pub(crate) fn after(&mut self, step: u64, time: f64, force: f64) -> Option<String> {
         let mut reason = None;
         for armed in &mut self.armed {

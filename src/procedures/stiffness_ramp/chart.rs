@@ -1,5 +1,4 @@
-//! The figures of a stiffness ramp: which there are and what each shows. In: a history. Out: [`Chart`]s in SI with their
-//! captions.
+//! The list of figures of a stiffness ramp, and their content. In: a history. Out: [`Chart`]s in SI with their captions.
 
 use super::{figures, relaxation_figures};
 use crate::plan::FigureKind;
@@ -9,7 +8,7 @@ use crate::report::figures::chart::Chart;
 /// In the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::ForceDisplacement, FigureKind::Relaxation];
 
-/// A figure and its caption; None where nothing was recorded for it, and of what it does not draw.
+/// A figure and its caption; None if nothing was recorded for it, or if a ramp does not have this figure.
 pub(crate) fn chart(
     name: &str,
     history: &RampHistory,

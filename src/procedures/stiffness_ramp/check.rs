@@ -80,7 +80,7 @@ fn fit(checker: &mut Checker, block: usize) -> Option<RampFit> {
     }
 }
 
-/// How the pauses are watched; None where a fault was reported.
+/// The readings during the pauses; None if an error was reported.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"

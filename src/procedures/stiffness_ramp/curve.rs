@@ -1,5 +1,5 @@
-//! The multilinear curve that a plan asks for: fitted, and what a person should know of it. In: measured points. Out: the fit,
-//! results, remarks. It moves nothing.
+//! The multilinear curve that a plan requests: the fit and the observations on it. In: measured points. Out: the fit, results,
+//! observations. It moves nothing.
 
 use crate::physics::identification::StatedVariance;
 use crate::physics::identification::multilinear_fit::{
@@ -12,7 +12,7 @@ use crate::schema::{ResultKind, curves};
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// The curve through (m, N); `what` names the points in a remark.
+/// The curve through points (m, N); `what` names the points in an observation.
 pub(crate) fn fitted(
     points: &[(f64, f64)],
     count: BreakCount,
@@ -25,13 +25,13 @@ pub(crate) fn fitted(
     (fit, remarks)
 }
 
-/// What a straight line misses of the fit before a remark is made of it, 1 − R².
+/// An observation is made if the misfit 1 − R² of a straight line exceeds this.
 const MISSED: f64 = 1e-3;
 
-/// The change of stiffness past a break that a straight line hides, over the first one, before a remark is made of it.
+/// An observation is made if a straight line hides a change of stiffness at a breakpoint above this fraction of the first stiffness.
 const HIDDEN: f64 = 0.1;
 
-/// Says of points (m, N) that a straight line does not fit them, for they bend: by BIC, plainly and by much.
+/// An observation that a straight line does not fit the points (m, N) because they bend: strong by BIC, and large in size.
 pub(crate) fn bends(points: &[(f64, f64)], line: &LineFit) -> Option<String> {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
     let fit = fit_multilinear(&x, &r, BreakCount::ByCriterion { most: 1 })
@@ -84,7 +84,7 @@ fn remarks(
     told
 }
 
-/// Of a number and its standard error.
+/// A number or its standard error.
 type Part = fn(&(f64, f64)) -> f64;
 
 /// The lists of a curve, in the order of the reference; empty without one.
@@ -114,7 +114,7 @@ pub(crate) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
     ]
 }
 
-/// What a curve says of yielding, in the order of the reference: force, place, last stiffness, its ratio to the first.
+/// The yield results of a curve, in the order of the reference: force, position, last stiffness, its ratio to the first.
 pub(crate) fn yielding(fit: Option<&MultilinearFit>) -> [NamedResult; 4] {
     let told = |pair: (f64, f64)| (pair.0, Some(pair.1));
     let knee = fit.and_then(MultilinearFit::yield_point);

@@ -1,11 +1,11 @@
-//! A multilinear curve, stretch by stretch, with what a plan would write for a specimen of it. In: the fit. Out: blocks.
+//! A multilinear curve, segment by segment, with the plan text of a specimen with this curve. In: the fit. Out: blocks.
 
 use crate::record::MultilinearFit;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::units::{Dimension, display};
 
-/// `reach` (m) is where the readings end, along the way of the curve.
+/// `reach` \[m\] is the position of the last reading along the curve.
 pub(crate) fn table(fit: &MultilinearFit, reach: f64, body: &mut Vec<Block>) {
     let with = |(value, error): (f64, f64), dimension| {
         Text::from(number::with_uncertainty(value, Some(error), dimension))

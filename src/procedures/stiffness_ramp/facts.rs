@@ -1,4 +1,4 @@
-//! What the drivers of check and report must know of a stiffness ramp without carrying it out. In: it. Out: facts.
+//! The facts about a stiffness ramp that check and report need without running it. In: the ramp. Out: facts.
 
 use super::{chart, report};
 use crate::physics::self_test::Part;
@@ -21,7 +21,7 @@ pub(crate) fn recorded(history: &RampHistory) -> Recorded {
     }
 }
 
-/// The fit that a ramp goes through.
+/// The fit that a ramp uses.
 pub(crate) const fn self_tested(ramp: &StiffnessRamp) -> Part {
     match ramp.fit {
         RampFit::Linear => Part::LineFit,

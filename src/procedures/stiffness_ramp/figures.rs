@@ -9,7 +9,7 @@ use crate::report::figures::points::Points;
 use crate::report::number;
 use crate::units::Dimension;
 
-/// Measured points, the way back apart, and the line K·X + intercept.
+/// Measured points, with the unloading branch separate, and the line K·X + intercept.
 pub(crate) fn force_displacement(history: &RampHistory) -> Chart {
     let points = |wanted: bool| -> Points {
         history
@@ -84,7 +84,7 @@ pub(crate) fn force_displacement(history: &RampHistory) -> Chart {
     }
 }
 
-/// The stretches, from end to end of the readings, through the breaks.
+/// The segments of the curve, between the ends of the readings and through the breakpoints.
 fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
     let [low, high] = ends(
         history
@@ -125,11 +125,11 @@ const RETURN: Style = Style {
     marker: Some(Marker::Ring(4.5)),
     ..Style::line(palette::GREEN, 1.2, DASHED)
 };
-/// Readings drawn of a sweep, at most: a cloud says no more with more.
+/// Largest number of readings drawn for a sweep: more points show nothing more.
 const CLOUD_POINTS: usize = 3000;
 
-/// Steady readings in a light tone, what the fit is of with its standard error at each velocity, and `F_d = c·v + F_c`.
-/// Readings of both ways lie on one side, each with the sign of its motion.
+/// Steady readings in a light tone, the fitted means with their standard error at each velocity, and `F_d = c·v + F_c`. The readings of
+/// both directions are drawn on one side, each with the sign of its motion.
 pub(crate) fn damping_fit(history: &SweepHistory) -> Chart {
     let steady: Vec<&SweepStep> = history.steps.iter().filter(|step| step.steady).collect();
     let every = steady.len().div_ceil(CLOUD_POINTS).max(1);
@@ -188,22 +188,22 @@ pub(crate) fn damping_fit(history: &SweepHistory) -> Chart {
     }
 }
 
-/// Size of the velocity (m/s), and the force with the sign of the motion (N).
+/// Absolute value of the velocity \[m/s\], and the force with the sign of the motion \[N\].
 fn along(velocity: f64, force: f64) -> (f64, f64) {
     (velocity.abs(), force * velocity.signum())
 }
 
-/// What the pairs of one velocity say.
+/// The mean of the pairs of one velocity.
 struct Mean {
-    /// m/s
+    /// \[m/s\]
     velocity: f64,
-    /// N
+    /// \[N\]
     force: f64,
-    /// Of the mean, N; 0 of one pair.
+    /// Standard error of the mean \[N\]; 0 for one pair.
     standard_error: f64,
 }
 
-/// One mean a velocity, in order.
+/// One mean per velocity, in order.
 fn means(pairs: &[(f64, f64)]) -> Vec<Mean> {
     let mut sorted: Vec<(f64, f64)> = pairs
         .iter()
@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn the_bar_of_a_velocity_is_the_standard_error_of_its_mean() {
-        // 1, 2, 3: standard deviation 1, of the mean 1/√3. The way back has its own sign.
+        // 1, 2, 3: standard deviation 1, of the mean 1/√3. The return pass has its own sign.
         let means = means(&[(0.1, 1.0), (0.02, 5.0), (-0.1, -2.0), (0.1, 3.0)]);
         assert_eq!(
             (means.len(), means[0].force, means[0].standard_error),

@@ -1,5 +1,5 @@
-//! Holds that are watched: readings while a force relaxes, and what they tell. In: a pause and how many readings. Out: the hold;
-//! of all holds the fit, its results and what a person should know. It fits nothing itself.
+//! Dwells with readings while a force relaxes, and their evaluation. In: a pause and the number of readings. Out: the dwell; for all
+//! dwells the fit, its results and observations. It fits nothing itself.
 
 use crate::physics::identification::StatedVariance;
 use crate::physics::relaxation::hold::{Hold, Unrelaxed};
@@ -16,8 +16,8 @@ use crate::schema::procedures::stiffness_ramp as schema;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// Time (s since the first reading) and force (N) of each reading of a pause: `settled`, then the others, closer at first, where
-/// more is lost; and when the last one came, s of rig time.
+/// Time since the first reading \[s\] and force \[N\] of each reading of a pause: `settled`, then the others, closer together at first,
+/// when more is lost. Also the laboratory time of the last reading \[s\].
 pub(crate) fn watched(
     settled: &Reading,
     pause: f64,
@@ -38,8 +38,8 @@ pub(crate) fn watched(
     Ok((taken, last))
 }
 
-/// s that a rig waited, moved and settled between a reading before a move and one after it, which is seen to have gone from one instant to
-/// another. Where it was not seen, as in the records of older versions, all of it counts as moved.
+/// Seconds during which a rig waited, moved and settled between a reading before a move and one after it; `moved` is the observed
+/// interval of motion. If it was not observed, as in the records of older versions, all the time counts as motion.
 pub(crate) fn parts(before: f64, moved: Option<[f64; 2]>, after: f64) -> [f64; 3] {
     let [from, to] = moved.unwrap_or([before, after]);
     let from = from.max(before).min(after);
@@ -47,7 +47,7 @@ pub(crate) fn parts(before: f64, moved: Option<[f64; 2]>, after: f64) -> [f64; 3
     [from - before, to - from, after - to].map(|seconds| seconds.max(0.0))
 }
 
-/// What the holds of a ramp tell.
+/// The evaluation of the dwells of a ramp.
 #[derive(Default)]
 pub(crate) struct Told {
     pub relaxation: Option<RelaxationFit>,
@@ -56,8 +56,8 @@ pub(crate) struct Told {
     pub remarks: Vec<String>,
 }
 
-/// `start`: displacement (m) and force (N) before the first move; `noise`: what the rig declares of its cell, N; `stated`: of a single
-/// reading.
+/// `start`: displacement \[m\] and force \[N\] before the first move; `noise`: the declared noise of the cell \[N\]; `stated`: the
+/// variance of a single reading.
 pub(crate) fn told(
     holds: &[Hold],
     start: (f64, f64),
@@ -113,7 +113,7 @@ const fn unrelaxed(reason: Unrelaxed) -> &'static str {
     }
 }
 
-/// Readings about a law farther than this many times the cell's noise are not told by it.
+/// If the readings scatter about a law by more than this many times the cell's noise, the law does not describe them.
 const FAR: f64 = 2.0;
 /// Differences of BIC below this are not strong (Kass & Raftery, *Bayes factors*, J. Amer. Stat. Assoc. 90 (1995) 773–795).
 const STRONG: f64 = 6.0;
@@ -222,7 +222,7 @@ fn results(
     ]
 }
 
-/// What only a law of the reached force has.
+/// The results that only a law of the instantaneous force has.
 fn of_the_law(fit: Option<&SuperpositionFit>) -> [NamedResult; 4] {
     let of = |kind: ResultKind, value: Option<(f64, f64)>| kind.found_with(value.map(told_with));
     let best = fit.map(SuperpositionFit::best);

@@ -1,5 +1,5 @@
-//! What is read of a `stiffness ramp`, against what its steps can bear. In: procedures, and every result that some text reads. Out: an
-//! error where the ramp never gives it (E655), a warning where few readings tell it (W722). It looks at no reading.
+//! Compares the results read from a `stiffness ramp` with its steps. In: procedures, and every result that a formula or text reads. Out:
+//! an error if the ramp never gives the result (E655), a warning if it has too few readings (W722). It uses no reading.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ const FITTED: [&str; 6] = [
     schema::HARDENING.name,
 ];
 
-/// Those that one straight line does not have.
+/// The results that one straight line does not have.
 const OF_A_KNEE: [&str; 4] = [
     schema::YIELD_FORCE.name,
     schema::YIELD_DISPLACEMENT.name,
@@ -28,7 +28,7 @@ const OF_A_KNEE: [&str; 4] = [
     schema::HARDENING.name,
 ];
 
-/// Said once of each ramp; asked for only where no error stands.
+/// Reported once for each ramp; called only if there is no error.
 pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     let (mut never, mut few) = (BTreeSet::new(), BTreeSet::new());
     for (reference, span) in checker.read.clone() {
@@ -70,7 +70,7 @@ pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     }
 }
 
-/// Why a ramp never has a result, and the way out; None where it may.
+/// Why a ramp never has a result, and the remedy; None if it may have it.
 fn lacks(ramp: &StiffnessRamp, result: &str) -> Option<(String, &'static str)> {
     let steps = ramp.displacements.len();
     match result {
@@ -90,7 +90,8 @@ fn lacks(ramp: &StiffnessRamp, result: &str) -> Option<(String, &'static str)> {
     }
 }
 
-/// As `mechanics` fits: a line three readings, not all of one place, a knee six steps, a curve three a stretch and one more.
+/// The minimum of `mechanics`: a line needs three readings, not all at one position. A yield point needs six steps, a curve three per
+/// segment and one more.
 fn fitted_to_too_few(ramp: &StiffnessRamp) -> Option<(String, &'static str)> {
     let steps = ramp.displacements.len();
     let (points, wanted) = match ramp.fit {

@@ -1,5 +1,5 @@
-//! Charts of a relaxation: what each hold had still to lose, or has lost by one law and by another, against the time it was held. In: the
-//! holds and their fit. Out: a [`Chart`] in SI.
+//! Charts of a relaxation: the remaining force of each dwell, or the force lost by one law and by the other, against the time of the
+//! dwell. In: the dwells and their fit. Out: a [`Chart`] in SI.
 
 use crate::physics::relaxation::law::RelaxationLaw;
 use crate::physics::relaxation::time_constant::RelaxationFit;
@@ -10,13 +10,13 @@ use crate::report::figures::chart::{
 use crate::report::number;
 use crate::units::Dimension;
 
-/// Holds drawn, at most: the last, which loses most, and others evenly before it.
+/// Largest number of dwells drawn: the last, which loses most, and others evenly spaced before it.
 const DRAWN: usize = 4;
 const COLOURS: [Colour; DRAWN] = [palette::SKY, palette::GREEN, palette::PURPLE, palette::BLUE];
 /// Points of a curve.
 const POINTS: u32 = 120;
 
-/// The last hold and others evenly before it.
+/// The last dwell and others evenly spaced before it.
 fn drawn_of(count: usize) -> Vec<usize> {
     let drawn = count.min(DRAWN);
     (1..=drawn)
@@ -24,12 +24,12 @@ fn drawn_of(count: usize) -> Vec<usize> {
         .collect()
 }
 
-/// What some holds have lost since their first reading, and what the laws say: the better one drawn through, the other dashed.
+/// The force that some dwells have lost since their first reading, and the laws: the better one as a full line, the other dashed.
 pub(crate) fn lost(holds: &[Hold], fit: &SuperpositionFit) -> Chart {
     let mut series = Vec::new();
     let best = fit.best();
     let mut chosen = drawn_of(best.reached.len());
-    // The fastest loses most: the curves are told apart there.
+    // The fastest dwell loses most: there the curves differ most.
     if !chosen.contains(&best.worst) {
         chosen[0] = best.worst;
     }
@@ -87,7 +87,7 @@ fn law_words(fit: &LawFit) -> String {
     }
 }
 
-/// R − R∞ of some holds and the exponential of each.
+/// R − R∞ of some dwells and the exponential of each.
 pub(crate) fn left(history: &RampHistory, fit: &RelaxationFit) -> Chart {
     let chosen = drawn_of(history.holds.len());
     let tau = number::with_uncertainty(

@@ -1,5 +1,4 @@
-//! A stiffness ramp as a report gives it: its curve, what its pauses lost, the line through its readings. In: a history. Out:
-//! blocks.
+//! The report of a stiffness ramp: its curve, the relaxation in its pauses, the line through its readings. In: a history. Out: blocks.
 
 use super::curve_report;
 use crate::plan::{RelaxationLaw, RelaxationModel};
@@ -9,7 +8,7 @@ use crate::report::number;
 use crate::report::sections::results::line_fit::{Coefficient, fitted};
 use crate::units::Dimension;
 
-/// How the contributions to its uncertainty were found, as to that of every fitted line.
+/// How the contributions to its uncertainty were found; also for every other fitted line.
 pub(crate) const UNCERTAINTY: &str = "what its own readings scatter is the covariance of the fit, a calibration goes with the powers of force and displacement in the \
     result, and rounding is told beside the scatter where it leaves more open";
 
@@ -45,7 +44,7 @@ pub(crate) fn report(history: &RampHistory, body: &mut Vec<Block>) {
     }
 }
 
-/// The relaxation of the holds: its model, how far the readings lie from it, and what the pauses left.
+/// The relaxation in the dwells: its model, the scatter of the readings about it, and the remaining relaxation.
 fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
     let with = |(value, error): (f64, f64), dimension| {
         number::with_uncertainty(value, Some(error), dimension)
@@ -73,7 +72,7 @@ fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
     ))
 }
 
-/// The law by which the reached force relaxes, why that one, and how fast the pauses were still losing.
+/// The law of relaxation of the instantaneous force, the reason for it, and the rate of relaxation at the end of the pauses.
 fn relaxed_by_a_law(fit: &SuperpositionFit, holds: &[Hold]) -> Block {
     let with = |(value, error): (f64, f64), dimension| {
         number::with_uncertainty(value, Some(error), dimension)

@@ -1,6 +1,6 @@
-//! `stiffness ramp` (Melo et al. 2006, sec. 5 step 1 and sec. 6 (a)): prescribed displacements, a pause at each, then
-//! the mean of some readings. In: the displacements. Out: K by least squares over the outward steps, the secant of the
-//! first increment, the tangent at every one, relaxation and, with a way back, the energy of the loop.
+//! `stiffness ramp` (Melo et al. 2006, sec. 5 step 1 and sec. 6 (a)): prescribed displacements, a pause at each, then the mean of some
+//! readings. In: the displacements. Out: K by least squares over the outward steps, the secant of the first increment, the tangent at
+//! every one, relaxation and, with an unloading branch, the energy of the loop.
 
 use super::points::{Point, point, secant};
 use super::uncertainty::{DIRECT, Readings};
@@ -102,7 +102,7 @@ pub(crate) fn perform(
     }
 }
 
-/// What was fitted, one at most, and what to know of it.
+/// The fits, one at most, and the observations on them.
 #[derive(Default)]
 struct Fits {
     line: Option<LineFit>,
@@ -117,9 +117,9 @@ struct Ramp {
     starts: Vec<Point>,
     /// The same as rows of the table.
     before: Vec<RampStep>,
-    /// Pauses of the first repeat, where they are watched.
+    /// Dwells of the first repeat, if they are recorded.
     holds: Vec<Hold>,
-    /// Rig time of the last reading before a move, s.
+    /// Laboratory time of the last reading before a move \[s\].
     last_reading: f64,
 }
 
@@ -257,8 +257,8 @@ impl Ramp {
         Ok((displacement, restoring_force))
     }
 
-    /// One line R = intercept + K·X over the outward steps of all repeats. Two or more through those of the first repeat: what
-    /// comes after yield no longer bends as it did.
+    /// One line R = intercept + K·X over the outward steps of all repeats. Two or more lines through those of the first repeat only:
+    /// after yielding the curve no longer has the same bend.
     fn fits(&self, plan: &StiffnessRamp, stated: StatedVariance) -> Fits {
         let first = || self.steps.iter().take(plan.displacements.len()).map(point);
         match plan.fit {
@@ -311,7 +311,7 @@ impl Ramp {
     }
 }
 
-/// What was read before the first increment of a repeat, after so many steps.
+/// The reading before the first increment of a repeat, after so many steps.
 const fn before_moving(
     step: u64,
     command: f64,
@@ -331,7 +331,7 @@ const fn before_moving(
     }
 }
 
-/// In the order of the reference; `direct` is what was read beside the fits.
+/// In the order of the reference; `direct` are the results that are read without a fit.
 fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult> {
     let Fits {
         line: fit,

@@ -18,7 +18,7 @@ use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
-/// What is read directly.
+/// The results that are read directly.
 pub(crate) const DIRECT: [&str; 6] = [
     schema::SECANT_STIFFNESS.name,
     schema::MAX_FORCE.name,
@@ -28,7 +28,7 @@ pub(crate) const DIRECT: [&str; 6] = [
     schema::TANGENT_STIFFNESS.name,
 ];
 
-/// A ramp as it was read.
+/// The readings of a ramp.
 #[derive(Clone)]
 pub(crate) struct Readings {
     /// Before the first increment of each repeat.
@@ -37,7 +37,7 @@ pub(crate) struct Readings {
 }
 
 impl Readings {
-    /// In the order of [`DIRECT`]; None of what there is not. `noise` is that of one reading of the cell, N.
+    /// In the order of [`DIRECT`]; None for a result that does not exist. `noise` is that of one reading of the cell \[N\].
     pub(crate) fn direct(&self, plan: &StiffnessRamp, noise: f64) -> [Option<f64>; DIRECT.len()] {
         let Self { starts, steps } = self;
         let targets = plan.displacements.len();
@@ -88,7 +88,7 @@ impl Readings {
         })
     }
 
-    /// By how much the points of the loops leave the mean of their energies open [J]: they are alike, and so are their corners.
+    /// The undetermined part of the mean energy of the loops \[J\]: the loops are alike, and so are their corners.
     fn left_open(&self, plan: &StiffnessRamp, errors: ReadingErrors) -> f64 {
         let open = |points: Vec<Point>| {
             let ends = points.first().zip(points.get(plan.displacements.len()));
@@ -105,7 +105,7 @@ impl Readings {
         }
     }
 
-    /// As perturbed instruments would have read them, with means of so many samples.
+    /// The readings of perturbed instruments, with means of so many samples.
     fn perturbed(&self, by: &Perturbation, samples: u32) -> Self {
         let mut other = self.clone();
         for (repeat, start) in (0..).zip(&mut other.starts) {
@@ -126,7 +126,7 @@ impl Readings {
 struct RecordedRamp<'a> {
     plan: &'a StiffnessRamp,
     readings: &'a Readings,
-    /// Of the cell in this run \[N\].
+    /// Noise of the cell in this run \[N\].
     noise: f64,
 }
 
@@ -171,7 +171,7 @@ pub(crate) fn propagate(
         steps: readings.steps.len() as u64,
         reported: None,
     };
-    // Inputs have no bounds here, and nobody waits.
+    // Inputs have no bounds here, and no one waits for progress.
     if let Ok(mut contributions) = study.contributions::<Infallible>(&mut |_, _| Ok(())) {
         let of_loops = DIRECT
             .iter()
@@ -214,7 +214,8 @@ mod tests {
         run_unwatched(&plan)
     }
 
-    /// F goes with the cell, X with the transducer, a slope with their ratio, a loop with their product; a zero shifts forces alone.
+    /// F is proportional to the factor of the cell, X to that of the transducer, a slope to their ratio, a loop to their product. A zero
+    /// offset shifts forces only.
     #[test]
     fn a_calibration_reaches_what_is_read_by_its_powers() {
         let calibration = Calibration {
@@ -268,7 +269,7 @@ mod tests {
         }
     }
 
-    /// However few the increments, U holds the energy of the loop; an elastic one leaves nothing open.
+    /// However few the increments, U contains the energy of the loop; an elastic loop leaves nothing undetermined.
     #[test]
     fn what_the_points_of_a_loop_leave_open_is_in_its_uncertainty() {
         let energy = |behaviour: Behaviour, points: u32| {
@@ -342,11 +343,11 @@ mod tests {
                 "{name}: {u}, by hand {by_hand}"
             );
         }
-        // Nothing was rounded of the displacements, and nothing calibrated.
+        // The displacements have no rounding and no calibration.
         assert_eq!(number(&record, 0, "max_displacement").1, None);
     }
 
-    /// Sixty readings of a force that stays: the largest of them is 2.3σ too large, and of sixty runs U would hold two.
+    /// Sixty readings of a constant force: the largest of them is 2.3σ too large, and U would contain the force in two of sixty runs.
     #[test]
     fn the_largest_of_many_noisy_readings_is_that_of_the_force() {
         let (noise, mut sum, mut held) = (4.0, 0.0, 0);
@@ -383,7 +384,8 @@ mod tests {
         assert!(held >= 53, "{held} of 60");
     }
 
-    /// A line through a yielding ramp is the stiffness of nothing, and says so; through a straight one, and one that noise bends, not.
+    /// A line through a yielding ramp has no meaning as a stiffness, and an observation states this. A straight ramp, also with noise,
+    /// has none.
     #[test]
     fn a_line_through_a_bend_is_remarked_on() {
         let says = |behaviour, noise| {

@@ -43,7 +43,7 @@ pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
 }
 
 impl Checker<'_> {
-    /// `stiffness`, else on a virtual rig the initial one of the `specimen` block. On a real rig it is required; its absence is an error
+    /// `stiffness`, or on a simulated rig the initial one of the `specimen` block. On a real rig it is required; its absence is an error
     /// already.
     pub fn stiffness_or_specimens(
         &mut self,

@@ -21,7 +21,7 @@ use crate::units::display::readable;
 
 /// Targets of the unloading path, at most: a specimen with the expected stiffness needs three.
 pub(crate) const MOST_TARGETS: u64 = 50;
-/// Fraction of the force at the start that counts as zero where nothing else bounds it.
+/// Fraction of the force at the start that counts as zero if no other bound applies.
 const SMALL: f64 = 1e-3;
 /// Rounding of a position from adding up storey drifts, in units of its last digit.
 const ROUNDING: f64 = 8.0;
@@ -177,9 +177,9 @@ fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
 
 /// The fields of a block of either kind.
 struct Request<'a> {
-    /// Largest |R| that counts as zero, N.
+    /// Largest |R| that counts as zero \[N\].
     within: Option<&'a Formula>,
-    /// m/s
+    /// \[m/s\]
     speed: Option<&'a Formula>,
 }
 

@@ -1,10 +1,10 @@
-//! What the calibration of the rig and the errors of its readings make of where a specimen rests, and of what it still carries
-//! there. In: where it came to rest, the way there, how its forces fall. Out: the same with what each source contributes, in
-//! closed form. It moves no rig, and takes no run again.
+//! Effect of the rig's calibration and of the reading errors on the unloaded position of a specimen, and on the force that remains there.
+//! In: the position of rest, the path to it, the unloading stiffness. Out: the same with the contribution of each source, in closed form.
+//! It moves no rig and re-integrates no run.
 //!
-//! A specimen carries no load where R + K(x₀ − x) = 0, K the stiffness that it showed on the way: forces that are read wrong by
-//! f are off by −K⁻¹f in that place. With whatever stiffness it was sent there, it rests at the same place: to first order
-//! that is no source. What left the specimen where it is, a blow say, is not measured by where it rests, and no source of it.
+//! A specimen is unloaded where R + K(x₀ − x) = 0, with K the stiffness measured on the path. Force errors f shift this position by
+//! −K⁻¹f. The stiffness that was assumed for the moves does not change the position: to first order it is not a source. The event that
+//! left the specimen there, for example an impact, is not measured by the position and is not a source either.
 
 use crate::physics::integrator::tangent::NOISE_MULTIPLE;
 use crate::physics::structure::{Loaded, Unloading};
@@ -16,12 +16,12 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
-/// Noise of the cell in a reading that is not to be mistaken for load, standard deviations.
+/// A reading up to this many standard deviations of the cell's noise is not a load.
 pub(crate) const NOISE: f64 = 3.0;
-/// A storey shows a stiffness where its drift changes by more than this share of the largest change on the way: less is rounding.
+/// A storey shows a stiffness if its storey drift changes by more than this fraction of the largest change on the path; less is rounding.
 const TOLD: f64 = 1e-6;
 
-/// Everything uncertain about a place of rest.
+/// The uncertain inputs of a position of rest.
 #[derive(Clone, Copy)]
 pub(crate) struct RestUncertainty<'run> {
     whole: &'run Plan,
@@ -30,7 +30,7 @@ pub(crate) struct RestUncertainty<'run> {
     blow: u16,
 }
 
-/// Errors of one reading of an axis: standard deviations, N and m.
+/// Errors of one reading of an axis: standard deviations \[N\] and \[m\].
 type Errors = Vec<(f64, f64)>;
 
 impl<'run> RestUncertainty<'run> {
@@ -43,7 +43,7 @@ impl<'run> RestUncertainty<'run> {
         }
     }
 
-    /// After another blow of the same procedure, from 0.
+    /// For a later impact of the same procedure, counted from 0.
     pub fn of_blow(self, index: usize) -> Self {
         Self {
             blow: u16::try_from(index).unwrap_or(u16::MAX),
@@ -51,7 +51,7 @@ impl<'run> RestUncertainty<'run> {
         }
     }
 
-    /// Of a specimen that was unloaded by `steps`, whose forces were expected to fall as `unloading` says.
+    /// For a specimen that was unloaded by `steps`, with the unloading stiffness expected from `unloading`.
     pub fn unloaded(&self, rest: &mut Rest, unloading: &Unloading, steps: &[UnloadStep]) {
         let errors = self.errors(rest);
         let unloading = shown(unloading, steps, &errors);
@@ -96,7 +96,7 @@ impl<'run> RestUncertainty<'run> {
         }
     }
 
-    /// Of a specimen that was brought to a place, whatever it carries there.
+    /// For a specimen that was moved to a position, whatever force it carries there.
     pub fn brought(&self, rest: &mut Rest) {
         let errors = self.errors(rest);
         self.read(rest, &errors);
@@ -116,7 +116,7 @@ impl<'run> RestUncertainty<'run> {
         let RestUncertainty {
             procedure, blow, ..
         } = *self;
-        // Three of each of at most MOST_STOREYS floors.
+        // Three readings of each of at most MOST_STOREYS floors.
         #[expect(clippy::cast_possible_truncation, reason = "at most 3 · 64")]
         let reading = reading as u16;
         Source::RestReading {
@@ -126,7 +126,7 @@ impl<'run> RestUncertainty<'run> {
         }
     }
 
-    /// What is read there is as uncertain as any reading.
+    /// The reading there is as uncertain as any other.
     fn read(&self, rest: &mut Rest, errors: &Errors) {
         let floors = errors.len();
         let (mut of_displacement, mut of_force) = (Vec::new(), Vec::new());
@@ -153,14 +153,14 @@ impl<'run> RestUncertainty<'run> {
     }
 }
 
-/// Forces (N) that a source makes of the floors move the place where none is left.
+/// The effect of force errors \[N\] of a source at the floors on the position of zero force.
 fn moves(rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) {
     for (parts, amount) in rest.of_displacement.iter_mut().zip(unloading.moves(force)) {
         parts.extend((amount != 0.0).then(|| Contribution::new(source, amount)));
     }
 }
 
-/// A force (N) on one floor alone.
+/// A force \[N\] on one floor alone.
 fn alone(axis: usize, force: f64, floors: usize) -> Vec<f64> {
     let mut all = vec![0.0; floors];
     all[axis] = force;
@@ -175,7 +175,7 @@ fn some<const COUNT: usize>(parts: [(Source, f64); COUNT]) -> Vec<Contribution> 
         .collect()
 }
 
-/// How the forces fell: of each storey by the last move that tells it, as eq. (6) asks for it; else as it was expected.
+/// The measured unloading stiffness: for each storey by eq. (6) over the last move that shows it, otherwise the expected one.
 fn shown(expected: &Unloading, steps: &[UnloadStep], errors: &Errors) -> Unloading {
     let mut unloading = expected.clone();
     let moves = || {
@@ -192,7 +192,7 @@ fn shown(expected: &Unloading, steps: &[UnloadStep], errors: &Errors) -> Unloadi
         ways.fold(0.0, f64::max)
     };
     let farthest = moves().map(change).fold(0.0, f64::max);
-    // The noise of a shear is that of all cells above it, of a drift that of two places.
+    // The noise of a shear is that of all cells above it; the noise of a storey drift is that of two positions.
     let of_storey = |storey: usize| {
         let force = errors[storey..]
             .iter()

@@ -1,16 +1,17 @@
-//! Whether a record keeps Masing's rule: a curve that begins at a load reversal is the first loading curve, twice as large, until it
+//! Whether a record keeps Masing's rule: a curve that begins at a load reversal is the initial loading curve, twice as large, until it
 //! closes its loop (G. Masing, 1926). In: the branches and pieces of a record. Out: whether they agree with each other. A specimen that
-//! pinches, degrades or follows Bouc's and Wen's equation does not keep it, nor may one that was loaded before the record.
+//! pinches, degrades or follows the Bouc–Wen equation does not keep the rule. A specimen that was loaded before the record may not
+//! either.
 
 use super::Reading;
 use super::pieces::{Branch, NOISE_BOUND, Piece};
 
-/// Displacement (m) and force (N) from where a curve begins, both counted in the direction in which it goes.
+/// Displacement \[m\] and force \[N\] from the begin of a curve, both positive in its direction.
 type Curve = Vec<[f64; 2]>;
 
-/// Compares every curve with the longest one before it. The first loading counts twice; a record that begins under load begins at a
-/// reversal. Under way the places of reversals lie between two readings: there a specimen keeps to its record where it is linear alone.
-/// `noise` is the standard deviation of one force, N.
+/// Compares every curve with the longest one before it. The initial loading counts twice; a record that begins under load begins at a
+/// reversal. In continuous motion the reversals lie between two readings: there only linear parts of a specimen keep to its record.
+/// `noise` is the standard deviation of one force \[N\].
 pub(super) fn is_kept(
     readings: &[Reading],
     branches: &[Branch],
@@ -31,7 +32,7 @@ pub(super) fn is_kept(
         .into_iter()
         .map(|[x, r]| [times * x, times * r])
         .collect();
-    // Past its largest excursion so far a specimen goes on with its first loading.
+    // Past its peak displacement so far a specimen continues along its initial loading curve.
     let mut largest = 0.0;
     for branch in 1..branches.len() {
         largest = f64::max(largest, off(&branches[branch - 1].turn));
@@ -60,8 +61,8 @@ pub(super) fn is_kept(
     true
 }
 
-/// The curve that begins with a branch, on all its pieces, as long as it closes its loops and no farther than so much from the first
-/// reading, m.
+/// The curve that begins with a branch, on all its pieces, as long as it closes its loops, and at most to this distance from the first
+/// reading \[m\].
 fn curve(
     readings: &[Reading],
     branches: &[Branch],
@@ -98,15 +99,15 @@ fn curve(
 
 /// Noise of a difference to twice a curve, and of the readings that both begin with, over that of a reading.
 const DOUBLED: f64 = 3.2;
-/// Curves of less height than this fraction of the largest force tell nothing.
+/// Curves of less height than this fraction of the largest force are not compared.
 const LEAST: f64 = 0.05;
 /// Curves agree to this fraction of their height.
 const AGREED: f64 = 0.005;
-/// Yield points that lie between two readings, two of either curve: interpolation cuts each by a quarter of a step at most.
+/// Yield points between two readings, two for each curve: interpolation cuts each by a quarter of a step at most.
 const CUT: f64 = 4.0;
 
-/// Whether a curve lies on another one as far as that is known, on the root mean square; `noise` in N. One of less height than
-/// `least` (N), or than noise, tells nothing.
+/// Whether a curve agrees with a known one as far as that reaches, by the root mean square; `noise` in N. A curve with less height than
+/// `least` \[N\], or than noise, is not compared.
 fn agrees(curve: &Curve, known: &Curve, noise: f64, least: f64) -> bool {
     let least = least.max(2.0 * noise);
     let (mut off, mut count, mut height, mut step) = (0.0, 0.0, 0.0_f64, 0.0_f64);

@@ -56,8 +56,8 @@ pub struct RecordedPath {
 }
 
 impl RecordedPath {
-    /// `stiffness` \[N/m\] applies where no branch determines one; `force_noise` \[N\] and `resolution` \[m\] give the least length of a piece that
-    /// determines a slope. None without readings.
+    /// `stiffness` \[N/m\] applies where no branch determines one; `force_noise` \[N\] and `resolution` \[m\] give the least length of a
+    /// piece that determines a slope. None without readings.
     #[must_use]
     pub fn new(
         readings: Vec<Reading>,

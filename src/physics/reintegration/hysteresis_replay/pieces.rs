@@ -185,13 +185,13 @@ pub(super) fn cut(
     (branches, pieces)
 }
 
-/// Readings at the ends of each stretch without a turn, and its direction.
+/// Readings at the ends of each segment without a reversal, and its direction.
 fn monotonic_branches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
     let moved = readings.windows(2).map(|two| two[1].target - two[0].target);
     branches_of(std::iter::once(0.0).chain(moved))
 }
 
-/// The same of how it went to each reading: a way, or a velocity.
+/// The same from the move to each reading: a displacement change, or a velocity.
 pub(super) fn branches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::new();
     let (mut begin, mut last, mut direction) = (0, 0, 0.0);
@@ -209,7 +209,7 @@ pub(super) fn branches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize,
     found
 }
 
-/// Whether the branch goes back over the curve it turned from, as far as both reach.
+/// Whether the branch follows the curve from which it reversed, as far as both reach.
 fn retraces(
     readings: &[Reading],
     pieces: &[Piece],
@@ -231,7 +231,7 @@ fn retraces(
     thickness <= noise + THIN * span
 }
 
-/// Displacement and force at a place on the curve of a piece, where the record went there before.
+/// Displacement and force at a position on the curve of a piece that the record passed there before.
 fn within(
     readings: &[Reading],
     pieces: &[Piece],
@@ -285,7 +285,7 @@ fn within(
     ))
 }
 
-/// Least-squares slope over the fewest readings that span more than `least` \[m\], at least two; None where all of them span less.
+/// Least-squares slope over the fewest readings that span more than `least` \[m\], at least two; None if all of them span less.
 fn tangent<'a>(readings: impl Iterator<Item = &'a Reading>, least: f64) -> Option<f64> {
     let mut selected: Vec<(f64, f64)> = Vec::new();
     for reading in readings {

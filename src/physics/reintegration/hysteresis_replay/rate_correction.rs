@@ -119,8 +119,8 @@ impl ContinuousReadings {
         self.passed.iter().map(at_rest).collect()
     }
 
-    /// Velocities at a target for which `predicted` \[m/s\] is known: ẋ = (d − x)/τ, with the predicted velocity linear from step to step, of
-    /// which there are `finer` for each of the record.
+    /// Velocities at a target for which `predicted` \[m/s\] is known: ẋ = (d − x)/τ, with the predicted velocity linear from step to step,
+    /// of which there are `finer` for each of the record.
     pub fn speed(&self, before: Speed, predicted: f64, finer: u8) -> Speed {
         if self.lag <= 0.0 {
             return Speed {
@@ -142,8 +142,8 @@ impl ContinuousReadings {
         self.passed.iter().map(|(_, velocity)| *velocity)
     }
 
-    /// Standard deviation of the forces at rest \[N\] for a specimen of `stiffness` \[N/m\]: the position by τ differs from the measured one
-    /// beyond the quantization of `resolution` \[m\], and ẋ = (d − x)/τ.
+    /// Standard deviation of the forces at rest \[N\] for a specimen of `stiffness` \[N/m\]: the position by τ differs from the measured
+    /// one beyond the quantization of `resolution` \[m\], and ẋ = (d − x)/τ.
     pub fn force_uncertainty(&self, stiffness: f64, resolution: f64) -> f64 {
         if self.lag <= 0.0 {
             return 0.0;
@@ -167,8 +167,8 @@ impl ContinuousReadings {
         self.turn_between(at(step)?, at(step + 1)?, 1)
     }
 
-    /// Position of a reversal between two positions \[m\] with their velocities \[m/s\], a step apart, of which there are `finer` for each of
-    /// the record. The nearer end has the larger weight.
+    /// Position of a reversal between two positions \[m\] with their velocities \[m/s\], a step apart, of which there are `finer` for each
+    /// of the record. The nearer end has the larger weight.
     pub fn turn_between(
         &self,
         (from, before): (f64, f64),

@@ -1,56 +1,56 @@
-//! The re-run along the record. In: the record, targets one by one. Out: the readings there.
-//! It turns where its own targets turn. Each of its load reversals is the recorded one of that direction nearest in time; where the
-//! record turned and it does not, it goes on with the curve that it is on; where it turns and the record did not, it goes
-//! back as stiffly as the specimen first was. It says where it departs from the record: back where nothing is recorded, or along a
-//! curve that begins elsewhere, of a specimen whose record does not keep Masing's rule.
+//! The re-run along the record. In: the record, targets one by one. Out: the readings there. The re-run reverses where its own targets
+//! reverse. Each reversal is matched to the recorded one of that direction nearest in time. If the record reversed and the re-run does
+//! not, the re-run continues on its present curve. If the re-run reverses and the record did not, it unloads with the initial stiffness
+//! of the specimen. It reports a departure from the record in two cases: it unloads where nothing is recorded, or, if the record does not
+//! keep Masing's rule, it follows a curve that begins at a different point.
 
 use super::rate_correction::Speed;
 use super::{ROUNDING, RecordedPath, SETTLED, UNSEEN};
 
-/// The step of the record nearest to a step of a way that takes `finer` of them for each.
+/// The step of the record nearest to `step` of a path with `finer` steps for each recorded step.
 pub const fn nearest(step: usize, finer: u8) -> usize {
     let finer = if finer == 0 { 1 } else { finer as usize };
     (step + finer / 2) / finer
 }
 
-/// The way as it is taken again.
+/// The recorded path during a re-run.
 #[derive(Clone, Debug)]
 pub struct Retrace<'a> {
     path: &'a RecordedPath,
-    /// Steps for each of the record.
+    /// Steps of the re-run for each step of the record.
     finer: u8,
-    /// Of its own steps.
+    /// Number of its own steps so far.
     own_step: usize,
-    /// The step of the record that is nearest.
+    /// The nearest step of the record.
     step: usize,
     piece: usize,
-    /// Of the curve that begins with each branch; those to come as they were.
+    /// The shift of the curve that begins with each branch; later branches keep their initial value.
     shifts: Vec<Shift>,
-    /// Where it turned at the end of each branch, m; those to come as they were.
+    /// The reversal point at the end of each branch \[m\]; later branches keep their initial value.
     turns: Vec<f64>,
-    /// The last place, in metres of the record.
+    /// The last position, in metres of the record.
     position: f64,
-    /// With which it passed there, in metres of the record.
+    /// The velocity at the last position, in metres of the record.
     speed: Speed,
     aside: Option<Aside>,
     departed: bool,
 }
 
-/// By how much a curve lies elsewhere than in the record.
+/// The shift of a curve from its recorded position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Shift {
-    /// m
+    /// \[m\]
     position: f64,
-    /// N
+    /// \[N\]
     force: f64,
 }
 
-/// Gone back where the record did not.
+/// An unloading branch that is not in the record.
 #[derive(Clone, Copy, Debug)]
 struct Aside {
-    /// m
+    /// \[m\]
     from: f64,
-    /// Displacement (m) and force (N) there, of the record.
+    /// Displacement \[m\] and force \[N\] there, in those of the record.
     displacement: f64,
     force: f64,
     /// 1 or −1
@@ -81,19 +81,19 @@ impl<'a> Retrace<'a> {
         }
     }
 
-    /// Where it begins (m), and what is read there: displacement (m) and force (N).
+    /// The first position \[m\], and the displacement \[m\] and force \[N\] read there.
     #[must_use]
     pub fn start(&self) -> (f64, f64, f64) {
         let (displacement, force) = self.read();
         (self.position, displacement, force)
     }
 
-    /// Displacement (m) and force (N) read at the target of the next step, m.
+    /// Displacement \[m\] and force \[N\] read at the target \[m\] of the next step.
     pub fn move_to(&mut self, target: f64) -> (f64, f64) {
         self.pass(target, 0.0)
     }
 
-    /// The same of a target that is passed with a velocity, m/s.
+    /// As [`Self::move_to`], for a target that is passed with a velocity \[m/s\].
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let speed = self
             .path
@@ -112,18 +112,18 @@ impl<'a> Retrace<'a> {
         self.read()
     }
 
-    /// Whether it has departed from the record.
+    /// Whether the re-run has departed from the record.
     #[must_use]
     pub const fn departed(&self) -> bool {
         self.departed
     }
 
-    /// Goes so far (m) where nothing is recorded.
+    /// Registers that the path is `off` \[m\] away from the record, where nothing is recorded.
     fn leaves_by(&mut self, off: f64) {
         self.departed |= off.abs() > UNSEEN * self.path.farthest;
     }
 
-    /// Goes along a curve that lies so far (m) from its record.
+    /// Registers that the curve is shifted by `off` \[m\] from its recorded position.
     fn shifts_by(&mut self, off: f64) {
         self.departed |= !self.path.keeps_masing && off.abs() > ROUNDING * self.path.farthest;
     }
@@ -132,7 +132,7 @@ impl<'a> Retrace<'a> {
         self.path.pieces[self.piece].branch
     }
 
-    /// Goes on to a place (m), to be there with a velocity (m/s), from where it was at the step `before` of the record.
+    /// Moves to a position \[m\] with a velocity \[m/s\] there, from the position at the step `before` of the record.
     fn go(&mut self, position: f64, velocity: f64, before: usize) {
         let path = self.path;
         if let Some(aside) = self.aside {
@@ -140,7 +140,7 @@ impl<'a> Retrace<'a> {
             if (position - aside.from) * aside.direction <= 0.0 {
                 self.aside = None;
             } else if branch + 1 < path.branches.len() && path.branches[branch].end < self.step {
-                // The record has turned by now: it was that turn.
+                // The record has reversed by now: the reversals match.
                 self.aside = None;
                 self.turn(aside.from);
             } else {
@@ -184,7 +184,7 @@ impl<'a> Retrace<'a> {
         self.rejoin(position);
     }
 
-    /// Goes on to the piece on which a turn's place is passed.
+    /// Changes to the piece of the branch on which the position of an earlier reversal is passed.
     fn rejoin(&mut self, position: f64) {
         let path = self.path;
         let branch = path.branches[self.branch()];
@@ -196,8 +196,8 @@ impl<'a> Retrace<'a> {
         }
     }
 
-    /// Whether the turn after `step` is one of the record, nearer than the last one of either direction. Loops of the record
-    /// that were not made by then are skipped.
+    /// Whether the reversal after `step` matches one of the record, nearer than the last reversal of either direction. Recorded loops
+    /// that were not made until then are skipped.
     fn matched(&mut self, step: usize) -> bool {
         let path = self.path;
         let turned = |branch: usize| branch + 1 < path.branches.len();
@@ -206,7 +206,7 @@ impl<'a> Retrace<'a> {
         if !turned(branch) {
             return false;
         }
-        // Nearer to the turn that it came from, it only slowed down there in the record.
+        // The step is nearer to an earlier reversal: in the record it only slowed down there.
         let ended = |back: usize| {
             branch
                 .checked_sub(back)
@@ -224,18 +224,18 @@ impl<'a> Retrace<'a> {
         true
     }
 
-    /// Whether the record has gone there and back again for longer than this way may be late.
+    /// Whether the record has made its next loop, and the re-run is too late to make the same one.
     fn missed(&self) -> bool {
         let path = self.path;
         let branch = self.branch();
         let ended = |branch: usize| path.branches[branch].end;
-        // The next turn that way is nearer than the one not made.
+        // The next reversal in that direction is nearer than the one not made.
         branch + 2 < path.branches.len()
             && ended(branch + 1) < self.step
             && self.step.saturating_sub(ended(branch)) > ended(branch + 2).saturating_sub(self.step)
     }
 
-    /// Goes on where the record had turned and come back.
+    /// Skips the loop that the record made here.
     fn skip(&mut self) {
         let path = self.path;
         let left = self.branch();
@@ -250,8 +250,8 @@ impl<'a> Retrace<'a> {
         self.shifts_by(path.branches[left].turn.target - path.branches[left + 1].turn.target);
     }
 
-    /// Turns at `place` (m) onto the next branch: a curve that retraces the one it came from lies as that does, another one keeps its shape.
-    /// One that closed no loop goes back to the line that it settled on.
+    /// Reverses at `position` \[m\] onto the next branch. A curve that retraces an earlier one is shifted as that one; any other keeps
+    /// its shape. A curve that closed no loop returns to the line on which it settled.
     fn turn(&mut self, position: f64) {
         let path = self.path;
         let branch = self.branch();
@@ -261,7 +261,7 @@ impl<'a> Retrace<'a> {
         let at = position - before.position;
         let mut shift = before;
         if !path.branches[next].retraces {
-            // Readings so near each other tell noise.
+            // The difference of readings this near each other is noise.
             let off = at - turn.target;
             let rise = if off.abs() <= path.least {
                 path.pieces[path.branches[branch].last_piece].end_tangent * off
@@ -292,17 +292,17 @@ impl<'a> Retrace<'a> {
         self.piece = path.branches[next].first_piece;
     }
 
-    /// Of the curve that it is on.
+    /// The shift of its present curve.
     fn shift(&self) -> Shift {
         self.shifts[self.path.pieces[self.piece].curve]
     }
 
-    /// The step of the record that is looked from: past its end, its last.
+    /// The step of the record from which the search begins: past the end, the last step.
     fn looked_from(&self) -> usize {
         self.step.min(self.path.readings.len() - 1)
     }
 
-    /// Displacement and force of the specimen at the place where it is, in those of the record.
+    /// Displacement and force of the specimen at its present position, in those of the record.
     fn recorded(&self) -> (f64, f64) {
         let path = self.path;
         if let Some(aside) = self.aside {
@@ -315,7 +315,7 @@ impl<'a> Retrace<'a> {
         self.at(self.position)
     }
 
-    /// The same at a place (m) on the curve that it is on.
+    /// Displacement and force at a position \[m\] on the present curve.
     fn at(&self, position: f64) -> (f64, f64) {
         let shift = self.shift();
         let at = position - shift.position;

@@ -1,4 +1,4 @@
-//! The recorded way taken again, against the specimens that were recorded.
+//! Re-runs along the recorded path, compared with the specimens that were recorded.
 
 use super::*;
 use crate::specimen::{Behaviour, Pinching};
@@ -36,7 +36,7 @@ fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
     }
 }
 
-/// Wherever it is taken, and past its end, an elastic specimen stays elastic.
+/// An elastic specimen stays elastic at all targets and past the end of the path.
 #[test]
 fn an_elastic_way_taken_off_its_targets_is_elastic() {
     let path = path(|x| 1000.0 * x, &TARGETS);
@@ -49,8 +49,8 @@ fn an_elastic_way_taken_off_its_targets_is_elastic() {
     }
 }
 
-/// Yield at 0.2 m, 100 N/m past it, back with 1000 N/m: turned elsewhere, it comes back along R = `R_m` − K(`X_m` − X) of
-/// the new turning point.
+/// Yield at 0.2 m, 100 N/m past it, unloading with 1000 N/m. If it reverses at a different point, it unloads along R = `R_m` − K(`X_m` −
+/// X) of the new reversal point.
 #[test]
 fn turned_elsewhere_a_yielding_specimen_comes_back_on_its_own_line() {
     let loading = |x: f64| {
@@ -96,7 +96,7 @@ fn turned_elsewhere_a_yielding_specimen_comes_back_on_its_own_line() {
     }
 }
 
-/// Noise on short pieces makes no stiffness: past the end it goes on with the slope of what spans enough.
+/// Noise on short pieces gives no stiffness: past the end the re-run continues with the slope of a long enough piece.
 #[test]
 fn noise_makes_no_tangent() {
     let readings = |step: u32| {
@@ -117,7 +117,7 @@ fn noise_makes_no_tangent() {
     assert!((force - 300.0).abs() < 12.0, "{force}");
 }
 
-/// Steps of `step` (m) from turn to turn.
+/// Steps of `step` \[m\] from reversal to reversal.
 fn motion(turns: &[f64], step: f64) -> Vec<f64> {
     let mut places = vec![turns[0]];
     for ends in turns.windows(2) {
@@ -140,7 +140,7 @@ fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
     RecordedPath::new(targets.iter().map(reading).collect(), 1000.0, 0.0, 0.0).unwrap()
 }
 
-/// The largest force that the way taken again reads wrongly.
+/// The largest force error of the re-run.
 fn worst(path: &RecordedPath, mut model: impl RestoringForce, targets: &[f64]) -> f64 {
     let mut retrace = path.retrace(1);
     model.move_to(targets[0]);
@@ -150,14 +150,14 @@ fn worst(path: &RecordedPath, mut model: impl RestoringForce, targets: &[f64]) -
         .fold(0.0, f64::max)
 }
 
-/// Yields, comes a little back and yields on; back through a yield the other way, and out again past all of it.
+/// It yields, unloads a little and yields further; it then yields in the other direction, and reloads past all of it.
 const LOOPS: [f64; 6] = [0.0, 0.4, 0.3, 0.6, -0.2, 0.8];
 const MOVED: [f64; 6] = [0.0, 0.41, 0.305, 0.62, -0.19, 0.83];
-/// m
+/// \[m\]
 const STEP: f64 = 2e-3;
 
-/// Every knee is where it is on the new way: exactly, where the record has a reading at it; between two recorded points a knee
-/// is cut by K·step/4 at most, and where a loop closes there may be one of each of two curves.
+/// Every yield point has its correct position on the new path: exactly, if the record has a reading there. Between two recorded points a
+/// yield point is cut by K·step/4 at most. Where a loop closes, two curves may each have such a cut.
 #[test]
 fn elements_side_by_side_are_told_wherever_they_are_turned() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
@@ -172,7 +172,7 @@ fn elements_side_by_side_are_told_wherever_they_are_turned() {
     assert!(off <= cut, "{off} N");
 }
 
-/// And what is cut goes with the step.
+/// The cut is proportional to the step.
 #[test]
 fn finer_steps_cut_less() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
@@ -189,7 +189,7 @@ fn finer_steps_cut_less() {
     }
 }
 
-/// A loop that is not made is left out, one that is made a few steps early or late is that loop.
+/// A loop that is not made is left out. A loop that is made a few steps early or late is matched to the recorded one.
 #[test]
 fn turns_are_its_own() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
@@ -207,7 +207,7 @@ fn turns_are_its_own() {
     }
 }
 
-/// Back where the record never went: as stiffly as at first, and it says so.
+/// Unloading where the record never unloaded: with the initial stiffness, and the departure is reported.
 #[test]
 fn a_turn_that_was_not_recorded_is_told() {
     let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
@@ -222,7 +222,7 @@ fn a_turn_that_was_not_recorded_is_told() {
     assert!(retrace.departed() && !path.retrace(1).departed());
 }
 
-/// Sixty turns forth and back that grow and fade, `more` of them larger, m.
+/// Sixty reversals, first with growing amplitude; `more` adds a relative variation of the amplitude.
 fn swings(more: f64) -> Vec<f64> {
     let turn = |turn: u32| {
         let phase = f64::from(turn);
@@ -234,8 +234,8 @@ fn swings(more: f64) -> Vec<f64> {
     (0..60).map(turn).collect()
 }
 
-/// Elements in parallel keep Masing's rule and never depart from their record; whatever pinches, degrades or follows Bouc's and Wen's
-/// equation departs as soon as it turns elsewhere. An elastic specimen has nothing to keep.
+/// Elements in parallel keep Masing's rule and never depart from their record. Specimens that pinch, degrade or follow the Bouc–Wen
+/// equation depart as soon as they reverse elsewhere. For an elastic specimen the rule has no effect.
 #[test]
 fn a_record_says_whether_it_keeps_masings_rule() {
     let pinching = SpecimenModel::new(&Behaviour::Pinching(Pinching {
@@ -278,7 +278,7 @@ fn a_record_says_whether_it_keeps_masings_rule() {
         (pinching, false),
     ];
     for (model, keeps) in specimens {
-        // Of one swing, and of sixty.
+        // One swing, and sixty.
         for (turns, elsewhere) in [
             (vec![0.0, 0.6, -0.4], vec![0.0, 0.61, -0.4]),
             (swings(0.0), swings(0.02)),

@@ -1,17 +1,17 @@
-//! Relaxation of every increment of force by its own time: exponentially, or with the logarithm of time. In: holds, each with its
-//! readings, the duration of the move to it, and the force before the first. Out: the law, its parameters with standard errors, the
-//! rate of the worst hold and the dwell that it required. It knows no rig.
+//! Relaxation of every increment of force with its own time: exponentially, or with the logarithm of time. In: dwells, each with its
+//! readings, the duration of the move to it, and the force before the first. Out: the law, its parameters with standard errors, the rate
+//! of the worst dwell and the dwell time that it required. It knows no rig.
 //!
-//! R̂ is the instantaneous force, which the specimen would have without relaxing. Each move brings an increment ΔR̂, and by the time u
-//! after it the part `share`·L(u) of that is lost ([`super::law`]; Boltzmann's superposition). In hold h
+//! R̂ is the instantaneous force, which the specimen would have without relaxation. Each move adds an increment ΔR̂. By the time u after
+//! it the part `share`·L(u) of this increment is lost ([`super::law`]; Boltzmann's superposition). In dwell h
 //!
 //! ```text
 //! R(t) = R̂_h − share·Σ_{j ≤ h} (R̂_j − R̂_{j−1})·L(t + T_h − T_j)
 //! ```
 //!
-//! with one `share` and one time for all holds: n + 2 parameters for n holds, whichever the law. Each R̂_h follows by least squares
-//! over the readings of its own hold; the effect of later holds on it is of the order of `share`² and is left out. Share and time
-//! follow by least squares over all readings.
+//! with one `share` and one time for all dwells: n + 2 parameters for n dwells, for either law. Each R̂_h follows by least squares over
+//! the readings of its own dwell. The effect of later dwells on it is of the order of `share`² and is neglected. Share and time follow by
+//! least squares over all readings.
 
 mod history;
 mod model;
@@ -29,7 +29,7 @@ use model::Superposition;
 #[derive(Clone, Debug, PartialEq)]
 pub struct LawFit {
     pub law: RelaxationLaw,
-    /// Fraction of the instantaneous force: lost after long by the exponential, or at t = (e − 1)t₀ by the logarithm.
+    /// Fraction of the instantaneous force: lost after a long time by the exponential, or at t = (e − 1)t₀ by the logarithm.
     pub share: (f64, f64),
     /// τ or t₀ \[s\].
     pub time: (f64, f64),
@@ -39,9 +39,9 @@ pub struct LawFit {
     pub worst: usize,
     /// That rate \[N/s\].
     pub rate: (f64, f64),
-    /// Force that it had still to lose \[N\]: none by the logarithm, which has no end.
+    /// Remaining relaxation \[N\]; None for the logarithm, which has no end.
     pub remaining: Option<(f64, f64)>,
-    /// Dwell until its rate is no larger than asked for \[s\].
+    /// Dwell time until its rate is not larger than the requested one \[s\].
     pub required_pause: (f64, f64),
     /// Standard deviation of a reading about the fit \[N\].
     pub scatter: f64,
@@ -75,13 +75,13 @@ impl SuperpositionFit {
         "relaxation_rate",
     ];
 
-    /// The law of the least criterion.
+    /// The law with the smallest criterion.
     #[must_use]
     pub fn best(&self) -> &LawFit {
         &self.fits[0]
     }
 
-    /// BIC of the exponential minus that of the logarithm: positive where the logarithm fits better. None for one law alone.
+    /// BIC of the exponential minus that of the logarithm: positive if the logarithm fits better. None for one law alone.
     #[must_use]
     pub fn margin(&self) -> Option<f64> {
         let criterion = |law| {
@@ -112,7 +112,7 @@ impl LawFit {
     }
 }
 
-/// Number of holds squared times readings of one, at most: later holds are left out.
+/// Largest value of the number of dwells squared times the readings of one: later dwells are left out.
 const MAX_WORK: usize = 4_000_000;
 
 /// Fits the law `asked`, or both. `before` is the relaxed force before the first move \[N\], `rate` the rate of relaxation that is

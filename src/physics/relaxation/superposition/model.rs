@@ -14,9 +14,9 @@ use crate::statistics::least_squares::{
 
 /// Times tried first, over the range that the readings resolve.
 const TRIED: u32 = 14;
-/// Scatter below this fraction of the largest force is rounding and no relaxation.
+/// Scatter below this fraction of the largest force is rounding and not relaxation.
 const ROUNDING: f64 = 1e-10;
-/// The largest share of a force that relaxation takes by the unit of a law.
+/// The largest fraction of a force that is lost in the unit of a law.
 const MAX_SHARE: f64 = 0.999;
 /// Largest change of ln t in one step, half a decade: farther off the linearisation does not hold.
 const LONGEST_STEP: f64 = 1.2;
@@ -37,7 +37,7 @@ pub(super) struct Superposition<'a> {
     extent: Extent,
 }
 
-/// Instantaneous forces, and what they leave of the readings \[N\].
+/// Instantaneous forces, and the residuals of the readings \[N\].
 struct Solved {
     reached: Vec<f64>,
     left: Vec<f64>,
@@ -51,7 +51,7 @@ struct Relaxation {
 }
 
 impl Relaxation {
-    /// Of the parameters share and ln t.
+    /// From the parameters share and ln t.
     fn new(parameters: &DVector<f64>) -> Self {
         Self {
             share: parameters[0],
@@ -114,7 +114,7 @@ impl<'a> Superposition<'a> {
         self.extent.longest
     }
 
-    /// No sum of squares is smaller than rounding.
+    /// Limits a sum of squares to at least the rounding error.
     pub fn floored(&self, squares: f64) -> f64 {
         squares
             .max(self.count * (ROUNDING * self.extent.largest_force).powi(2))
@@ -184,7 +184,7 @@ impl<'a> Superposition<'a> {
         (Relaxation { share, time }, squares)
     }
 
-    /// Least squares over share and time; None where the readings do not tell them apart.
+    /// Least squares over share and time; None if the readings do not determine them separately.
     pub fn fit(&self, law: RelaxationLaw) -> Option<LawFit> {
         let (low, high) = self.extent.resolvable();
         let (start, _) = geometric((low, high), TRIED)
@@ -282,7 +282,7 @@ impl<'a> Superposition<'a> {
     }
 }
 
-/// Seconds until `rate_after` is no more than `rate` \[N/s\] and remains so: by doubling, then by bisection.
+/// Seconds until `rate_after` is at most `rate` \[N/s\] and remains so: by doubling, then by bisection.
 fn slow_enough(rate: f64, first: f64, rate_after: impl Fn(f64) -> f64) -> f64 {
     if rate_after(0.0) <= rate {
         return 0.0;

@@ -1,5 +1,5 @@
 //! The choice between two laws of relaxation: the right one from noisy readings, its parameters within their standard errors, and
-//! none where nothing relaxes.
+//! none if nothing relaxes.
 
 use super::{LawFit, SuperpositionFit, fit_superposition};
 use crate::relaxation::hold::{Hold, Unrelaxed};

@@ -23,7 +23,7 @@ impl TimeConstantModel for Exponential<'_> {
         2.0 * self.holds.len() as f64 + 1.0
     }
 
-    /// Each hold by itself: a line of force over e^(−t/τ).
+    /// Each dwell separately: a line of force over e^(−t/τ).
     fn solve(&self, forces: &[f64], tau: f64) -> Option<Linear> {
         let mut forces = forces;
         let holds = self.holds.iter().map(|hold| {

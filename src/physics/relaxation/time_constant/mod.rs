@@ -243,7 +243,7 @@ impl<M: TimeConstantModel> Residuals for OverTimeConstant<'_, M> {
         Some(DMatrix::from_columns(&[column]))
     }
 
-    /// A factor of e at once, at most.
+    /// At most a factor of e in one step.
     fn longest_fraction(&self, step: &DVector<f64>) -> f64 {
         (1.0 / step[0].abs()).min(1.0)
     }

@@ -1,4 +1,4 @@
-//! The fit of one time constant: exact without noise, its standard errors those of many fits, none where nothing relaxes.
+//! The fit of one time constant: exact without noise, its standard errors those of many fits, none if nothing relaxes.
 
 use super::{RelaxationFit, RelaxationModel, fit_relaxation};
 use crate::relaxation::hold::{Hold, Unrelaxed};
@@ -9,12 +9,12 @@ const BOTH: [RelaxationModel; 2] = [
     RelaxationModel::Exponential,
     RelaxationModel::StandardLinearSolid,
 ];
-/// 300 kN/m, beside it 200 kN/m that relax with 1.5 s; 12 N at zero displacement.
+/// 300 kN/m, in parallel with 200 kN/m that relax with 1.5 s; 12 N at zero displacement.
 const K: f64 = 3e5;
 const K1: f64 = 2e5;
 const TAU: f64 = 1.5;
 
-/// Eight holds of `pause` (s) every 1 mm, reached in 0.5 s, twenty readings each and closer at first.
+/// Eight dwells of `pause` \[s\] every 1 mm, reached in 0.5 s, with twenty readings each, closer together at first.
 fn holds(stiffness: f64, pause: f64, noise: &mut dyn FnMut() -> f64) -> Vec<Hold> {
     let mut branch = MaxwellBranch::new(stiffness, TAU);
     (1_u32..=8)
@@ -222,7 +222,7 @@ fn a_steady_force_and_an_unresolved_time_have_no_fit() {
             Err(Unrelaxed::TooFew)
         );
         assert_eq!(fit_relaxation(&[], 0.0, model), Err(Unrelaxed::TooFew));
-        // A drift that goes on: slower than thirty times the hold.
+        // A continuing drift: slower than thirty times the dwell.
         let drift: Vec<Hold> = holds(0.0, 2.0, &mut || 0.0)
             .into_iter()
             .map(|hold| Hold {

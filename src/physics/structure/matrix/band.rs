@@ -1,5 +1,4 @@
-//! Symmetric band matrices, as the masses, dampers and storeys of a frame make them. In: entries. Out: products. Solving
-//! is `factor`'s.
+//! Symmetric band matrices for the masses, dampers and storeys of a frame. In: entries. Out: products. `factor` solves equations.
 
 use thiserror::Error;
 
@@ -9,11 +8,11 @@ use thiserror::Error;
 pub struct SymmetricBand {
     order: usize,
     half_bandwidth: usize,
-    /// Diagonal by diagonal, the main one first: the k-th holds (i + k, i) for i in `0..order − k`.
+    /// Diagonal by diagonal, the main one first: the k-th contains (i + k, i) for i in `0..order − k`.
     entries: Vec<f64>,
 }
 
-/// Rows that are no symmetric matrix.
+/// Rows that are not a symmetric matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum RowsError {
     #[error("row {row} has {found} entries, not {order}")]
@@ -27,7 +26,7 @@ pub enum RowsError {
 }
 
 impl SymmetricBand {
-    /// All zero; a half bandwidth beyond `order − 1` is that.
+    /// All zero; a larger half bandwidth becomes `order − 1`.
     #[must_use]
     pub fn zero(order: usize, half_bandwidth: usize) -> Self {
         let half_bandwidth = half_bandwidth.min(order.saturating_sub(1));
@@ -39,7 +38,7 @@ impl SymmetricBand {
         }
     }
 
-    /// Of these entries on the diagonal, and nothing beside it.
+    /// These entries on the diagonal, and zeros elsewhere.
     #[must_use]
     pub fn diagonal(values: &[f64]) -> Self {
         Self {
@@ -49,10 +48,10 @@ impl SymmetricBand {
         }
     }
 
-    /// The narrowest band that holds these rows; (i, j) and (j, i) must be the same number.
+    /// The narrowest band that contains these rows; (i, j) and (j, i) must be the same number.
     ///
     /// # Errors
-    /// Where the rows are not square or not symmetric.
+    /// If the rows are not square or not symmetric.
     pub fn from_dense(rows: &[Vec<f64>]) -> Result<Self, RowsError> {
         let order = rows.len();
         let mut half_bandwidth = 0;
@@ -89,7 +88,7 @@ impl SymmetricBand {
         Ok(band)
     }
 
-    /// Rows, and columns.
+    /// Number of rows and of columns.
     #[must_use]
     pub const fn order(&self) -> usize {
         self.order
@@ -101,7 +100,7 @@ impl SymmetricBand {
         self.half_bandwidth
     }
 
-    /// Where (i + k, i) starts for diagonal k.
+    /// Index of the first entry of a diagonal.
     const fn start(&self, diagonal: usize) -> usize {
         diagonal * self.order - diagonal * diagonal.saturating_sub(1) / 2
     }
@@ -112,7 +111,7 @@ impl SymmetricBand {
         &self.entries[self.start(k)..self.start(k) + self.order - k]
     }
 
-    /// [`Self::band`], to be written; `k` is at most the half bandwidth.
+    /// [`Self::band`] for writing; `k` is at most the half bandwidth.
     pub fn band_mut(&mut self, k: usize) -> &mut [f64] {
         let start = self.start(k);
         &mut self.entries[start..start + self.order - k]
@@ -140,7 +139,7 @@ impl SymmetricBand {
         self.entries[place] = value;
     }
 
-    /// As wide as needed to take the other in.
+    /// Makes the band at least this wide.
     fn widen(&mut self, half_bandwidth: usize) {
         let mut wide = Self::zero(self.order, half_bandwidth);
         wide.entries[..self.entries.len()].copy_from_slice(&self.entries);
@@ -158,7 +157,7 @@ impl SymmetricBand {
         }
     }
 
-    /// Becomes a copy of the other, in its own memory where it can.
+    /// Becomes a copy of the other, in its own memory if possible.
     pub fn copy_from(&mut self, other: &Self) {
         self.order = other.order;
         self.half_bandwidth = other.half_bandwidth;
@@ -216,7 +215,7 @@ impl SymmetricBand {
         }
     }
 
-    /// Each entry of A x, A tridiagonal, taken into y in one pass.
+    /// Combines each entry of A x, A tridiagonal, with that of y in one pass.
     #[inline]
     fn tridiagonal(&self, x: &[f64], y: &mut [f64], take: impl Fn(&mut f64, f64)) {
         let (last, diagonal, beside) = (self.order - 1, self.band(0), self.band(1));

@@ -1,20 +1,20 @@
-//! The Cholesky factor of a symmetric band matrix, L D Lᵀ with ones on the diagonal of L: n·b² once, n·b a solution. In: a
-//! matrix. Out: solutions, or the row that shows it is not positive definite.
+//! The Cholesky factor of a symmetric band matrix, L D Lᵀ with ones on the diagonal of L: n·b² once, n·b per solution. In: a matrix. Out:
+//! solutions, or the row that shows it is not positive definite.
 //!
-//! A tridiagonal matrix is eliminated from both ends towards the middle. It is the factor of the same matrix in another
-//! order; its two chains of operations do not wait for one another, which halves the time of a solution.
+//! A tridiagonal matrix is eliminated from both ends towards the middle. This is the factor of the same matrix in a different order. Its
+//! two chains of operations do not wait for one another, which halves the time of a solution.
 
 use super::band::SymmetricBand;
 use thiserror::Error;
 
-/// The matrix has a direction in which it does not resist; it shows at `row`, counted from 0.
+/// The matrix has a direction without stiffness; it shows at `row`, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("not positive definite: it shows at row {}", row + 1)]
 pub struct NotPositiveDefinite {
     pub row: usize,
 }
 
-/// A factor, kept for as many solutions as wanted.
+/// A factor for any number of solutions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BandFactor {
     Diagonal(Vec<f64>),
@@ -35,7 +35,7 @@ impl BandFactor {
         Ok(factor)
     }
 
-    /// The factor of another matrix of the same band, in the same memory.
+    /// The factor of a different matrix with the same band, in the same memory.
     ///
     /// # Errors
     /// If the matrix is not positive definite.
@@ -70,7 +70,7 @@ fn divide(x: &mut [f64], pivots: &[f64]) {
     }
 }
 
-/// A pivot no larger than what rounding leaves of its row's own entry is none.
+/// Rejects a pivot that is not larger than the rounding error of its row's own entry.
 fn positive(row: usize, pivot: f64, entry: f64, order: usize) -> Result<(), NotPositiveDefinite> {
     #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
     let least = order as f64 * f64::EPSILON * entry;
@@ -86,7 +86,7 @@ fn positive(row: usize, pivot: f64, entry: f64, order: usize) -> Result<(), NotP
 pub struct TwoEnds {
     middle: usize,
     pivots: Vec<f64>,
-    /// 1 over the pivots: a product is a quarter of a division's price.
+    /// 1 over the pivots: a product takes a quarter of the time of a division.
     inverses: Vec<f64>,
     /// Between rows i and i + 1: the entry over the pivot of the one eliminated first.
     multipliers: Vec<f64>,
@@ -129,7 +129,7 @@ impl TwoEnds {
             return;
         };
         let (down, up) = self.multipliers.split_at(self.middle);
-        // An even number of rows leaves one more above the middle than below it: it goes first.
+        // With an even number of rows, one more is above the middle than below it: it goes first.
         let (mut above, mut below) = (0.0, 0.0);
         let (mut from_above, mut from_below) = (0.0, 0.0);
         let first = upper.len() - lower.len();
@@ -174,7 +174,7 @@ impl TwoEnds {
 pub struct Rows {
     half_bandwidth: usize,
     pivots: Vec<f64>,
-    /// Row i holds columns i − b to i − 1; those before the first column are 0.
+    /// Row i contains columns i − b to i − 1; those before the first column are 0.
     lower: Vec<f64>,
 }
 
@@ -190,7 +190,7 @@ impl Rows {
             let first = i.saturating_sub(width);
             let (above, rest) = self.lower.split_at_mut(i * width);
             let row = &mut rest[..width];
-            // Entry (i, j) stands at j + width − i of its row: here l_ij d_j first, divided when its column is done.
+            // Entry (i, j) is at j + width − i of its row: first l_ij d_j, divided when its column is complete.
             for j in first..i {
                 let start = first.max(j.saturating_sub(width));
                 let other = &above[j * width..(j + 1) * width];
@@ -248,7 +248,7 @@ impl Rows {
 mod tests {
     use super::*;
 
-    /// Diagonally dominant, every entry of the band its own.
+    /// Diagonally dominant, with different entries in the band.
     fn matrix(order: usize, width: usize) -> SymmetricBand {
         let mut matrix = SymmetricBand::zero(order, width);
         for i in 0..order {
@@ -292,7 +292,7 @@ mod tests {
         }
     }
 
-    /// A storey without stiffness below the first: what stands above it is loose, and the two ends meet at it.
+    /// A storey without stiffness below the first: the part above it is loose, and the two ends meet at it.
     #[test]
     fn a_loose_direction_is_found() {
         let loose =

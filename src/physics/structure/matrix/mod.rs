@@ -1,6 +1,6 @@
-//! Numbers of a structure: one degree of freedom is a number and its matrices are numbers, many are a vector and symmetric
-//! bands. In: the operations of an integrator. Out: the same arithmetic for both; for one degree of freedom it compiles to
-//! plain floating-point code. It knows no equation of motion.
+//! Numbers of a structure: for one degree of freedom a number with numbers as matrices, for many a vector with symmetric bands. In: the
+//! operations of an integrator. Out: the same arithmetic for both; for one degree of freedom it compiles to plain floating-point code. It
+//! knows no equation of motion.
 
 mod band;
 mod factor;
@@ -16,7 +16,7 @@ use crate::integrator::tridiagonal;
 /// One quantity of every degree of freedom.
 pub trait Vector: Clone + Debug + Default + PartialEq {
     type Matrix: Matrix<Vector = Self>;
-    /// How callers give and take it: a number, or a slice.
+    /// The form in which callers pass it: a number, or a slice.
     type View<'a>: Copy + Debug
     where
         Self: 'a;
@@ -31,36 +31,36 @@ pub trait Vector: Clone + Debug + Default + PartialEq {
     #[must_use]
     fn order_of(view: Self::View<'_>) -> usize;
 
-    /// One entry a degree of freedom, as callers take it.
+    /// One entry per degree of freedom, from the form of callers.
     #[must_use]
     fn slice_of<'a>(view: &'a Self::View<'_>) -> &'a [f64];
 
-    /// One entry a degree of freedom, as callers give it.
+    /// One entry per degree of freedom, in the form of callers.
     #[must_use]
     fn view_of(slice: &[f64]) -> Self::View<'_>;
 
     /// Becomes a copy of `view`, in its own memory.
     fn set(&mut self, view: Self::View<'_>);
 
-    /// One entry a degree of freedom.
+    /// One entry per degree of freedom.
     #[must_use]
     fn as_slice(&self) -> &[f64];
 
     #[must_use]
     fn as_mut_slice(&mut self) -> &mut [f64];
 
-    /// Each entry becomes what `entry` makes of it and of the same entry of the others.
+    /// Each entry becomes the value of `entry` for it and for the same entries of the others.
     fn update<const N: usize>(&mut self, others: [&Self; N], entry: impl Fn(f64, [f64; N]) -> f64);
 
     /// xᵀ y.
     #[must_use]
     fn dot(&self, other: &Self) -> f64;
 
-    /// (x₀ + x₁)ᵀ (y₁ ± y₀), as `join` says.
+    /// (x₀ + x₁)ᵀ (y₁ ± y₀), with the sign from `join`.
     #[must_use]
     fn trapezoid(x: [&Self; 2], y: [&Self; 2], join: impl Fn(f64, f64) -> f64) -> f64;
 
-    /// F₁ − R − C(Ẋ + ½ΔtẌ) − `K_t`(ΔtẊ + ¼Δt²Ẍ) into `push`; C is `None` where there is no damping.
+    /// F₁ − R − C(Ẋ + ½ΔtẌ) − `K_t`(ΔtẊ + ¼Δt²Ẍ) into `push`; C is `None` without damping.
     fn set_out(step: &SetOut<Self>, push: &mut Self, glide: &mut Self, drift: &mut Self) {
         set_out_by_products(step, push, glide, drift);
     }
@@ -75,17 +75,17 @@ pub trait Vector: Clone + Debug + Default + PartialEq {
     );
 }
 
-/// A step in tangent form as it sets out.
+/// The start of a step in tangent form.
 #[derive(Clone, Copy, Debug)]
 pub struct SetOut<'a, V: Vector> {
-    /// s
+    /// \[s\]
     pub time_step: f64,
-    /// Ẋ, m/s, and Ẍ, m/s².
+    /// Ẋ \[m/s\] and Ẍ \[m/s²\].
     pub velocity: &'a V,
     pub acceleration: &'a V,
-    /// R, N.
+    /// R \[N\].
     pub force: &'a V,
-    /// F₁, N.
+    /// F₁ \[N\].
     pub load_end: &'a V,
     pub damping: Option<&'a V::Matrix>,
     /// `K_t`
@@ -145,7 +145,7 @@ pub trait Matrix: Clone + Debug + PartialEq {
     fn quadratic(&self, x: &Self::Vector, scratch: &mut Self::Vector) -> f64;
 }
 
-/// What solves A x = b.
+/// A factor that solves A x = b.
 pub trait Factor: Clone + Debug {
     type Matrix: Matrix<Factor = Self>;
 
@@ -153,7 +153,7 @@ pub trait Factor: Clone + Debug {
     /// If the matrix is not positive definite.
     fn of(matrix: &Self::Matrix) -> Result<Self, NotPositiveDefinite>;
 
-    /// The factor of another matrix of the same band, in the same memory.
+    /// The factor of a different matrix with the same band, in the same memory.
     ///
     /// # Errors
     /// If the matrix is not positive definite.

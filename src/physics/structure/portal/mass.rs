@@ -1,34 +1,34 @@
-//! The mass that moves with a portal: its members and what they carry, reduced to the displacement that the load does work on. In: a
-//! portal that says what it weighs. Out: its equivalent masses, by the shapes that it goes through. How it is loaded, and when
-//! it yields, it does not decide.
+//! The mass that moves with a portal: its members and their masses, reduced to the displacement on which the load does work. In: a portal
+//! with stated masses. Out: its equivalent masses, from its deflected shapes. It does not determine the load or the yielding.
 
 use super::super::beam::partly_built_in_mass_factor;
 use crate::structure::portal::{Mechanism, Portal, Sections, elastic_stiffnesses};
 
-/// Masses of the single degree of freedom that stands for a beam or portal, kg: that which has its kinetic energy, M = ∫m φ² ds with a
-/// shape φ that is 1 where the load does work. The load then needs no factor of its own.
+/// Masses of the equivalent single degree of freedom of a beam or portal \[kg\]. They have the same kinetic energy: M = ∫m φ² ds, with a
+/// shape φ that is 1 where the load does work. The load then needs no factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquivalentMasses {
-    /// φ the elastic deflection under the static load: before any hinge forms.
+    /// φ is the elastic deflection under the static load: before any hinge forms.
     pub elastic: f64,
-    /// φ that of the mechanism which governs, its links rigid between the hinges: after the last one formed. None of what has none.
+    /// φ is the shape of the governing mechanism with rigid links between the hinges: after the last hinge formed. None without a
+    /// mechanism.
     pub plastic: Option<f64>,
-    /// Half of each member at either end of it (of the beam: at midspan and corners, half and half), moved elastically: Melo et al. 2006,
-    /// Fig. 5, where a swaying frame has the mass of its beam and of one column, and a beam half its own.
+    /// Half of each member at either end (for the beam: half at midspan and half at the corners), moved elastically: Melo et al. 2006,
+    /// Fig. 5. There a swaying frame has the mass of its beam and of one column, and a beam half its own.
     pub lumped: f64,
-    /// All that moves or bends.
+    /// The total mass that moves or bends.
     pub whole: f64,
 }
 
-/// How far midspan (δ) and the beam's level (Δ) go while the point of the load goes 1.
+/// Displacements of midspan (δ) and of the beam's level (Δ) for a unit displacement of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Travel {
     deflection: f64,
     sway: f64,
 }
 
-/// Masses of a frame that deflects by 1 at midspan, and of one that sways by 1. One is symmetric and the other antisymmetric: moved
-/// together their kinetic energies add, without a mixed part.
+/// Masses of a frame that deflects by 1 at midspan, and of one that sways by 1. One shape is symmetric and the other antisymmetric: in a
+/// combined motion their kinetic energies add, without a mixed term.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Parts {
     deflecting: f64,
@@ -42,14 +42,14 @@ impl Parts {
     }
 }
 
-/// What its load has to accelerate; None of a portal that does not say what it weighs.
+/// The masses that the load has to accelerate; None for a portal without stated masses.
 #[must_use]
 pub fn equivalent_masses(portal: &Portal) -> Option<EquivalentMasses> {
     let masses = portal.masses?;
     let beam = masses.per_length.beam * portal.span;
     let column = masses.per_length.column * portal.height;
     let elastic = elastic_travel(portal);
-    // Midspan goes down and sideways, the corners sideways alone.
+    // Midspan moves down and sideways, the corners only sideways.
     let carried = Parts {
         deflecting: masses.midspan,
         swaying: masses.midspan + 2.0 * masses.corner,
@@ -74,12 +74,12 @@ pub fn equivalent_masses(portal: &Portal) -> Option<EquivalentMasses> {
     })
 }
 
-/// EI of beam and columns, or their ratio where the stiffness was given in its place: then one section is meant throughout.
+/// EI of beam and columns, or their ratio if the stiffness is given instead: all members then have the same section.
 fn bending(portal: &Portal) -> Sections {
     portal.bending_stiffness.unwrap_or(Sections::same(1.0))
 }
 
-/// A load P = 1, of which W deflects midspan and H sways the frame, goes u = W·δ + H·Δ.
+/// A load P = 1, of which W deflects midspan and H sways the frame, is displaced by u = W·δ + H·Δ.
 fn elastic_travel(portal: &Portal) -> Travel {
     let each = elastic_stiffnesses(portal.span, portal.height, bending(portal));
     let (on_beam, on_sway) = portal.loads.shares();
@@ -112,14 +112,15 @@ fn mechanism_travel(portal: &Portal) -> Travel {
     }
 }
 
-/// ∫m φ² ds of the members bent by end moments and the load at midspan, cubics all; k = (EI_b/L)/(EI_c/h), ξ from 0 to 1 along a member.
+/// ∫m φ² ds of the members bent by end moments and by the load at midspan. All shapes are cubic; k = (EI_b/L)/(EI_c/h), ξ from 0 to 1
+/// along a member.
 ///
-/// Swayed by Δ, θ = tΔ/h, t = 3/(2 + 3k). A column is Δ[3ξ² − 2ξ³ + t(ξ³ − ξ²)], whose square has the integral
-/// Δ²(13/35 − 11t/105 + t²/105): 33/140 where no beam holds its head (t = 3/2), 13/35 where it cannot turn. The beam goes Δ
-/// sideways and θL(ξ − 3ξ² + 2ξ³) up and down, ∫ = (θL)²/210.
+/// Sway by Δ: θ = tΔ/h, t = 3/(2 + 3k). The deflection of a column is Δ[3ξ² − 2ξ³ + t(ξ³ − ξ²)]. The integral of its square is Δ²(13/35 −
+/// 11t/105 + t²/105): 33/140 if no beam restrains its head (t = 3/2), 13/35 if its head cannot rotate. The beam moves sideways by Δ and
+/// vertically by θL(ξ − 3ξ² + 2ξ³), ∫ = (θL)²/210.
 ///
-/// Deflected by δ at midspan, the beam is one with partly built-in ends, r = k_θL/EI_b with k_θ = 4EI_c/h: r = 4/k. Of δ the rotation
-/// of its ends makes θL/4 = δ·3k/(2 + 4k), and a column bows by θh(ξ³ − ξ²), ∫ = (θh)²/105.
+/// Deflection by δ at midspan: the beam has partly built-in ends, r = k_θL/EI_b with k_θ = 4EI_c/h: r = 4/k. The rotation of its ends
+/// contributes θL/4 = δ·3k/(2 + 4k) to δ, and a column bows by θh(ξ³ − ξ²), ∫ = (θh)²/105.
 fn bent(portal: &Portal, per_length: Sections) -> Parts {
     let Portal { span, height, .. } = *portal;
     let sections = bending(portal);

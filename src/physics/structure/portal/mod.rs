@@ -1,7 +1,6 @@
 //! A portal frame by plastic hinges: fixed feet, a section of the beam and one of the columns, point loads at midspan and at the
 //! beam's end. In: geometry, plastic moments, EI or a stiffness. Out: the mechanism that governs, its load, and the elastic stiffness.
-//! Axial and shear strains are left out, and so is the effect of axial force on the plastic moment. What mass moves with it stands in
-//! `portal_mass.rs`.
+//! Axial and shear strains are neglected, and so is the effect of axial force on the plastic moment. The moving mass is in [`mass`].
 
 pub mod limit;
 pub mod mass;
@@ -9,29 +8,29 @@ pub mod mass;
 /// A portal frame and the loads on it (Melo et al. 2006, Fig. 3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Portal {
-    /// L, m
+    /// L \[m\]
     pub span: f64,
-    /// h, m
+    /// h \[m\]
     pub height: f64,
-    /// Mp, N·m
+    /// Mp \[N·m\]
     pub plastic_moment: Sections,
-    /// EI, N·m²; None where the stiffness was given.
+    /// EI \[N·m²\]; None if the stiffness is given.
     pub bending_stiffness: Option<Sections>,
-    /// Of the load against its own displacement, N/m.
+    /// Load over its own displacement \[N/m\].
     pub stiffness: f64,
     pub loads: Loads,
-    /// None where the plan does not say what it weighs.
+    /// None if the plan states no masses.
     pub masses: Option<FrameMasses>,
 }
 
-/// What a portal is made of and carries.
+/// The masses of a portal and of its loads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameMasses {
-    /// q·A, kg/m
+    /// q·A \[kg/m\]
     pub per_length: Sections,
-    /// At midspan, kg
+    /// At midspan \[kg\]
     pub midspan: f64,
-    /// At each corner, kg
+    /// At each corner \[kg\]
     pub corner: f64,
 }
 
@@ -57,14 +56,14 @@ impl Sections {
         self.beam == self.column
     }
 
-    /// Of a corner, where beam and column meet: the weaker one.
+    /// The value of a corner, where beam and column meet: the weaker one.
     #[must_use]
     pub const fn corner(self) -> f64 {
         self.beam.min(self.column)
     }
 }
 
-/// What the frame carries. The load of the specimen is W + H in the given ratio, its displacement the one it does work on:
+/// The loads on the frame. The load of the specimen is W + H in the given ratio. Its displacement is the one on which it does work:
 /// (W·midspan deflection + H·sway)/(W + H).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Loads {
@@ -72,11 +71,11 @@ pub enum Loads {
     Sway,
     /// W at midspan.
     Beam,
-    /// W₀ and H₀, N, growing together.
+    /// W₀ and H₀ \[N\], growing together.
     Combined { beam_load: f64, sway_load: f64 },
 }
 
-/// Where the hinges form.
+/// The mechanisms by the positions of their hinges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mechanism {
     /// Both corners and midspan.
@@ -99,7 +98,7 @@ impl Mechanism {
         }
     }
 
-    /// Where its hinges are.
+    /// The positions of its hinges.
     #[must_use]
     pub const fn hinges(self) -> &'static str {
         match self {
@@ -111,7 +110,7 @@ impl Mechanism {
 }
 
 impl Loads {
-    /// W and H over W + H.
+    /// W and H as fractions of W + H.
     #[must_use]
     pub fn shares(self) -> (f64, f64) {
         match self {
@@ -129,7 +128,7 @@ impl Loads {
 }
 
 impl Portal {
-    /// A portal of flexural rigidity `bending_stiffness` EI, N·m².
+    /// A portal of flexural rigidity `bending_stiffness` EI \[N·m²\].
     #[must_use]
     pub fn of_sections(
         span: f64,
@@ -140,8 +139,8 @@ impl Portal {
     ) -> Self {
         let each = elastic_stiffnesses(span, height, bending_stiffness);
         let (on_beam, on_sway) = loads.shares();
-        // Neither load moves the other's point (one is symmetric, the other antisymmetric): the flexibilities add with the squares
-        // of the shares.
+        // Neither load moves the point of the other (one is symmetric, the other antisymmetric): the flexibilities add with the squares
+        // of the fractions.
         let stiffness = 1.0 / (on_beam * on_beam / each.beam + on_sway * on_sway / each.sway);
         Self {
             span,
@@ -154,16 +153,16 @@ impl Portal {
         }
     }
 
-    /// The same with what it weighs.
+    /// The same portal with these masses.
     #[must_use]
     pub const fn weighing(self, masses: Option<FrameMasses>) -> Self {
         Self { masses, ..self }
     }
 
-    /// Load W + H at which the frame would collapse by one mechanism, N; infinite where the loads do no work on it. Work
-    /// of the loads = work of the hinges, for a rotation θ of a column or half-beam, with `M_b` of the beam, `M_c` of the columns and
-    /// m the less of both at a corner: beam W·(L/2)θ = (m + 2M_b + m)θ; sway H·hθ = (2M_c + 2m)θ; combined
-    /// W·(L/2)θ + H·hθ = (2M_c + 2M_b + 2m)θ. With one section 4Mp, 4Mp and 6Mp.
+    /// Load W + H at which the frame would collapse by one mechanism \[N\]; infinite if the loads do no work on it. Work of the loads =
+    /// work of the hinges, for a rotation θ of a column or half-beam, with `M_b` of the beam, `M_c` of the columns and m the smaller of
+    /// both at a corner: beam W·(L/2)θ = (m + 2M_b + m)θ; sway H·hθ = (2M_c + 2m)θ; combined W·(L/2)θ + H·hθ = (2M_c + 2M_b + 2m)θ. With
+    /// one section 4Mp, 4Mp and 6Mp.
     #[must_use]
     pub fn collapse_load(&self, mechanism: Mechanism) -> f64 {
         let (beam, sway) = self.loads.shares();
@@ -178,7 +177,7 @@ impl Portal {
         hinges / way
     }
 
-    /// The mechanism of the least load, which governs.
+    /// The mechanism with the smallest load, which governs.
     #[must_use]
     pub fn mechanism(&self) -> Mechanism {
         let least = Mechanism::ALL
@@ -187,14 +186,14 @@ impl Portal {
         least.unwrap_or(Mechanism::Combined)
     }
 
-    /// Load W + H at which the frame collapses, N.
+    /// Load W + H at which the frame collapses \[N\].
     #[must_use]
     pub fn capacity(&self) -> f64 {
         self.collapse_load(self.mechanism())
     }
 }
 
-/// Stiffness of each load against its own displacement, N/m.
+/// Stiffness of each load over its own displacement \[N/m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticStiffnesses {
     /// W/δ

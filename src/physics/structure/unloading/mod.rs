@@ -1,8 +1,8 @@
 //! Unloading of a frame. In: the initial stiffness, then displacements and forces of the floors. Out: the distance of each floor from its
 //! unloaded position. It moves nothing.
 //!
-//! In a shear building each storey's shear is a function of its own drift, so that the system falls apart: storey j is off by
-//! −Vⱼ/kⱼ, and kⱼ is the secant that a move showed. Any other frame takes K⁻¹ of the initial stiffness throughout.
+//! In a shear building each storey's shear is a function of its own storey drift, so that the system is uncoupled. Storey j is off by
+//! −Vⱼ/kⱼ, and kⱼ is the secant that a move showed. Any other frame uses K⁻¹ of the initial stiffness throughout.
 
 mod path;
 
@@ -11,20 +11,20 @@ pub use path::UnloadingPath;
 use super::matrix::{BandFactor, NotPositiveDefinite, SymmetricBand};
 use super::shear_building::{drifts, shears, storeys_of};
 
-/// A stiffness shown by a move is believed within this factor of the expected one.
+/// A stiffness shown by a move is accepted within this factor of the expected one.
 pub(super) const BELIEVED: f64 = 16.0;
 
-/// What is known of how the forces fall.
+/// The unloading stiffness, as far as it is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unloading {
     slopes: Slopes,
-    /// Largest sum of a row of |K|, N/m.
+    /// Largest sum of a row of |K| \[N/m\].
     stiffest: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum Slopes {
-    /// Of each storey, N/m: expected, and as the last move showed it.
+    /// The stiffness of each storey \[N/m\]: expected, and as the last move showed it.
     Storeys {
         expected: Vec<f64>,
         shown: Vec<f64>,
@@ -32,7 +32,7 @@ enum Slopes {
     Whole(BandFactor),
 }
 
-/// Places (m) and restoring forces (N) of the floors.
+/// Positions \[m\] and restoring forces \[N\] of the floors.
 #[derive(Clone, Copy, Debug)]
 pub struct Loaded<'a> {
     pub displacement: &'a [f64],
@@ -61,7 +61,7 @@ impl Unloading {
         Ok(Self { slopes, stiffest })
     }
 
-    /// One degree of freedom, K > 0 in N/m.
+    /// One degree of freedom, with K > 0 \[N/m\].
     #[must_use]
     pub fn of_one(stiffness: f64) -> Self {
         let expected = vec![stiffness];
@@ -74,13 +74,13 @@ impl Unloading {
         }
     }
 
-    /// Force by a displacement resolution `quantum` \[m\] at every floor \[N\]: a smaller force is not distinguished from zero.
+    /// The force at every floor for a displacement resolution `quantum` \[m\], in N: a smaller force is not distinguished from zero.
     #[must_use]
     pub const fn force_of(&self, quantum: f64) -> f64 {
         self.stiffest * quantum
     }
 
-    /// By how much each floor is to move (m) for these forces (N) to vanish.
+    /// The move of each floor \[m\] by which these forces \[N\] become zero.
     #[must_use]
     pub fn moves(&self, force: &[f64]) -> Vec<f64> {
         match &self.slopes {
@@ -102,7 +102,7 @@ impl Unloading {
         }
     }
 
-    /// The stiffness that is expected of each storey, N/m; None of a frame that is no shear building.
+    /// The expected stiffness of each storey \[N/m\]; None for a frame that is not a shear building.
     #[must_use]
     pub fn storeys(&self) -> Option<&[f64]> {
         match &self.slopes {
@@ -111,7 +111,7 @@ impl Unloading {
         }
     }
 
-    /// The secant of each storey, N/m, where a move let it drift, and none where there are no storeys.
+    /// The secant of each storey \[N/m\] if a move changed its storey drift, and none if there are no storeys.
     #[must_use]
     pub fn secants(&self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
         let [moved, changed] = between(from, to);
@@ -121,7 +121,8 @@ impl Unloading {
         moved.into_iter().zip(changed).map(secant).collect()
     }
 
-    /// Takes what a move showed, where `sure` of a storey, from 0, the stiffness that is expected of it (N/m) and its change of drift (m).
+    /// Learns the secants of a move for the storeys for which `sure` is true. Its arguments: the storey from 0, its expected stiffness
+    /// \[N/m\] and its change of storey drift \[m\].
     pub fn learn_where(
         &mut self,
         from: Loaded<'_>,
@@ -131,7 +132,7 @@ impl Unloading {
         self.learn_within(BELIEVED, from, to, sure);
     }
 
-    /// The same, believing a stiffness within another factor of the expected one.
+    /// As [`Self::learn_where`], with a different factor within which a stiffness is accepted.
     pub(super) fn learn_within(
         &mut self,
         believed: f64,
@@ -154,7 +155,7 @@ impl Unloading {
     }
 }
 
-/// Change of drift (m) and of shear (N) of each storey.
+/// Change of storey drift \[m\] and of shear \[N\] of each storey.
 fn between(from: Loaded<'_>, to: Loaded<'_>) -> [Vec<f64>; 2] {
     let (mut moved, mut changed) = (vec![0.0; from.force.len()], vec![0.0; from.force.len()]);
     let less = |to: &[f64], from: &[f64]| -> Vec<f64> {
@@ -170,7 +171,7 @@ mod tests {
     use super::super::shear_building::{floor_forces, storey_stiffness};
     use super::*;
 
-    /// Storeys of 3 and 2 N/m under forces 1 and 4 N of their floors: shears 5 and 4 N, drifts 5/3 and 2 m.
+    /// Storeys of 3 and 2 N/m under forces 1 and 4 N of their floors: shears 5 and 4 N, storey drifts 5/3 and 2 m.
     #[test]
     fn a_shear_building_falls_apart_into_its_storeys() {
         let stiffness = storey_stiffness(&[3.0, 2.0]);
@@ -184,7 +185,7 @@ mod tests {
         assert!((unloading.force_of(0.5) - 3.5).abs() < 1e-15);
     }
 
-    /// The same by K⁻¹, of a frame with a spring from its top to the ground: no shear building.
+    /// The same by K⁻¹, for a frame with a spring from its top to the ground, which is not a shear building.
     #[test]
     fn any_other_frame_is_solved_as_a_whole() {
         let stiffness = SymmetricBand::from_dense(&[vec![5.0, -2.0], vec![-2.0, 6.0]]).unwrap();
@@ -200,7 +201,7 @@ mod tests {
         }
     }
 
-    /// A storey that unloads at half its stiffness is off by twice as much; a secant of noise is not believed.
+    /// A storey that unloads at half its stiffness is off by twice as much; a secant from noise is not accepted.
     #[test]
     fn each_storey_is_off_by_the_stiffness_that_it_shows() {
         let mut unloading = Unloading::of(&storey_stiffness(&[3.0, 2.0])).unwrap();

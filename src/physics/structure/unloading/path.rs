@@ -1,10 +1,10 @@
 //! The moves that unload a frame, one after the other, without loading it in the opposite direction. In: the expected slopes, then
 //! displacements and forces of the floors. Out: the next move of each floor. It moves nothing.
 //!
-//! A specimen may come back stiffer than it was loaded, softer, or first by the jump of its friction. A first short move shows the slope;
-//! then each move takes most of the load that is left, by the slope that was shown or the expected one, whichever is stiffer. Once little
-//! is left and the slope was no stiffer than the one before it, a move takes the rest. Where the unloading branch softens, as specimens do, no move
-//! passes the unloaded position.
+//! A specimen may unload with a stiffness above or below that of loading, or first by the jump of its friction. A first short move shows
+//! the slope. Each further move then removes most of the remaining load, with the larger of the measured and the expected slope. Once
+//! little load remains and the slope is not stiffer than the one before it, one move removes the rest. If the unloading branch softens,
+//! as that of specimens does, no move passes the unloaded position.
 
 use super::super::shear_building::{drifts, shears};
 use super::{BELIEVED, Loaded, Unloading};
@@ -14,13 +14,13 @@ use crate::integrator::tangent::NOISE_MULTIPLE;
 const FIRST: f64 = 1.0 / BELIEVED;
 /// Part that every further move removes: the error of a slope by noise then has a ninth of its effect, at most.
 const FURTHER: f64 = 0.9;
-/// A slope that exceeds the one before it by less is no stiffer.
+/// A slope is not stiffer unless it exceeds the one before it by this factor.
 const STIFFER: f64 = 1.1;
-/// The factor within which older versions believed a stiffness.
+/// The factor within which older versions accepted a stiffness.
 const OF_OLDER: f64 = 4.0;
-/// Of the load at the start: so little is taken off in one move where its slope is known.
+/// Fraction of the load at the start: one move removes so small a load if the slope is known.
 const LITTLE: f64 = 0.3;
-/// And so little by the slope that was shown, also where a stiffer one was expected.
+/// As `LITTLE`, with the measured slope, even if a stiffer one was expected.
 const LEAST: f64 = 0.1;
 
 /// State of the unloading, storey by storey; of all floors as one for a frame that is not a shear building.
@@ -31,26 +31,26 @@ pub struct UnloadingPath {
     at_once: bool,
 }
 
-/// A storey. All floors as one have the largest force for their load and count the move in loads: their expected slope is 1.
+/// A storey. For all floors as one, the load is the largest force and the move is counted in loads: their expected slope is 1.
 #[derive(Clone, Debug)]
 struct Part {
-    /// N/m
+    /// \[N/m\]
     expected: f64,
     /// By the last move that determined it \[N/m\].
     slope: f64,
     /// Whether that slope was no stiffer than the one before.
     falls: bool,
     moved: bool,
-    /// Load where it began, N.
+    /// Load at the start \[N\].
     start: f64,
-    /// Drift \[m\] and load \[N\] from which the slope is determined.
+    /// Storey drift \[m\] and load \[N\] from which the slope is determined.
     told_from: (f64, f64),
-    /// Noise of the load, N, and of the drift, m.
+    /// Noise of the load \[N\] and of the storey drift \[m\].
     noise: (f64, f64),
 }
 
 impl UnloadingPath {
-    /// `force` (N) and `place` (m): standard deviation of a reading of one floor.
+    /// `force` \[N\] and `displacement` \[m\]: standard deviations of a reading of one floor.
     #[must_use]
     pub fn new(unloading: Unloading, (force, displacement): (f64, f64), at: Loaded<'_>) -> Self {
         let part = |expected: f64, told_from: (f64, f64), noise: (f64, f64)| Part {
@@ -95,7 +95,8 @@ impl UnloadingPath {
         }
     }
 
-    /// As older versions went, whose records are played back so: every move to where the load would be none, by the last secant.
+    /// The moves of older versions, for the replay of their records: every move leads to the expected position of zero load, by the last
+    /// secant.
     #[must_use]
     pub fn at_once(self) -> Self {
         Self {
@@ -104,7 +105,7 @@ impl UnloadingPath {
         }
     }
 
-    /// By how much each floor is to move next (m) under these forces (N).
+    /// The next move of each floor \[m\] under these forces \[N\].
     #[must_use]
     pub fn moves(&self, force: &[f64]) -> Vec<f64> {
         if self.at_once {
@@ -129,7 +130,7 @@ impl UnloadingPath {
         moves
     }
 
-    /// Largest load of a part, N: it falls with every move that leads on.
+    /// Largest load of a part \[N\]: it falls with every effective move.
     #[must_use]
     pub fn left(&self, force: &[f64]) -> f64 {
         if self.at_once {
@@ -165,8 +166,8 @@ impl UnloadingPath {
         loads
     }
 
-    /// Takes what a move from one place to another showed; gives the secant of each storey, N/m, where it drifted, and none where there
-    /// are no storeys.
+    /// Learns from a move between two positions. Returns the secant of each storey \[N/m\] with a change of storey drift, and none
+    /// without storeys.
     pub fn learn(&mut self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
         if self.at_once {
             self.unloading
@@ -186,7 +187,7 @@ impl UnloadingPath {
 }
 
 impl Part {
-    /// How far it is to go (m) under this load (N).
+    /// The next move \[m\] under this load \[N\].
     fn moves(&self, load: f64) -> f64 {
         let by_noise = load.abs() <= 2.0 * NOISE_MULTIPLE * self.noise.0;
         let known_to = |part: f64| self.falls && load.abs() <= part * self.start.abs();
@@ -219,7 +220,7 @@ impl Part {
     }
 }
 
-/// Drift (m) and shear (N) of each storey.
+/// Storey drift \[m\] and shear \[N\] of each storey.
 fn of_storeys(at: Loaded<'_>) -> Vec<(f64, f64)> {
     let (mut drift, mut shear) = (vec![0.0; at.force.len()], vec![0.0; at.force.len()]);
     drifts(at.displacement, &mut drift);
@@ -227,7 +228,7 @@ fn of_storeys(at: Loaded<'_>) -> Vec<(f64, f64)> {
     drift.into_iter().zip(shear).collect()
 }
 
-/// Largest size.
+/// Peak absolute value.
 fn largest(values: &[f64]) -> f64 {
     values
         .iter()
@@ -240,7 +241,8 @@ mod tests {
     use crate::structure::matrix::SymmetricBand;
     use crate::structure::shear_building::storey_stiffness;
 
-    /// Places and forces of one degree of freedom from `start` (m) on, by its own curve, until it carries less than a thousandth.
+    /// Positions and forces of one degree of freedom from `start` \[m\], by its own moves, until less than a thousandth of the load
+    /// remains.
     fn followed(expected: f64, start: f64, force: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         let mut at = (start, force(start));
         let read = |at: &(f64, f64)| ([at.0], [at.1]);
@@ -276,8 +278,8 @@ mod tests {
         assert!((path[3].0 - 0.005).abs() < 1e-15 && path.iter().all(|(_, force)| *force > -1e-12));
     }
 
-    /// First eight times as stiff as expected, or by the jump of a friction, then softer and softer: never past no load, and always to the
-    /// same place.
+    /// First eight times as stiff as expected, or by the jump of a friction, then softer and softer: the path never passes zero load and
+    /// always ends at the same position.
     #[test]
     fn a_way_back_that_softens_is_never_passed() {
         let bends = |x: f64| {
@@ -304,7 +306,7 @@ mod tests {
         }
     }
 
-    /// One that stiffens as the load goes is not passed either where its stiffest slope was expected.
+    /// A branch that stiffens as the load falls is not passed either, if its stiffest slope was expected.
     #[test]
     fn a_way_back_that_stiffens_is_not_passed_by_its_stiffest_slope() {
         let path = followed(1e6, 5e-3, |x| {
@@ -320,7 +322,7 @@ mod tests {
         );
     }
 
-    /// Each storey by its own slope; all floors of another frame by the one that is stiffest.
+    /// Each storey by its own slope; all floors of a different frame by the stiffest one.
     #[test]
     fn floors_come_to_rest_together() {
         let braced = SymmetricBand::from_dense(&[vec![5.0, -6.0], vec![-6.0, 9.0]]).unwrap();
@@ -370,7 +372,7 @@ mod tests {
         }
     }
 
-    /// A load that noise nearly hides goes at once, by what is expected.
+    /// A load that noise nearly hides is removed in one move, by the expected slope.
     #[test]
     fn noise_is_no_slope() {
         let at = Loaded {

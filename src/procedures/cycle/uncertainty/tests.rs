@@ -35,7 +35,7 @@ fn plan(behaviour: Behaviour, link: VirtualLink, calibration: Calibration) -> Pl
     plan
 }
 
-/// Energy goes with both factors, stiffness with their ratio, a ratio of energies with neither; a zero shifts forces.
+/// Energy is proportional to both factors, stiffness to their ratio, a ratio of energies to neither; a zero offset shifts forces.
 #[test]
 fn a_calibration_reaches_the_loops_by_its_powers() {
     let behaviour = Behaviour::Bilinear {
@@ -82,7 +82,7 @@ fn a_calibration_reaches_the_loops_by_its_powers() {
     }
 }
 
-/// One number is told with one uncertainty, whether by a name of its own or as an entry of its list; energies add up source by source.
+/// A number has one uncertainty, under its own name and as an entry of its list. Energies add up source by source.
 #[test]
 fn the_lists_are_as_uncertain_as_the_numbers() {
     let behaviour = Behaviour::Bilinear {
@@ -129,7 +129,7 @@ fn the_lists_are_as_uncertain_as_the_numbers() {
         (amplitude / (0.003 * 0.02) - 1.0).abs() < 1e-9,
         "{amplitude}"
     );
-    // Rounded too, the numbers are still as uncertain as their entries.
+    // After rounding, the numbers still have the uncertainties of their entries.
     let link = VirtualLink {
         noise: 0.1,
         resolution: 1e-5,
@@ -157,7 +157,8 @@ fn the_lists_are_as_uncertain_as_the_numbers() {
     );
 }
 
-/// Bolted supports whose corners ten points a quarter lose: 131.1 of 135.75 J, the friction alone, 4·1.5 kN·(23 mm − 1.5 kN/4 kN/mm).
+/// Bolted supports with corners that ten points per quarter lose: 131.1 of 135.75 J, the friction alone, 4·1.5 kN·(23 mm − 1.5 kN/4
+/// kN/mm).
 fn of_points(points: u32) -> crate::record::Record {
     let supports = Bolted {
         stiffness: 4e6,
@@ -178,7 +179,8 @@ fn of_points(points: u32) -> crate::record::Record {
     run_unwatched(&plan)
 }
 
-/// However few the points, U holds the energy of the loop and its damping ratio; many leave little open, and few are remarked on.
+/// However few the points, U contains the energy of the loop and its damping ratio. With many points little is undetermined; with few an
+/// observation is made.
 #[test]
 fn what_the_points_of_a_loop_leave_open_is_in_its_uncertainty() {
     let exact = 4.0 * 1.5e3 * (0.023 - 1.5e3 / 4e6);
@@ -204,7 +206,7 @@ fn what_the_points_of_a_loop_leave_open_is_in_its_uncertainty() {
             (energy - exact).abs() <= 2.0 * u,
             "{points} points: {energy} J ± {u} J of {exact} J"
         );
-        // Of one and two, where the corners lie is all.
+        // With one and two points, the position of the corners is the only contribution.
         assert!(
             points <= 5 || u < last,
             "{points} points: {u} J, {last} J of fewer"
@@ -222,7 +224,7 @@ fn what_the_points_of_a_loop_leave_open_is_in_its_uncertainty() {
         assert_eq!(told, few, "{points} points");
     }
     assert!(last < 1e-4 * exact, "{last} J");
-    // The default loses 0.2 % at most.
+    // The default number loses 0.2 % at most.
     let energies = of_points(25);
     let ResultValue::List(values) = &energies.procedures[0].result("energies").unwrap().value
     else {
@@ -266,7 +268,7 @@ fn the_points_of_an_elastic_loop_leave_nothing_open() {
     }
 }
 
-/// A plastic force that stays, pushed and pulled: neither the largest nor the smallest reading is off by what noise adds to it.
+/// A constant plastic force in both directions: neither the largest nor the smallest reading has the bias of noise.
 #[test]
 fn largest_and_smallest_of_noisy_cycles_are_those_of_the_force() {
     let records = (1..=60).map(|seed| {
@@ -293,8 +295,8 @@ fn largest_and_smallest_of_noisy_cycles_are_those_of_the_force() {
     }
 }
 
-/// ∫R dX by the trapezoid has the weight (x₊ − x₋)/2 on each R: u = σ/√n·√Σ w², of uniform steps h of ways back and
-/// forth h but for the turns, where it is 0, and the two ends of the whole, where it is h/2.
+/// ∫R dX by the trapezoidal rule has the weight (x₊ − x₋)/2 on each R: u = σ/√n·√Σ w². Uniform steps have the weight h, except the
+/// reversals with 0 and the two ends of the whole path with h/2.
 #[test]
 fn noise_reaches_the_energy_of_a_loop_by_its_weights() {
     let noise = 0.2;
@@ -311,7 +313,7 @@ fn noise_reaches_the_energy_of_a_loop_by_its_weights() {
         Calibration::default(),
     ));
     let step = 0.02 / f64::from(POINTS);
-    // Two cycles of 40 steps: 81 readings, four of them turns, two ends, and the middle one passed twice over.
+    // Two cycles of 40 steps: 81 readings, four of them reversals, two ends, and the middle one passed twice.
     let weights = f64::from(81 - 4 - 2) + 2.0 * 0.25;
     let by_hand = noise / 4.0_f64.sqrt() * step * weights.sqrt();
     let u = number(&record, 0, "dissipated_energy").1.unwrap();

@@ -1,5 +1,5 @@
 //! Whether a striker arrives at all: the time to cross its gap against the duration of the impact. In: striker and duration, SI. Out: an
-//! error where the impact is over before the contact begins. It knows neither specimen nor contact.
+//! error if the impact is over before the contact begins. It knows neither specimen nor contact.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::whole as fault;
@@ -13,7 +13,7 @@ fn time_to_arrive(striker: &Striker) -> f64 {
     2.0 * striker.gap / (striker.velocity + reached)
 }
 
-/// Refuses a striker that does not cross its gap within the `duration` (s) of the impact `block`.
+/// Refuses a striker that does not cross its gap within the `duration` \[s\] of the impact `block`.
 pub(crate) fn check(checker: &mut Checker, block: usize, striker: &Striker, duration: Option<f64>) {
     let arrives = time_to_arrive(striker);
     let Some(duration) = duration.filter(|duration| arrives >= *duration) else {

@@ -133,7 +133,7 @@ fn on_storey(
     }
 }
 
-/// Warns of a run that waits until the striker has left for good: a striker that falls always comes back.
+/// Warns of a run that waits until the striker has finally separated: a falling striker always returns.
 fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Striker) {
     if let (Until::Rebound, true, Some((_, entry))) =
         (until, striker.gravity > 0.0, checker.field(block, "until"))

@@ -1,5 +1,5 @@
 //! The structure that a striker hits: the fields of one degree of freedom, or of one floor of a frame. In: a block. Out: the target, or
-//! errors where a field belongs to the other one.
+//! errors if a field belongs to the other one.
 
 use std::rc::Rc;
 

@@ -1,4 +1,4 @@
-//! The critical time step and the time step of an impact before the run. In: the plan. Out: times \[s\], where they are known.
+//! The critical time step and the time step of an impact before the run. In: the plan. Out: times \[s\], if they are known.
 
 use crate::language::check::checker::Checker;
 use crate::plan::formula::{Formula, NoResults, Part, ResultReference, ResultValue, Results};
@@ -10,8 +10,8 @@ pub(crate) fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Opt
     impact.critical_time_step(striker, Formula::constant)
 }
 
-/// Δtc, s, with a predicted stiffness where an earlier procedure is to measure it: the initial one of the specimen of a virtual rig.
-/// The second value is true if Δtc is such a prediction.
+/// Δtc \[s\]. If an earlier procedure measures the stiffness, it uses the initial stiffness of the specimen of a simulated rig. The
+/// second value is true if Δtc is such a prediction.
 pub(crate) fn predicted_critical(
     checker: &Checker,
     impact: &Impact,
@@ -39,7 +39,7 @@ pub(crate) fn predicted_critical(
 
 /// The results that ramps and cycles will find for a declared specimen.
 struct Predicted {
-    /// N/m
+    /// \[N/m\]
     stiffness: f64,
 }
 
@@ -60,7 +60,7 @@ impl Results for Predicted {
     }
 }
 
-/// Δt, s, where it is known before the run.
+/// Δt \[s\], if it is known before the run.
 pub(crate) fn time_step_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {
     let critical = critical_before_the_run(impact, striker);
     impact

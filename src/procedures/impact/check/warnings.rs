@@ -80,7 +80,7 @@ pub(crate) fn mechanism(
     }
 }
 
-/// Warns of a time step, s, that does not resolve a limit force (N) on a structure of `mass` (kg): Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and
+/// Warns of a time step, s, that does not resolve a limit force \[N\] on a structure of `mass` \[kg\]: Δt < 2M·Ms·V0/((2M + Ms)·F_lim), and
 /// Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
 pub(crate) fn limit_force(
     checker: &mut Checker,

@@ -245,7 +245,7 @@ pub(crate) fn tracking(history: &ImpactHistory) -> Chart {
     chart
 }
 
-/// A chart over virtual time with the contact shaded, still without series.
+/// A chart over simulated time with the contact shaded, still without series.
 pub(crate) fn against_time(history: &ImpactHistory, y: Quantity) -> Chart {
     let band = |label, state, colour| Band {
         label,

@@ -46,7 +46,7 @@ pub(crate) const SHARED: &[FigureKind] = &[
     FigureKind::ForceDisplacement,
 ];
 
-/// A figure of an impact and its caption; None before the first step, or if it is no figure of an impact.
+/// A figure of an impact and its caption; None before the first step, or for a figure of a different procedure.
 pub(crate) fn chart(
     run: &Run<'_>,
     name: &str,

@@ -12,7 +12,7 @@ use crate::schema::ResultKind;
 use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 
-/// A figure and its caption; None before the first step, or if it is no figure of an impact on a storey.
+/// A figure and its caption; None before the first step, or for a figure of a different procedure.
 pub(crate) fn chart(
     run: &Run<'_>,
     name: &str,
@@ -128,7 +128,7 @@ fn striker(history: &ImpactHistory, frame: &StruckFrame) -> Series {
     charts::striker_near(history, positions, Style::line(palette::BLACK, 1.4, DASHED))
 }
 
-/// The contact behind a chart over virtual time.
+/// The contact as shading of a chart over simulated time.
 fn shaded(history: &ImpactHistory, chart: Chart) -> Chart {
     let bands = charts::against_time(history, Quantity::time()).bands;
     Chart { bands, ..chart }

@@ -19,7 +19,7 @@ struct Contact {
     limited: bool,
 }
 
-/// The log, shortened where it is long.
+/// The log, shortened if it is long.
 pub(crate) fn table(history: &ImpactHistory, body: &mut Vec<Block>) {
     let contacts = contacts(&history.steps);
     if contacts.is_empty() {

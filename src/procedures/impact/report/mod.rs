@@ -14,7 +14,7 @@ use crate::report::{Run, number};
 use crate::schema::procedures::{damping_sweep, impact as schema};
 use crate::units::Dimension;
 
-/// Results that have a budget where no requirement reads any.
+/// Results that have a budget even if no requirement reads any.
 pub(crate) const BUDGET: &[&str] = &[schema::MAX_DISPLACEMENT.name, schema::ABSORBED_ENERGY.name];
 
 /// The blocks below its results.

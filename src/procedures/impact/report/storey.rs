@@ -60,7 +60,7 @@ pub(crate) fn report(
     contact_log::table(history, body);
 }
 
-/// Where the frame was struck, and how it was integrated.
+/// The struck storey, and the integration of the frame.
 fn method(
     run: &Run<'_>,
     impact: &Impact,
