@@ -15,7 +15,7 @@ use crate::rig::{Reading, named_axis, of_axis};
 use crate::units::Dimension;
 use crate::units::display::{readable, stated};
 
-/// Time between the two readings at rest, s.
+/// Time between the two readings at rest \[s\].
 const REST: f64 = 1.0;
 
 /// Requests the motion enable, then tests the rig axis by axis. No motion has occurred before; `afterwards` describes the motion after

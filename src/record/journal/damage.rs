@@ -1,5 +1,4 @@
-//! Damage of a run log that cannot be trusted. In: nothing. Out: the position and the reason, for the reader. There is no
-//! remedy.
+//! Damage of a run log that cannot be trusted. In: nothing. Out: the position and the reason, for the reader. It cannot be repaired.
 
 use super::{FORMAT, LINE_BYTES, OLDEST_FORMAT};
 

@@ -4,7 +4,7 @@
 
 use crate::rig::controllers::{Answer, DeviceFault, LineClient};
 
-/// How often a question is put before it is given up.
+/// Number of times a question is sent before it is abandoned.
 const ATTEMPTS: u32 = 3;
 
 /// Whether a late answer is still possible.
@@ -60,7 +60,7 @@ impl RequestReply {
         })
     }
 
-    /// None: silence.
+    /// None if no answer was received.
     fn once<T>(
         &mut self,
         client: &mut LineClient,
@@ -74,7 +74,7 @@ impl RequestReply {
                 Ok(None)
             }
             Err(fault) => {
-                // An interrupted question may be answered yet.
+                // The answer to an interrupted question may still arrive.
                 self.late_answer_possible |= fault == DeviceFault::Interrupted;
                 Err(fault)
             }

@@ -1,24 +1,24 @@
-//! psd's own line protocol. In: a request and its sequence number; a line that came. Out: the frame; the reply the line is.
-//! It keeps no conversation: which reply answers which request is the driver's business.
+//! The line protocol of psd. In: a request and its sequence number; a received line. Out: the frame; the reply in the line. It has no
+//! state: the driver matches replies with requests.
 //!
 //! # The protocol
-//! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request is at most 96 bytes with its ending, of a rig of several
-//! axes 512; a reply at most 512.
+//! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request has at most 96 bytes with its ending, or 512 for a rig with several
+//! axes. A reply has at most 512 bytes.
 //!
 //! ```text
 //! request = ">" VERB  SP SEQ          *(SP word) "*" CRC LF
 //! reply   = "<" KIND  SP SEQ SP BOOT  *(SP word) "*" CRC LF
 //! ```
-//! CRC is CRC-16/CCITT-FALSE (polynomial 1021, start FFFF; `123456789` gives 29B1) of the bytes between the lead character
-//! and `*`, as 4 upper-case hexadecimal digits. SEQ is a decimal of 32 bits, one more with every new request. BOOT is 4
-//! random upper-case hexadecimal digits of this power-up. Words are printable ASCII without spaces. Units are fixed: mm, N,
-//! mm/s, ms. Lengths and speeds have 6 decimals, forces 3.
+//! CRC is CRC-16/CCITT-FALSE (polynomial 1021, start FFFF; `123456789` gives 29B1) of the bytes between the lead character and `*`, as 4
+//! upper-case hexadecimal digits. SEQ is a decimal of 32 bits, increased by one with every new request. BOOT is a random boot identifier
+//! of this power-up, 4 upper-case hexadecimal digits. Words are printable ASCII without spaces. Units are fixed: mm, N, mm/s, ms. Lengths
+//! and speeds have 6 decimals, forces 3.
 //!
-//! A broken frame is not answered. The rig keeps its last reply: the same SEQ again receives that reply and does nothing;
-//! any other than the next is `ERR SEQ`. HELLO is accepted with every SEQ, is executed each time, and sets SEQ.
+//! A broken frame is not answered. The rig keeps its last reply: a repeated SEQ receives that reply again and has no other effect. Any
+//! SEQ except this one and the next is answered by `ERR SEQ`. HELLO is accepted with every SEQ, is executed each time, and sets SEQ.
 //!
-//! A rig has 1 to 6 axes. Words in braces are repeated for each axis in turn, so a rig of one axis has each once. The
-//! number of axes follows from the number of words of its reply to HELLO.
+//! A rig has 1 to 6 axes. Words in braces are repeated for each axis in turn, so for a rig of one axis they appear once. The number of
+//! axes follows from the number of words in the reply to HELLO.
 //!
 //! | Request | Reply |
 //! |---|---|
@@ -56,7 +56,7 @@ pub use request::{
 };
 pub(crate) use request::{in_turn, time};
 
-/// Axes of a rig, at most: the reply to HELLO is no longer than a reply may be.
+/// Largest number of axes of a rig: the reply to HELLO has a maximum length.
 pub const MOST_AXES: usize = 6;
 
 /// The limits that a rig enforces.
@@ -64,7 +64,7 @@ pub const MOST_AXES: usize = 6;
 pub struct Bounds {
     /// One entry an axis.
     pub axes: Vec<AxisBounds>,
-    /// m/s, of the axis that is fastest.
+    /// Speed of the fastest axis \[m/s\].
     pub top_speed: f64,
 }
 
@@ -96,7 +96,7 @@ pub enum Kind {
     Err,
 }
 
-/// A reply that came whole.
+/// A complete reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reply {
     pub kind: Kind,
@@ -114,9 +114,8 @@ impl Reply {
         text(&self.line[self.boot..self.boot + BOOT_DIGITS])
     }
 
-    /// Its words. A complete reply in order may still have an empty or unknown field: the rig repeats the same reply
-    /// however often it is requested, so this is an invalid reading, not a broken line. A missing word is empty, and not a
-    /// number.
+    /// The words of the reply. A complete reply in order may still have an empty or unknown field. The rig repeats the same reply to
+    /// every repeated request, so this is an invalid reading, not a broken line. A missing word is empty, and not a number.
     #[must_use]
     pub fn words(&self) -> Vec<&str> {
         let said = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
@@ -133,7 +132,7 @@ const CHECK_LENGTH: usize = 5;
 /// Words of a reading of one axis, with reserve.
 const USUAL_WORDS: usize = 8;
 
-/// Why a line is no reply.
+/// Why a line is not a valid reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Broken {
     Shape,
@@ -161,7 +160,7 @@ pub enum State {
 /// A reading of every axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Data {
-    /// s
+    /// \[s\]
     pub time: f64,
     pub axes: Vec<AxisData>,
     pub state: State,
@@ -185,7 +184,7 @@ pub fn left(words: &[&str]) -> Option<f64> {
         .map(|left| left / 1e3)
 }
 
-/// The reply a line is, without its ending.
+/// The reply in a line without its ending.
 ///
 /// # Errors
 /// It is not a valid reply.
@@ -211,7 +210,7 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
         .and_then(|count| u32::try_from(count).ok())
         .ok_or(Broken::Shape)?;
     number::hexadecimal(next()?, BOOT_DIGITS).ok_or(Broken::Shape)?;
-    // Behind `<`, the kind, the number, and a blank after either.
+    // After `<`: the kind, the number, and a space after each.
     let boot = 1 + kind_length + 1 + counted.len() + 1;
     Ok(Reply {
         kind,
@@ -239,7 +238,7 @@ pub fn hello(words: &[&str]) -> Option<Hello> {
     if words.iter().any(|word| word.is_empty()) {
         return None;
     }
-    // Four limits and a target for each axis, and two words for all.
+    // Four limits and a target for each axis, and two further words.
     let axes = numbers
         .len()
         .checked_sub(2)
@@ -307,7 +306,7 @@ pub fn data(words: &[&str]) -> Option<Data> {
     })
 }
 
-/// The first axis (from 1) of a `DATA` reply of several that has no number where one belongs.
+/// The first axis (from 1) in a `DATA` reply of several axes that has no number in a numeric field.
 #[must_use]
 pub fn axis_without_number(words: &[&str]) -> Option<usize> {
     let [_, axes @ .., _] = words else {
