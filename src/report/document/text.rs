@@ -1,5 +1,5 @@
-//! A line of text in pieces, each with its style. In: strings from any source, such as a plan. Out: pieces without control
-//! characters. It knows no fonts and no markup.
+//! A line of text in pieces, each with its style. In: strings from any source, such as a plan. Out: pieces without control characters. It
+//! knows no fonts and no markup.
 
 use serde::Serialize;
 
@@ -49,7 +49,7 @@ impl Text {
         Self::new().with(Style::Missing, words)
     }
 
-    /// A text that may be missing; a blank text is.
+    /// A text that may be missing; a text of spaces counts as missing.
     pub fn given(text: Option<&str>) -> Self {
         match text {
             Some(text) if !text.trim().is_empty() => text.into(),
@@ -106,7 +106,7 @@ impl From<String> for Text {
     }
 }
 
-/// The text without control characters and marks of reading direction: a label reads as it is written.
+/// The text without control characters and marks of reading direction: a label is displayed as it is written.
 pub(crate) fn printable(text: &str) -> String {
     sanitize::printed(text)
 }

@@ -6,7 +6,7 @@ use crate::language::check::messages::whole;
 use crate::plan::{MOST_RECORDED_STEPS, Plan};
 use crate::procedures;
 
-/// Compares the steps of all procedures that integrate, added up in their order, with [`MOST_RECORDED_STEPS`].
+/// Compares the steps of all procedures that integrate, summed in their order, with [`MOST_RECORDED_STEPS`].
 pub fn check(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
     let mut before = 0_u64;
     for (procedure, block) in plan.procedures.iter().zip(blocks.iter().copied()) {
