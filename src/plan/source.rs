@@ -73,7 +73,7 @@ pub enum Source {
         procedure: ProcedureId,
         blow: u16,
     },
-    /// The resolution of the readings of a procedure, in a fitted result or list entry, as far as the scatter does not show it.
+    /// The resolution of the readings of a procedure, in a fitted result or list entry, beyond the part that the scatter shows.
     Rounding {
         procedure: ProcedureId,
         result: &'static str,

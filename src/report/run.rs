@@ -1,5 +1,5 @@
-//! The input of every output: plan, record, assessment and provenance of one run. No field is read from the machine on a
-//! simulated rig, so that equal runs give equal bytes.
+//! The input of every output: plan, record, assessment and provenance of one run. On a simulated rig no field is read from the machine,
+//! so that equal runs give bit-identical output.
 
 use std::borrow::Cow;
 

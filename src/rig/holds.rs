@@ -1,13 +1,12 @@
-//! Dwells: settled readings at one position, with time between them. In: readings that passed the guard. Out: rates of
-//! force and displacement while nothing moved. It reads nothing itself and assesses nothing.
+//! Dwells: settled readings at one position, with time between them. In: readings that passed the guard. Out: rates of force and
+//! displacement during the dwells. It reads nothing itself and assesses nothing.
 //!
-//! In a dwell a force changes by zero drift and by relaxation. The sign of the relaxation is known in one case. Let a
-//! specimen be a spring in parallel with Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ):
-//! each branch force is its stiffness times d minus a weighted mean of the displacement since the specimen rested at 0. At
-//! a displacement beyond all earlier ones, that mean is not larger than d, every bᵢ ≥ 0, and at rest all bᵢ decay to 0: the
-//! force can only fall. A force that grows there is zero drift. After an unloading the force may grow by relaxation, so
-//! those dwells are reported and not assessed. The same applies to frames, whose storey drifts are not largest when their
-//! floor displacements are.
+//! In a dwell a force changes by zero drift and by relaxation. The sign of the relaxation is known in one case. Let a specimen be a
+//! spring in parallel with Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ). Each branch force is its
+//! stiffness times the difference of d and a weighted mean of the displacement since the specimen rested at 0. At a displacement beyond
+//! all earlier ones, that mean is not larger than d, and every bᵢ ≥ 0. At rest all bᵢ decay to 0: the force can only decrease. A force
+//! that increases there is zero drift. After an unloading the force may increase by relaxation, so those dwells are reported and not
+//! assessed. The same applies to frames, because their storey drifts are not largest when their floor displacements are.
 
 use super::{Guard, Held, Reading};
 

@@ -1,5 +1,5 @@
-//! Inputs of a procedure: formulas of the plan, evaluated once every result before it is known. In: formulas. Out:
-//! numbers in SI, inside their domain, and the list of them for the record.
+//! Inputs of a procedure: formulas of the plan, evaluated when all earlier results are known. In: formulas. Out: numbers in SI, inside
+//! their domain, and the list of them for the record.
 
 use crate::plan::formula::{Estimate, Formula, ProcedureId, Results};
 use crate::run::stop::Stop;

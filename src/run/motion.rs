@@ -37,7 +37,7 @@ pub struct Extent {
 }
 
 impl Motion {
-    /// The motion of a plan's rig, as far as the plan alone states it.
+    /// The motion of a plan's rig, with the values that the plan alone determines.
     #[must_use]
     pub fn of(plan: &Plan, identity: Identity, does: String) -> Self {
         Self {

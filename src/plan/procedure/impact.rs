@@ -1,5 +1,5 @@
 //! A checked `impact`: a computed striker meets a structure on the rig, either one degree of freedom or one floor of a frame. In:
-//! formulas from the check. Out: SI numbers, and the critical time step as far as its inputs are known. It integrates nothing.
+//! formulas from the check. Out: SI numbers, and the critical time step if its inputs are known. It integrates nothing.
 
 use crate::physics::contact::contact_time_step::Approach;
 use crate::plan::formula::Formula;

@@ -10,7 +10,7 @@ pub struct Damage {
     pub offset: u64,
     /// From 1.
     pub line: u64,
-    /// The last field `step` in the good lines before it.
+    /// The last field `step` in the valid lines before it.
     pub step: Option<u64>,
     pub reason: Wrong,
 }

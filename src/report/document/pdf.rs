@@ -1,5 +1,5 @@
-//! A report as PDF. In: a [`Document`]. Out: bytes, the same for the same document: date and identifier come from the document,
-//! the fonts from the program. Every text goes to the template as data, never as markup.
+//! A report as PDF. In: a [`Document`]. Out: bytes, identical for the same document: date and identifier come from the document, the
+//! fonts from the program. Every text is passed to the template as data, never as markup.
 
 use std::borrow::Cow;
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::report::wording::common::NOT_GIVEN;
 use crate::text::sanitize;
 
-/// The role of a piece of text; the renderer gives it its look.
+/// The role of a piece of text; the renderer chooses its style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Style {

@@ -248,7 +248,7 @@ impl RealRig {
     }
 }
 
-/// The rig is no longer settled.
+/// Why the rig is not settled any more.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disturbed {
     /// The first axis that left its band, by index. None: a device reports that it moves, or that its reading has not

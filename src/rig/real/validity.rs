@@ -36,7 +36,7 @@ pub(super) enum Invalid {
     Hold(String),
     /// As `Hold`: the force is at or beyond an end of its range.
     Saturated(String),
-    /// The rig holds, and its position is no longer known.
+    /// The rig holds, and its position is unknown.
     Untrusted(String),
 }
 

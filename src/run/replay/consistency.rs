@@ -47,8 +47,8 @@ pub fn check_consistency(
     })
 }
 
-/// Whether an entry can belong to the plan's rig: one datum throughout, which is zero if the plan says so, and no raw bytes
-/// for a virtual rig. `first_datum`: that of the first RIG entry \[m\], one per axis.
+/// Whether an entry can belong to the plan's rig: one datum throughout, which is zero if the plan specifies this, and no raw bytes for a
+/// virtual rig. `first_datum`: that of the first RIG entry \[m\], one per axis.
 fn is_of_the_plans_rig(
     line: &Line,
     plan: &Plan,

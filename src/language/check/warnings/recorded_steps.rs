@@ -1,5 +1,5 @@
-//! Counts the steps of a whole run, as far as the plan states them. In: a checked plan and the positions of its procedures
-//! in the text. Out: an error at the first procedure whose steps exceed the limit of one run.
+//! Counts the steps of a whole run, if the plan determines them. In: a checked plan and the positions of its procedures in the text. Out:
+//! an error at the first procedure whose steps exceed the limit of one run.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::whole;

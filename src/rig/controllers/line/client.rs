@@ -30,7 +30,7 @@ pub struct LineClient {
     waiting: Vec<u8>,
     /// In the middle of a line that is too long.
     overlong: bool,
-    /// Time of the last look at the line \[s\], by the clock. None: there was none yet.
+    /// Time of the last check of the line \[s\], by the clock. None: it has not been checked yet.
     looked: Option<f64>,
     line_statistics: LineStatistics,
 }
@@ -130,8 +130,8 @@ impl LineClient {
         self.port.emergency().map_err(|error| lost(&error))
     }
 
-    /// Notes a look at the line and reports the time since the last look. A wait for an answer looks every [`SLICE`]; a
-    /// program that was suspended does not. Gives the present time \[s\], by the clock.
+    /// Notes a check of the line and reports the time since the last one. A wait for an answer checks the line every [`SLICE`]; a program
+    /// that was suspended does not. Gives the present time \[s\], by the clock.
     fn look(&mut self) -> f64 {
         let now = self.clock.now();
         if let Some(before) = self.looked.replace(now) {

@@ -1,6 +1,6 @@
-//! Fresh answers of devices without sequence numbers, for which a late answer looks like a new one. In: a question and a
-//! function that recognises its answer. Out: an answer to this question. After a silence no answer is accepted until the
-//! line was quiet and two answers agreed.
+//! Fresh answers of devices without sequence numbers, for which a late answer cannot be distinguished from a new one. In: a question and
+//! a function that recognises its answer. Out: an answer to this question. After a silence no answer is accepted until the line was quiet
+//! and two answers agreed.
 
 use crate::rig::controllers::{Answer, DeviceFault, LineClient};
 

@@ -1,5 +1,5 @@
-//! Lines whose answers have no sequence number, so that a late answer looks like a fresh one. In: a question as a closure.
-//! Out: its answer, or none. It knows no protocol.
+//! Lines whose answers have no sequence number, so that a late answer cannot be distinguished from a fresh one. In: a question as a
+//! closure. Out: its answer, or none. It knows no protocol.
 
 use crate::rig::controllers::{Answer, DeviceFault, LineClient, Missed};
 use crate::rig::safety::failpoint::{Guarding, on};

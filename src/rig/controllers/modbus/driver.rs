@@ -236,7 +236,7 @@ fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMove, Device
     frames_at_speed(map, target, slower)
 }
 
-/// The same at exactly this speed, as far as the registers can express it.
+/// The same at exactly this speed, within the resolution of the registers.
 fn frames_at_speed(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMove, DeviceFault> {
     let (target_frame, target) = target_frame(map, target)?;
     let mut going = DeviceMove {

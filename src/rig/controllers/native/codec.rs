@@ -22,24 +22,23 @@
 //!
 //! | Request | Reply |
 //! |---|---|
-//! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move it began (id 0: none since power-up). The limits of a run are gone after it. |
-//! | `LIM {d_low d_high f_low f_high} v_high` | `ACK state`: the limits of this run. Wider than the rig's own: `ERR LIMIT`. |
-//! | `MOVE id {target} rate` | `ACK state`: all axes go to their absolute targets together, and arrive together, the one with the farthest way at the rate. An id is greater than every one before. The last id with its targets again: `ACK` without motion; with others, or an older id: `ERR ID`. |
-//! | `GLIDE id {target velocity} ms` | `ACK state left`: every axis follows the cubic from where and as fast as it is to its target, which it passes with its velocity so many ms after the last `GLIDE` ended, or from now on where none is under way; `left` is how long it is to that end, ms. It does not stop there: it goes on as fast as it passed, and holds where no `GLIDE` follows. |
+//! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move that it began (id 0: none since power-up). It deletes the limits of a run. |
+//! | `LIM {d_low d_high f_low f_high} v_high` | `ACK state`: the limits of this run. Limits wider than the rig's own: `ERR LIMIT`. |
+//! | `MOVE id {target} rate` | `ACK state`: all axes move to their absolute targets and arrive simultaneously; the axis with the longest travel moves at the rate. An id is greater than all earlier ones. The last id with the same targets again: `ACK` without motion; with other targets, or an older id: `ERR ID`. |
+//! | `GLIDE id {target velocity} ms` | `ACK state left`: every axis follows a cubic path from its present position and velocity to its target. It passes the target with the given velocity, ms milliseconds after the end of the last `GLIDE`, or after now if none is in progress. `left` is the time until that end, ms. The axis does not stop there: it continues at that velocity, and holds if no `GLIDE` follows. |
 //! | `MEAS n` | `DATA t {disp force raw flags} state`: the median of n readings of each channel. |
-//! | `STAT` | `ACK state flags`: a bit is set where it is of any axis. |
+//! | `STAT` | `ACK state flags`: a bit is set if it is set for any axis. |
 //! | `STOP` | `ACK HELD`: stops all axes, keeps the load, and stays held until `CLR`. |
-//! | `CLR` | `ACK state`: lets go of a latched hold. Nothing moves. |
-//! | `REF token` | `ACK state`: its position is to be trusted from now on, of all axes; the token is whose word that is. |
+//! | `CLR` | `ACK state`: clears a latched hold. Nothing moves. |
+//! | `REF token` | `ACK state`: the position of all axes is trusted from now on; the token identifies who declared this. |
 //!
 //! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3 lower
 //! limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` has one word:
 //! `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `LATE`, `HELD`, `STOP`, `REF`, `FAULT`.
 //!
-//! The byte `!` anywhere holds immediately, as `STOP` does, and is not part of a frame. No valid frame for W ms (3000 as
-//! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: it refuses a command that it cannot execute
-//! exactly. Holding keeps the load; unloading is an operator's act. This does not replace a wired emergency stop and limit
-//! switches.
+//! The byte `!` anywhere holds immediately, as `STOP` does, and is not part of a frame. No valid frame for W ms (default 3000) also
+//! holds, and sets bit 7 until `CLR`. A rig never clamps: it refuses a command that it cannot execute exactly. A hold keeps the load;
+//! only the operator unloads. This protocol does not replace a wired emergency stop and limit switches.
 
 mod checksum;
 mod request;
