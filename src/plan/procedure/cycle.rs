@@ -63,7 +63,7 @@ pub enum CycleInspection {
 pub const MOST_TARGETS: f64 = 1e6;
 
 impl Sides {
-    /// The reversal points of one cycle about zero, in amplitudes: the cycle begins and ends at 0.
+    /// The end points of the moves of one cycle about zero, in amplitudes: the cycle begins and ends at 0.
     #[must_use]
     pub const fn ends(self) -> &'static [f64] {
         match self {
@@ -73,7 +73,7 @@ impl Sides {
         }
     }
 
-    /// For each target, the start and end of the move to it, as fractions of the path between two reversal points (0 to 1).
+    /// For each of these end points, the start and end of the move to it, as fractions (0 to 1) of the path between two reversals.
     #[must_use]
     pub const fn stretches(self) -> &'static [[f64; 2]] {
         match self {
