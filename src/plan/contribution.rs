@@ -3,15 +3,15 @@
 
 use super::source::Source;
 
-/// What one source does to one number.
+/// The effect of one source on one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
     pub source: Source,
-    /// Which number of a list it is of, from 0; 0 of a result that is one number.
+    /// Index of the number in a list result, from 0; 0 for a result that is one number.
     pub entry: usize,
-    /// Change of the number when the source moves by its standard uncertainty, in the number's own unit.
+    /// Change of the number when the source is perturbed by its standard uncertainty, in the unit of the number.
     pub amount: f64,
-    /// Whether the number follows the source smoothly there. Where it does not, `amount` is the largest change seen.
+    /// Whether the response of the number to the source is smooth. If not, `amount` is the largest change that was found.
     pub smooth: bool,
 }
 
@@ -27,8 +27,7 @@ impl Contribution {
     }
 }
 
-/// What several contributions of one source do to one number is their sum: adds `part` to what `parts` have of its source
-/// already.
+/// Adds `part` to the contribution of the same source in `parts`: the contributions of one source to one number are summed.
 pub fn share(parts: &mut Vec<Contribution>, part: Contribution) {
     match parts
         .iter_mut()
@@ -42,7 +41,7 @@ pub fn share(parts: &mut Vec<Contribution>, part: Contribution) {
     }
 }
 
-/// u of each of `count` entries of a list; None where nothing of an entry is uncertain.
+/// u of each of `count` entries of a list; None for an entry without an uncertain input.
 #[must_use]
 pub fn combined_entries(contributions: &[Contribution], count: usize) -> Vec<Option<f64>> {
     let mut squares = vec![None; count];
@@ -57,7 +56,7 @@ pub fn combined_entries(contributions: &[Contribution], count: usize) -> Vec<Opt
         .collect()
 }
 
-/// u = √Σ cᵢ² of independent contributions to one number (JCGM 100:2008, eq. 10); None of nothing.
+/// u = √Σ cᵢ² of independent contributions to one number (JCGM 100:2008, eq. 10); None without contributions.
 #[must_use]
 pub fn combined(contributions: &[Contribution]) -> Option<f64> {
     let variance = contributions

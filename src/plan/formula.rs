@@ -1,6 +1,6 @@
-//! Checked expressions: names are resolved, units converted, dimensions checked. At run time only arithmetic on constants and on the
-//! results of finished procedures is left. In: a [`Formula`] and [`Results`].
-//! Out: an [`Estimate`], the value with its standard uncertainty.
+//! Checked expressions: names are resolved, units converted, dimensions checked. At run time they contain only arithmetic on constants
+//! and on the results of finished procedures. In: a [`Formula`] and [`Results`]. Out: an [`Estimate`], the value with its standard
+//! uncertainty.
 
 use super::contribution::{Contribution, combined, combined_entries};
 use super::results::{Moved, sources_of};
@@ -15,7 +15,7 @@ pub enum Formula {
     /// A number that the plan states with its uncertainty.
     Stated(Stated),
     Result(ResultReference),
-    /// Δt of eq. 7 for the current impact; allowed in `time_step` alone.
+    /// Δt of eq. 7 for the current impact; allowed only in `time_step`.
     CriticalTimeStep,
     List(Vec<Formula>),
     Index(Box<Formula>, usize),
@@ -34,7 +34,7 @@ pub struct Stated {
 }
 
 impl Stated {
-    /// The number, as a constant where it is exact.
+    /// The number, as a constant if it is exact.
     #[must_use]
     pub fn formula(self) -> Formula {
         if self.uncertainty > 0.0 {
@@ -55,7 +55,7 @@ pub enum Operator {
     Power,
 }
 
-/// A function of one number or of a list; `ALL` has its name in the language.
+/// A function of one number or of a list; `ALL` contains its name in the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     Abs,
@@ -68,7 +68,7 @@ pub enum Function {
     Cos,
 }
 
-/// A value and its standard uncertainty, both in SI units; no uncertainty where no measured result is read.
+/// A value and its standard uncertainty, both in SI units; no uncertainty if no measured result is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     pub value: f64,
@@ -149,7 +149,7 @@ impl Formula {
                 critical,
             )?;
             let (above, below) = (up - value, value - down);
-            // Both perturbations have an effect of the same sign, as for `abs` about 0, where the halves would cancel.
+            // Both perturbations have an effect of the same sign, as for `abs` about 0: half of their difference would be nearly zero.
             let folds = above * below < 0.0;
             Ok(Contribution::new(
                 source,
@@ -163,13 +163,13 @@ impl Formula {
         sources.into_iter().map(effect).collect()
     }
 
-    /// The value where no result is needed: constants, folded by `check`.
+    /// The value if no result is needed: constants, folded by `check`.
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
         self.number(&NoResults, None).ok()
     }
 
-    /// The result that this formula is, if it is only that.
+    /// The result that this formula reads, if it contains nothing else.
     #[must_use]
     pub fn as_result(&self) -> Option<ResultReference> {
         if let Self::Result(reference) = self {

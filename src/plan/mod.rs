@@ -64,7 +64,7 @@ pub struct Plan {
     pub specimens: Vec<Specimen>,
     pub strikers: Vec<Striker>,
     pub grounds: Vec<Ground>,
-    /// The rig this run uses: the one named, else the first virtual one of the plan itself, else an ideal virtual rig.
+    /// The rig of this run: the named rig, else the first virtual rig of the plan itself, else an ideal virtual rig.
     pub rig: RigPlan,
     /// The intersection of the plan's limits and the rig's.
     pub limits: Limits,
@@ -75,7 +75,7 @@ pub struct Plan {
     pub golden: Golden,
     /// For the part that a low-level check run measures: the plan that it belongs to.
     pub rehearses: Option<Box<Plan>>,
-    /// As logs of older versions have it: an `unload` goes to the estimated position of zero load, move after move.
+    /// As in run logs of older versions: an `unload` moves to the estimated position of zero load, move after move.
     pub unloads_at_once: bool,
     /// The plan first, then every file that it uses, by the name under which it is used.
     pub files: Vec<PlanFile>,

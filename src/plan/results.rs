@@ -36,7 +36,7 @@ pub trait Results: Sync {
     /// The result, or None if its procedure has not run to it.
     fn result(&self, reference: ResultReference) -> Option<ResultValue>;
 
-    /// The uncertainty contributions of the result; by default all of its uncertainty is one contribution of its own.
+    /// The uncertainty contributions of the result; by default its whole uncertainty is one separate contribution.
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         let ResultReference {
             procedure, name, ..
@@ -58,7 +58,7 @@ pub trait Results: Sync {
         }
     }
 
-    /// Degrees of freedom of the uncertainty of a source; infinite where it was not estimated from readings.
+    /// Degrees of freedom of the uncertainty of a source; infinite if it was not estimated from readings.
     fn degrees(&self, _: Source) -> f64 {
         f64::INFINITY
     }
@@ -68,7 +68,7 @@ pub trait Results: Sync {
         0.0
     }
 
-    /// Why a measured result that exists has no expanded uncertainty; None where it has one, or is exact.
+    /// Why a measured result that exists has no expanded uncertainty; None if it has one or is exact.
     fn no_uncertainty(&self, _: ResultReference) -> Option<String> {
         None
     }
@@ -83,7 +83,7 @@ impl Results for NoResults {
     }
 }
 
-/// Results as they would be with one source moved.
+/// Results as they would be with one source perturbed.
 pub struct Moved<'a> {
     pub results: &'a dyn Results,
     pub source: Source,
@@ -139,7 +139,7 @@ impl Results for Moved<'_> {
     }
 }
 
-/// Every source of the results that are read, each once, in the order they are met.
+/// Every source of the results that are read, each once, in the order of their first appearance.
 #[must_use]
 pub fn sources_of(references: &[ResultReference], results: &dyn Results) -> Vec<Source> {
     let mut sources = Vec::new();
@@ -162,7 +162,7 @@ mod tests {
     use crate::plan::contribution::{combined, combined_entries, share};
     use crate::plan::formula::{Formula, Operator};
 
-    /// Slope and intercept of one line, and a number of its own.
+    /// Slope and intercept of one line, and a separate number.
     struct OneLine;
 
     const CORRELATION: f64 = -0.8;
@@ -231,7 +231,7 @@ mod tests {
                 .unwrap();
             assert!((u - by_hand).abs() < 1e-12, "at {x}: {u} {by_hand}");
         }
-        // And independent of others.
+        // The contributions of independent sources are combined.
         let other = Formula::Binary(
             Operator::Add,
             Box::new(line(0.0)),
@@ -241,7 +241,7 @@ mod tests {
         assert!((u - 0.5_f64.hypot(0.3)).abs() < 1e-12);
     }
 
-    /// Σ over one source before the square, each entry of a list for itself.
+    /// The contributions of one source are summed before they are squared, separately for each entry of a list.
     #[test]
     fn what_shares_a_source_adds_up_entry_by_entry() {
         let of = |entry, amount| Contribution {

@@ -1,97 +1,97 @@
-//! The sources of uncertainty: what a plan, its rig and the readings of a run do not know exactly.
+//! The sources of uncertainty: the uncertain inputs of a plan, of its rig and of the readings of a run.
 
 /// Position of a procedure in the plan, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProcedureId(pub usize);
 
-/// Something that is not known exactly, independent of every other source.
+/// An uncertain input quantity, independent of every other source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Source {
-    /// What a procedure's own scatter leaves open of a result; of one fitted together with others, what goes beyond those
-    /// before it.
+    /// The uncertainty of a fitted result from the scatter of a procedure. If several results are fitted together: the part that is
+    /// independent of the results before it.
     Fit {
         procedure: ProcedureId,
         result: &'static str,
     },
-    /// The same of one entry of a list of results.
+    /// The same for one entry of a list of results.
     FitEntry {
         procedure: ProcedureId,
         result: &'static str,
         entry: usize,
     },
-    /// By its place among the plan's strikers.
+    /// Mass of a striker, by its index in the plan.
     StrikerMass(usize),
     StrikerVelocity(usize),
-    /// By its place among the plan's specimens.
+    /// Mass of a specimen, by its index in the plan.
     SpecimenMass(usize),
-    /// The mass of one floor of a frame, both from 0.
+    /// The mass of one floor of a frame, both indices from 0.
     StoreyMass {
         specimen: usize,
         storey: usize,
     },
-    /// The stiffness of one storey of a frame, as the plan states it.
+    /// The stiffness of one storey of a frame, as stated in the plan.
     StoreyStiffness {
         specimen: usize,
         storey: usize,
     },
-    /// The factor on the matrix of the masses of a frame, as a whole.
+    /// The scale factor of the mass matrix of a frame, as a whole.
     MassMatrix(usize),
-    /// The factor on the matrix of its stiffnesses, as a whole.
+    /// The scale factor of the stiffness matrix of a frame, as a whole.
     StiffnessMatrix(usize),
-    /// The computed damping ratio of one mode of a frame, from 0; of Rayleigh damping the one ratio that it has.
+    /// The computed damping ratio of one mode of a frame, from 0; for Rayleigh damping its single ratio.
     DampingRatio {
         procedure: ProcedureId,
         mode: usize,
     },
-    /// The factor on a record of the ground, by its place among the plan's grounds.
+    /// The scale factor of a ground-motion record, by its index in the plan.
     GroundScale(usize),
-    /// The factor between newtons and those of the load cell of an axis, by its place; each axis has a cell of its own.
+    /// The scale factor of the load cell of an axis, by the index of the axis; each axis has a separate cell.
     ForceScale(usize),
-    /// The factor between metres and those of the transducer of an axis, by its place.
+    /// The scale factor of the displacement transducer of an axis, by the index of the axis.
     DisplacementScale(usize),
-    /// What the load cell of an axis, by its place, reads of no force.
+    /// The zero offset of the load cell of an axis, by the index of the axis.
     ForceZero(usize),
-    /// Noise and resolution of a procedure's readings: one of the draws by which they are sampled.
+    /// Noise and resolution of the readings of a procedure: one Monte Carlo trial.
     Readings {
         procedure: ProcedureId,
         draw: u16,
     },
-    /// The same, with the inputs of which there is one a floor, a mode or an axis drawn together with them.
+    /// The same, with simulated errors also of the inputs that exist once per floor, mode or axis.
     Drawn {
         procedure: ProcedureId,
         draw: u16,
     },
-    /// One of the readings by which the place was found where a specimen rests after a blow of a procedure, from 0, or after
-    /// none.
+    /// One of the readings that determined the unloaded position of the specimen after an impact of a procedure. The impact is counted
+    /// from 0, or is 0 without impacts.
     RestReading {
         procedure: ProcedureId,
         blow: u16,
         reading: u16,
     },
-    /// What it still carries there beyond what readings can tell from none.
+    /// The load that remains at the unloaded position and that the readings cannot distinguish from zero.
     RestLoad {
         procedure: ProcedureId,
         blow: u16,
     },
-    /// The resolution of a procedure's readings in a fitted result, or in an entry of a list, beyond what its scatter shows.
+    /// The resolution of the readings of a procedure, in a fitted result or list entry, beyond the part that the scatter shows.
     Rounding {
         procedure: ProcedureId,
         result: &'static str,
         entry: usize,
     },
-    /// The error by their resolution that all readings of a fit have in common.
+    /// The error from the resolution that all readings of a fit have in common.
     CommonRounding {
         procedure: ProcedureId,
     },
-    /// The stiffness of the strokes of a damping sweep, which brings readings of a lagging actuator to one place.
+    /// The stiffness of the passes of a damping sweep. It corrects the readings of a lagging actuator to one position.
     StrokeStiffness {
         procedure: ProcedureId,
     },
-    /// The points of the loops of a procedure: what lies between them is not known.
+    /// The sampling of the loops of a procedure: the force between two points is not known.
     LoopSampling {
         procedure: ProcedureId,
     },
-    /// The time step of an integration, and that times are told to a whole one: the run is integrated again in finer steps.
+    /// The time step of an integration, including times that are reported as whole steps: the run is integrated again with finer steps.
     TimeStep {
         procedure: ProcedureId,
     },

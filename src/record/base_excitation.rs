@@ -1,29 +1,29 @@
-//! The history of a frame on moving ground: one row a step, for all floors.
+//! The history of a frame under ground motion: one row per step, for all floors.
 
 use super::{Floors, FloorsAt, FrameEnergies, Modes};
 use crate::physics::tracking::monitor::Tracking;
 
-/// One row of a shake for all floors; step 0 is the start. Displacements are relative to the ground.
+/// One row of a ground-motion test for all floors; step 0 is the start. Displacements are relative to the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShakeStep {
     pub step: u64,
-    /// Virtual time, s.
+    /// Simulated time \[s\].
     pub time: f64,
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub wall_time: f64,
-    /// m/s², as it was applied.
+    /// \[m/s²\], as applied.
     pub ground_acceleration: f64,
-    /// Targets, m.
+    /// Targets \[m\].
     pub command: Vec<f64>,
-    /// Measured, m.
+    /// Measured \[m\].
     pub displacement: Vec<f64>,
-    /// Computed X, m: the target, but under α-OS.
+    /// Computed X \[m\]: the target, except under α-OS.
     pub computed: Vec<f64>,
-    /// m/s
+    /// \[m/s\]
     pub velocity: Vec<f64>,
-    /// m/s²
+    /// \[m/s²\]
     pub acceleration: Vec<f64>,
-    /// Measured, of each floor, N.
+    /// Measured, of each floor \[N\].
     pub restoring_force: Vec<f64>,
     pub energies: FrameEnergies,
     /// For each axis.
@@ -45,16 +45,16 @@ impl Floors for ShakeStep {
     }
 }
 
-/// A frame on moving ground, step by step.
+/// A frame under ground motion, step by step.
 #[derive(Clone, Debug, Default)]
 pub struct ShakeHistory {
     pub steps: Vec<ShakeStep>,
-    /// None where it did not begin.
+    /// None if the procedure did not begin.
     pub modes: Option<Modes>,
     /// Fraction of critical damping of each mode.
     pub damping_ratios: Vec<f64>,
-    /// s
+    /// \[s\]
     pub time_step: f64,
-    /// s
+    /// \[s\]
     pub critical_time_step: f64,
 }

@@ -7,23 +7,23 @@ use crate::physics::identification::multilinear_fit::MultilinearFit;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CycleStep {
     pub step: u64,
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub wall_time: f64,
-    /// From 1; 0 is where the first begins.
+    /// From 1; 0 is the start of the first cycle.
     pub cycle: u64,
-    /// Asked for, m.
+    /// As requested \[m\].
     pub amplitude: f64,
-    /// m
+    /// \[m\]
     pub command: f64,
-    /// Mean of the samples, m.
+    /// Mean of the samples \[m\].
     pub displacement: f64,
-    /// Mean of the samples, N.
+    /// Mean of the samples \[N\].
     pub restoring_force: f64,
-    /// Standard deviation of the samples, N; 0 for one sample.
+    /// Standard deviation of the samples \[N\]; 0 for one sample.
     pub force_scatter: f64,
-    /// First reading after settling less the mean at the end of the pause, N.
+    /// First reading after settling minus the mean at the end of the dwell \[N\].
     pub relaxation: f64,
-    /// ∫R dX from the first reading on, J.
+    /// ∫R dX from the first reading on \[J\].
     pub energy: f64,
 }
 
@@ -39,23 +39,23 @@ impl CycleStep {
     }
 }
 
-/// One whole cycle.
+/// One complete cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WholeCycle {
     /// From 1.
     pub cycle: u64,
-    /// Asked for, m.
+    /// As requested \[m\].
     pub amplitude: f64,
-    /// Which of the cycles at this amplitude, from 1.
+    /// Number of the cycle at this amplitude, from 1.
     pub repeat: u32,
     /// As measured.
     pub found: Loop,
 }
 
-/// Cyclic loading, target by target, and each cycle that closed.
+/// Cyclic loading, target by target, and each closed cycle.
 #[derive(Clone, Debug, Default)]
 pub struct CycleHistory {
-    /// The first is where the cycles begin.
+    /// The first is the start of the cycles.
     pub steps: Vec<CycleStep>,
     pub cycles: Vec<WholeCycle>,
     /// The backbone, as displacements from the middle with both sides combined, if the plan requests it.
@@ -63,14 +63,14 @@ pub struct CycleHistory {
 }
 
 impl CycleHistory {
-    /// Where the cycles go about, m.
+    /// The middle of the cycles \[m\].
     #[must_use]
     pub fn middle(&self) -> f64 {
         self.steps.first().map_or(0.0, |step| step.command)
     }
 
-    /// Where they begin and the ends of the first cycle at each amplitude, from the middle: displacement (m) and force (N), those
-    /// of the pull turned to the push.
+    /// The start and the reversal points of the first cycle at each amplitude, relative to the middle: displacement \[m\] and force
+    /// \[N\]. Those on the pull side have the opposite sign, so that both sides can be compared.
     #[must_use]
     pub fn backbone_points(&self) -> Vec<(f64, f64)> {
         let middle = self.middle();

@@ -9,13 +9,13 @@ use crate::record::Identity;
 use crate::units::Dimension;
 use crate::units::display::stated;
 
-/// The rig that answered, the meaning of its numbers, and its limits.
+/// The rig that answered, the calibration of its readings, and its limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Equipment {
     pub device: Device,
     /// Displacement and force of each axis.
     pub channels: Vec<Channel>,
-    /// Those that bound something, as the guard holds them.
+    /// The limits that have a bound, as the guard enforces them.
     pub limits: Vec<HeldLimit>,
 }
 
@@ -24,9 +24,9 @@ pub struct Equipment {
 pub struct Device {
     #[serde(flatten)]
     pub identity: Identity,
-    /// Quantum of a displacement reading, m.
+    /// Resolution of a displacement reading \[m\].
     pub resolution: f64,
-    /// Standard deviation of one force reading, N.
+    /// Standard deviation of one force reading \[N\].
     pub noise: f64,
 }
 
@@ -45,9 +45,9 @@ impl Device {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measures {
-    /// m
+    /// \[m\]
     Displacement,
-    /// N
+    /// \[N\]
     Force,
 }
 
@@ -69,33 +69,33 @@ impl Measures {
     }
 }
 
-/// How a channel's number becomes a quantity: (number − zero) · factor.
+/// Conversion of the number of a channel to a quantity: (number − zero) · factor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
     /// From 1.
     pub axis: usize,
     pub measures: Measures,
-    /// The kind of the device's own numbers.
+    /// The kind of number that the device gives.
     pub given_in: GivenIn,
-    /// m or N of one of them, the rig's sign in it.
+    /// \[m\] or \[N\] per unit of the number, with the polarity of the rig.
     pub factor: f64,
-    /// Its number at zero of the quantity.
+    /// The number at zero of the quantity.
     pub zero: f64,
-    /// Quantum of a displacement (m), standard deviation of one force reading (N), as declared.
+    /// Resolution of a displacement \[m\], standard deviation of one force reading \[N\], as declared.
     pub doubt: f64,
-    /// Standard uncertainty of the factor, a share of the quantity, where it is stated.
+    /// Relative standard uncertainty of the factor, if it is stated.
     pub uncertainty: f64,
     /// The calibration that the factor is traced to.
     pub certificate: Option<String>,
-    /// Day until which that holds, `YYYY-MM-DD`.
+    /// Calibration due date, `YYYY-MM-DD`.
     pub due: Option<String>,
     /// Class of the measurement, as stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub class: Option<String>,
-    /// Its ends, m or N, where they are stated.
+    /// Ends of the range \[m\] or \[N\], if they are stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<[f64; 2]>,
-    /// Sizes over which the calibration holds, m or N, where they are stated.
+    /// Absolute values for which the calibration is valid \[m\] or \[N\], if they are stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibrated: Option<[f64; 2]>,
 }
@@ -104,18 +104,18 @@ pub struct Channel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GivenIn {
-    /// A quantity whose unit the protocol fixes.
+    /// A quantity with a unit that the protocol specifies.
     Units,
     /// Counts of a converter, or of a register.
     Counts,
 }
 
-/// A limit of the guard, SI; an end that is missing bounds nothing.
+/// A limit of the guard, SI; a missing end is unbounded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeldLimit {
-    /// As the plan's `limits` call it.
+    /// The name in the `limits` of the plan.
     pub quantity: String,
-    /// From 1, where it is of one axis alone.
+    /// From 1, if it applies to one axis only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axis: Option<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -244,7 +244,7 @@ impl HeldLimit {
         known.map_or(Dimension::NUMBER, |(.., dimension)| dimension)
     }
 
-    /// Whether it bounds the same quantity in the same way, for whichever axis.
+    /// Whether both are the same limit of the same quantity, for any axis.
     fn bounds_as(&self, other: &Self) -> bool {
         (&self.quantity, self.low, self.high) == (&other.quantity, other.low, other.high)
     }

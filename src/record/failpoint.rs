@@ -1,5 +1,5 @@
-//! Failpoints: every guard can be switched off by a test of its own, and only by a test, so that each is shown to be
-//! the one that catches its fault. In the program a guard is always on: [`on`] is then the constant true.
+//! Failpoints: only a test can switch off a guard, and each guard has such a test. The test shows that this guard alone detects its
+//! fault. In the program a guard is always on: [`on`] is then the constant true.
 
 /// A guard of a real rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -7,7 +7,7 @@ pub enum Guarding {
     TargetLimits,
     ReadingLimits,
     EnergyError,
-    /// The energy error that tracking errors cause, and their size.
+    /// The energy error that tracking errors cause, and the size of the tracking errors.
     Tracking,
     WireNumber,
     Following,
@@ -20,23 +20,23 @@ pub enum Guarding {
     Saturation,
     Frozen,
     Median,
-    /// A force that nothing leads to from the dwell before it.
+    /// A force that does not follow from the dwell before it.
     ForceJump,
     Reboot,
-    /// Power-up of a rig that cannot report whether it was switched off.
+    /// Power cycle of a rig that cannot report whether it was switched off.
     PowerUp,
     Sequence,
     Checksum,
     Resend,
     Away,
-    /// A reading that cannot be, of a rig that has not moved.
+    /// An impossible reading of a rig that has not moved.
     AtRest,
     /// The position of a rig when a run begins.
     PretestStart,
     PretestZero,
     PretestPolarity,
     PretestStiffness,
-    /// How far a zero may drift before nothing is decided by the forces.
+    /// The zero drift beyond which no statement of conformity depends on the forces.
     ZeroDrift,
     IntentDurable,
     SampleDurable,
@@ -44,7 +44,7 @@ pub enum Guarding {
     Lock,
     /// A panic in any thread holds the rig.
     PanicHook,
-    /// So does a program that hangs.
+    /// A program that stops responding holds the rig.
     HostWatchdog,
     /// The least free space of the disk before a run.
     DiskSpace,

@@ -5,10 +5,10 @@
 pub struct Held {
     /// Dwells that were long enough for a slope.
     pub count: u64,
-    /// s
+    /// \[s\]
     pub longest: f64,
     /// The fastest of each axis, in absolute value: \[N/s\] and \[m/s\].
     pub slopes: Vec<(f64, f64)>,
-    /// Largest growth of the force in one of them at a displacement beyond all earlier ones \[N\]. None: no such dwell.
+    /// Largest increase of the force in one of them at a displacement beyond all earlier ones \[N\]. None: no such dwell.
     pub grown: Option<f64>,
 }

@@ -9,9 +9,8 @@ pub struct Identity {
     pub model: String,
     pub serial: String,
     pub firmware: String,
-    /// Random boot identifier of this power-up, if the rig has one. A different identifier means that its position is not
-    /// to be trusted.
+    /// Random boot identifier of this power-up, if the rig has one. A different identifier means that its position cannot be trusted.
     pub boot: Option<String>,
-    /// Nothing real moved.
+    /// Whether no physical specimen moved.
     pub simulated: bool,
 }

@@ -1,4 +1,4 @@
-//! The history of an impact, on one degree of freedom or on a floor of a frame: one row a step.
+//! The history of an impact, on one degree of freedom or on a floor of a frame: one row per step.
 
 use super::{StepState, StruckFrame};
 use crate::physics::impact::energy::Energies;
@@ -9,26 +9,26 @@ use crate::physics::tracking::monitor::Tracking;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactStep {
     pub step: u64,
-    /// Virtual time, s.
+    /// Simulated time \[s\].
     pub time: f64,
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub wall_time: f64,
     pub state: StepState,
-    /// Commanded to the actuator, m.
+    /// Commanded to the actuator \[m\].
     pub command: f64,
     /// Computed displacement X \[m\]: the command; under α-OS the command corrected by the force read there.
     pub computed: f64,
-    /// Measured, m.
+    /// Measured \[m\].
     pub displacement: f64,
     pub velocity: f64,
     pub acceleration: f64,
     pub restoring_force: f64,
-    /// Mean over the step, N; at step 0 none.
+    /// Mean over the step \[N\]; zero at step 0.
     pub contact_force: f64,
     pub striker_displacement: f64,
     pub striker_velocity: f64,
     pub tangent_stiffness: f64,
-    /// Permanent, m.
+    /// Permanent \[m\].
     pub indentation: f64,
     pub energies: Energies,
     /// The tracking errors.
@@ -43,9 +43,9 @@ pub struct ImpactHistory {
     pub steps: Vec<ImpactStep>,
     /// None for one degree of freedom.
     pub frame: Option<StruckFrame>,
-    /// s
+    /// \[s\]
     pub time_step: f64,
-    /// s
+    /// \[s\]
     pub critical_time_step: f64,
 }
 

@@ -11,10 +11,10 @@ pub struct Blow {
     pub velocity: f64,
     /// ½ Ms V0², J
     pub energy: f64,
-    /// Those of an impact, in the schema's order.
+    /// The results of an impact, in the order of the schema.
     pub results: Vec<NamedResult>,
     pub history: ImpactHistory,
-    /// Whether the condition was satisfied. None if the impact did not run to its end, or was not conclusive.
+    /// Whether the condition was satisfied. None if the impact was not completed or was not conclusive.
     pub held: Option<bool>,
     /// The position and force of the specimen after it: the next impact begins there.
     pub rest: Option<Rest>,
@@ -27,7 +27,7 @@ impl Blow {
         &self.history
     }
 
-    /// All floors, where a frame was struck.
+    /// All floors, if a frame was struck.
     #[must_use]
     pub const fn storey(&self) -> Option<&StruckFrame> {
         self.history.frame.as_ref()
@@ -61,7 +61,7 @@ impl Blow {
         }
     }
 
-    /// Displacement (m) and force (N) after it, of the struck floor.
+    /// Displacement \[m\] and force \[N\] of the struck floor after it.
     #[must_use]
     pub fn rest_of_struck(&self) -> Option<(f64, f64)> {
         let struck = self.storey().map_or(0, |history| history.struck);

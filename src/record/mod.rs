@@ -48,7 +48,7 @@ pub use zero_drift::{AxisDrift, Beyond, Drift, Zero};
 #[derive(Clone, Debug)]
 pub struct Record {
     pub rig: Identity,
-    /// In the order run; those after a stop are missing.
+    /// In the order of execution; procedures after a stop are missing.
     pub procedures: Vec<ProcedureRecord>,
     pub events: Vec<Event>,
     pub outcome: Outcome,
@@ -64,7 +64,7 @@ pub enum Outcome {
     Aborted {
         reason: String,
     },
-    /// The rig was not released, and nothing moved: exit 4.
+    /// No motion was enabled, and nothing moved: exit 4.
     NotReleased {
         reason: String,
     },
@@ -78,10 +78,10 @@ pub enum Outcome {
     },
 }
 
-/// Something worth a line in the report.
+/// An event for the report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub time: f64,
     pub procedure: Option<String>,
     pub step: Option<u64>,
@@ -97,14 +97,14 @@ pub enum EventKind {
     Inspection,
     LimitBreach,
     Hold,
-    /// Where the rig holds after an early end.
+    /// The position at which the rig holds after an early end.
     Held,
     /// The hold is not confirmed.
     NotHeld,
     Fault,
     /// Communication errors that were recovered: frames sent again, replies ignored, readings repeated.
     Mended,
-    /// A numerical remark: the contact was still active at the last step, a maximum was not reached, …
+    /// A numerical observation: the contact was still active at the last step, a maximum was not reached, …
     Remark,
     /// The run is continued after an interruption or a stop.
     Resume,
@@ -138,11 +138,11 @@ pub struct ProcedureRecord {
     pub name: String,
     /// The block's keyword: `impact`.
     pub kind: &'static str,
-    /// Whether it ran to its own end.
+    /// Whether it was completed.
     pub complete: bool,
-    /// Inputs as they were evaluated for this procedure: name, value, dimension.
+    /// Inputs as evaluated for this procedure: name, value, dimension.
     pub inputs: Vec<(&'static str, Estimate, Dimension)>,
-    /// In the schema's order.
+    /// In the order of the schema.
     pub results: Vec<NamedResult>,
     pub history: History,
 }
@@ -153,8 +153,8 @@ pub struct NamedResult {
     pub name: &'static str,
     pub value: ResultValue,
     pub dimension: Dimension,
-    /// The uncertainty contributions of a number, or of each entry of a list. Empty if the uncertainty is its own, or there
-    /// is none.
+    /// The uncertainty contributions of a number, or of each entry of a list. Empty if its uncertainty is a separate contribution, or if
+    /// it has none.
     pub contributions: Vec<Contribution>,
 }
 
@@ -174,7 +174,7 @@ pub enum History {
 }
 
 impl History {
-    /// The time step and the critical one \[s\], if the step was longer than the critical one; for several impacts, of the
+    /// The time step and the critical time step \[s\], if the step was longer than the critical one; for several impacts, those of the
     /// first.
     #[must_use]
     pub fn above_critical(&self) -> Option<(f64, f64)> {
@@ -198,7 +198,7 @@ impl History {
         steps.first().copied()
     }
 
-    /// Degrees of freedom of the scatter behind a result that was fitted. None for a result that is not fitted.
+    /// Degrees of freedom of the scatter of a fitted result. None for a result that is not fitted.
     #[must_use]
     pub fn degrees(&self, result: &str) -> Option<f64> {
         match self {
@@ -226,7 +226,7 @@ impl History {
 }
 
 impl Record {
-    /// The procedure of this name; None where the run did not get to it.
+    /// The procedure of this name; None if the run ended before it.
     #[must_use]
     pub fn procedure(&self, name: &str) -> Option<&ProcedureRecord> {
         self.procedures
@@ -253,7 +253,7 @@ impl ProcedureRecord {
 }
 
 impl NamedResult {
-    /// Standard uncertainty of each entry of a list; empty where none is known.
+    /// Standard uncertainty of each entry of a list; empty if none is known.
     #[must_use]
     pub fn entry_uncertainties(&self) -> Vec<Option<f64>> {
         match &self.value {
@@ -264,7 +264,7 @@ impl NamedResult {
         }
     }
 
-    /// The uncertainty contributions of the result, as `reference` names it.
+    /// The uncertainty contributions of the result of this `reference`.
     #[must_use]
     pub fn contributions_of(&self, reference: ResultReference) -> Vec<Contribution> {
         match self.value {
@@ -286,7 +286,7 @@ impl NamedResult {
 }
 
 impl NamedResult {
-    /// Why it has no expanded uncertainty, of a procedure of this kind; None where it has one, is exact or does not exist.
+    /// Why a result has no expanded uncertainty, for a procedure of this kind. None if it has one, is exact or does not exist.
     #[must_use]
     pub fn no_uncertainty(&self, kind: &str) -> Option<String> {
         let words: Vec<&str> = kind.split(' ').collect();

@@ -11,21 +11,21 @@ pub enum Request {
     Come {
         client: String,
     },
-    /// m
+    /// \[m\]
     Propose {
         target: f64,
     },
-    /// Targets of every axis of a rig that has several, m.
+    /// Targets of every axis of a rig that has several \[m\].
     ProposeAll {
         targets: Vec<f64>,
     },
-    /// Targets of every axis, m, and how fast, m/s.
+    /// Targets of every axis \[m\], and the speed \[m/s\].
     ProposeAt {
         targets: Vec<f64>,
         speed: f64,
     },
-    /// A target that is not a finite number and cannot be logged as one: `NaN`, `inf`. Refused as any other. For several
-    /// axes every target, separated by spaces.
+    /// A target that is not a finite number and cannot be logged as one: `NaN`, `inf`. It is refused like any other invalid target. For
+    /// several axes every target, separated by spaces.
     ProposeNoNumber {
         said: String,
     },
@@ -44,7 +44,7 @@ pub enum Request {
         parting: Disconnect,
         reason: String,
     },
-    /// No client is served any more.
+    /// No further client is served.
     Close,
 }
 
@@ -61,7 +61,7 @@ pub enum Disconnect {
 }
 
 impl Request {
-    /// A target for every axis, whatever numbers they are.
+    /// A proposal of a target for every axis, finite or not.
     #[must_use]
     pub fn targets(targets: &[f64]) -> Self {
         match targets {
@@ -78,7 +78,7 @@ impl Request {
         }
     }
 
-    /// [`Self::targets`] at a speed, m/s.
+    /// [`Self::targets`] at a speed \[m/s\].
     #[must_use]
     pub fn targets_at(targets: &[f64], speed: Option<f64>) -> Self {
         match speed.filter(|_| targets.iter().all(|target| target.is_finite())) {
@@ -90,7 +90,7 @@ impl Request {
         }
     }
 
-    /// The targets that are proposed, m, one an axis, and how fast, m/s; none where something else is asked.
+    /// The proposed targets \[m\], one per axis, and the speed \[m/s\]; None for other requests.
     #[must_use]
     pub fn proposed(&self) -> Option<(Vec<f64>, Option<f64>)> {
         let targets = match self {
@@ -117,12 +117,12 @@ impl Request {
 pub struct DrivenStep {
     /// From 1, over all clients.
     pub step: u64,
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub time: f64,
-    /// m
+    /// \[m\]
     pub command: Vec<f64>,
-    /// m
+    /// \[m\]
     pub displacement: Vec<f64>,
-    /// N
+    /// \[N\]
     pub force: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! The history of a damping sweep: one row a reading, and the fit of its pairs.
+//! The history of a damping sweep: one row per reading, and the fit of its pairs.
 
 use super::LineFit;
 
@@ -6,17 +6,17 @@ use super::LineFit;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweepStep {
     pub step: u64,
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub wall_time: f64,
-    /// Commanded velocity, signed, m/s.
+    /// Commanded velocity, signed \[m/s\].
     pub velocity: f64,
-    /// m
+    /// \[m\]
     pub displacement: f64,
-    /// N
+    /// \[N\]
     pub restoring_force: f64,
     /// F_d = R − K·X, N.
     pub damping_force: f64,
-    /// On the steady part, used by the fit.
+    /// Whether it is in the steady part, which the fit uses.
     pub steady: bool,
 }
 
@@ -32,20 +32,19 @@ pub struct SweepHistory {
     /// K used for the damping forces \[N/m\].
     pub stiffness: Option<f64>,
     pub together: BroughtTogether,
-    /// K of the strokes and its standard error \[N/m\], if it contradicts that one: the damping ratio is then reported with
-    /// it.
+    /// K of the passes and its standard error \[N/m\], if it contradicts the K above. The damping ratio is then reported with it.
     pub own_stiffness: Option<(f64, f64)>,
     /// F_d = intercept·sign v + slope·v: intercept is the Coulomb force.
     pub fit: Option<LineFit>,
 }
 
-/// Correction of the two readings of each pair of a sweep to one position; a lagging actuator leaves them apart.
+/// Correction of the two readings of each pair of a sweep to one position, because they differ with a lagging actuator.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BroughtTogether {
-    /// K of the strokes, N/m; that of the plan where they do not show it.
+    /// K of the passes \[N/m\]; that of the plan if the passes do not determine it.
     pub stiffness: f64,
-    /// Its standard error, N/m; None: it is the plan's.
+    /// Its standard error \[N/m\]; None for the K of the plan.
     pub error: Option<f64>,
-    /// ∂c/∂K (s) and ∂F_c/∂K (m): 0 where no pair is apart.
+    /// ∂c/∂K \[s\] and ∂F_c/∂K \[m\]: 0 if the positions of all pairs agree.
     pub effects: [f64; 2],
 }

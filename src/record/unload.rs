@@ -3,23 +3,23 @@
 use super::floors::{Floors, FloorsAt, drift_of, shear_of};
 use crate::uncertainty::{Contribution, share};
 
-/// All floors after one move, from the ground up; step 0 is where the unloading began.
+/// All floors after one move, from the ground up; step 0 is the start of the unloading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnloadStep {
     pub step: u64,
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub wall_time: f64,
-    /// Targets, m.
+    /// Targets \[m\].
     pub command: Vec<f64>,
-    /// Measured, m.
+    /// Measured \[m\].
     pub displacement: Vec<f64>,
-    /// Measured, of each floor, N.
+    /// Measured, of each floor \[N\].
     pub restoring_force: Vec<f64>,
-    /// Secant of each storey from the step before, N/m; None where it did not drift, and of a frame that has no storeys.
+    /// Secant of each storey from the previous step \[N/m\]; None without a change of storey drift, or for a frame without storeys.
     pub tangent_stiffness: Vec<Option<f64>>,
 }
 
-/// Nothing is computed here: positions are measured, times are rig times, and there is no recursion with a tracking error.
+/// Nothing is computed here: positions are measured, times are rig times, and no recursion contains a tracking error.
 impl Floors for UnloadStep {
     fn at(&self) -> FloorsAt<'_> {
         FloorsAt {
@@ -35,14 +35,14 @@ impl Floors for UnloadStep {
     }
 }
 
-/// Where a specimen came to rest, floor by floor; one degree of freedom is one floor.
+/// The rest position of a specimen, floor by floor; one degree of freedom is one floor.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Rest {
-    /// Measured, m.
+    /// Measured \[m\].
     pub displacement: Vec<f64>,
     /// The remaining force \[N\].
     pub force: Vec<f64>,
-    /// The contribution of each source of uncertainty to the position of each floor \[m\]; empty if nothing is uncertain.
+    /// The contribution of each source of uncertainty to the position of each floor \[m\]; empty without uncertain inputs.
     pub of_displacement: Vec<Vec<Contribution>>,
     /// The same for the remaining force \[N\].
     pub of_force: Vec<Vec<Contribution>>,
@@ -55,13 +55,13 @@ impl Rest {
         (self.displacement[floor], self.force[floor])
     }
 
-    /// Drift of each storey, m.
+    /// Drift of each storey \[m\].
     #[must_use]
     pub fn drift(&self) -> Vec<f64> {
         drift_of(&self.displacement)
     }
 
-    /// Shear of each storey, N.
+    /// Shear of each storey \[N\].
     #[must_use]
     pub fn shear(&self) -> Vec<f64> {
         shear_of(&self.force)
@@ -77,7 +77,7 @@ impl Rest {
         )
     }
 
-    /// The floor farthest out, and the one that carries most, from 0.
+    /// The floor with the largest displacement, and the one with the largest force, from 0.
     #[must_use]
     pub fn floors_of_largest(&self) -> [usize; 2] {
         let most = |values: &[f64]| {
@@ -135,7 +135,7 @@ impl Rest {
     }
 }
 
-/// Parts of the entries of a list, those that do nothing left out.
+/// The contributions to the entries of a list, without zero contributions.
 fn entries(lists: impl Iterator<Item = Vec<Contribution>>) -> Vec<Contribution> {
     let of_entry = |(entry, parts): (usize, Vec<Contribution>)| {
         parts

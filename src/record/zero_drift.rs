@@ -21,35 +21,35 @@ pub struct Drift {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisDrift {
     pub before: Zero,
-    /// None where it was not read.
+    /// None if it was not read.
     pub after: Option<Zero>,
 }
 
-/// A reading of no load: the mean of several, and the line through them.
+/// A zero reading: the mean of several readings, and the line through them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zero {
-    /// Rig time of the last of them, s.
+    /// Rig time of the last of them \[s\].
     pub time: f64,
-    /// N
+    /// \[N\]
     pub force: f64,
-    /// Measured displacement less its target, m.
+    /// Measured displacement minus its target \[m\].
     pub displacement: f64,
-    /// N/s
+    /// \[N/s\]
     pub force_slope: f64,
-    /// m/s
+    /// \[m/s\]
     pub displacement_slope: f64,
 }
 
 /// A zero drift beyond the limit of the rig, and its quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beyond {
-    /// Of the load cell; otherwise of the displacement.
+    /// Whether it is the drift of the load cell; otherwise that of the displacement.
     pub of_force: bool,
     pub reason: String,
 }
 
 impl AxisDrift {
-    /// Change of the zero: force (N) and displacement (m).
+    /// Change of the zero: force \[N\] and displacement \[m\].
     #[must_use]
     pub fn change(&self) -> Option<(f64, f64)> {
         self.after.map(|after| {
@@ -62,14 +62,14 @@ impl AxisDrift {
 }
 
 impl Drift {
-    /// The first zero drift beyond its limit. Assessed are: the change of a zero; the change at rest before the first move;
-    /// and a force that grew in a dwell at a displacement beyond all earlier ones, where it can only relax.
+    /// The first zero drift beyond its limit. Three changes are assessed: the change of a zero; the change at rest before the first move;
+    /// and an increase of the force in a dwell at a displacement beyond all earlier ones. There, relaxation can only decrease the force.
     #[must_use]
     pub fn beyond(&self) -> Option<Beyond> {
         self.all_beyond().next()
     }
 
-    /// Every one of them, axis by axis.
+    /// All of them, axis by axis.
     pub fn all_beyond(&self) -> impl Iterator<Item = Beyond> {
         let several = self.axes.len();
         let axes = self.axes.iter().enumerate();
@@ -88,7 +88,7 @@ impl Drift {
         let mut found = Vec::new();
         let mut judge =
             |what: &str, change: f64, allowed: Option<f64>, of_force: bool, dimension| {
-                // NaN is within nothing.
+                // NaN is outside every interval.
                 let Some(allowed) =
                     allowed.filter(|allowed| change.is_nan() || change.abs() > *allowed)
                 else {

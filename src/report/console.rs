@@ -99,7 +99,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
     text
 }
 
-/// The guard band; under simple acceptance the probability of conformity where U exceeds the tolerance.
+/// The guard band; under simple acceptance the probability of conformity, if U exceeds the tolerance.
 fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
     match (rule, number::guard_band(condition)) {
         (DecisionRule::Simple, _) => match condition
@@ -120,7 +120,7 @@ fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
     }
 }
 
-/// The decision rule, where a U is printed.
+/// The decision rule, if a U is printed.
 fn decision_rule(run: &Run<'_>) -> String {
     let expanded = match coverage_factor::largest(run.assessment) {
         Some(factor) => {
@@ -148,7 +148,7 @@ fn decision_rule(run: &Run<'_>) -> String {
     }
 }
 
-/// The status of the report, where it is not certifiable.
+/// The status of the report, if it is not issuable as a test report.
 fn status_text(status: &ReportStatus, rehearsed: bool, rig: &str) -> String {
     match status {
         ReportStatus::Certifiable => String::new(),

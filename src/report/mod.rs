@@ -1,6 +1,5 @@
-//! Tables, figures, summary, report and console text: pure functions of plan, record and
-//! assessment. Out: bytes; the caller writes them to files. It knows no clock, no file and no
-//! environment: the same run gives the same bytes.
+//! Tables, figures, summary, report and console text: pure functions of plan, record and assessment. Out: bytes; the caller writes them
+//! to files. It knows no clock, no file and no environment: the same run gives bit-identical output.
 //!
 //! | to change | see |
 //! |---|---|
@@ -9,10 +8,10 @@
 //! | the description of a specimen model | `wording/specimen.rs` |
 //! | the layout of the report | `document/style.css`, `document/certificate.typ` |
 //! | a figure, a column, the text of one procedure | `procedures/NAME/{figures,tables,report}.rs` |
-//! | the look of every figure | `figures/draw/`, `figures/chart.rs` |
+//! | the appearance of every figure | `figures/draw/`, `figures/chart.rs` |
 //! | a number in `summary.json` | `summary/mod.rs` (format), `summary/fill.rs` (values) |
 //! | digits, units and signs of numbers | `number/` |
-//! | which files a run leaves, and in which order | `output/mod.rs` |
+//! | the files of a run, and their order | `output/mod.rs` |
 //! | whether a report may be signed | `status/mod.rs` |
 
 mod budget;

@@ -1,5 +1,5 @@
-//! The input of every output: plan, record, assessment and provenance of one run. No field is read from the machine on a
-//! simulated rig, so that equal runs give equal bytes.
+//! The input of every output: plan, record, assessment and provenance of one run. On a simulated rig no field is read from the machine,
+//! so that equal runs give bit-identical output.
 
 use std::borrow::Cow;
 
@@ -21,7 +21,7 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Measuring channels and limits of the run: as recorded, or else as the plan and the rig declare them.
+    /// Measuring channels and limits of the run: as logged, else as declared by the plan and the rig.
     pub(super) fn equipment(&self) -> Cow<'_, Equipment> {
         let planned = || {
             let noise = match &self.plan.rig.link {
@@ -51,18 +51,18 @@ impl Run<'_> {
 pub struct Provenance {
     /// First 16 hex digits of SHA-256 over plan, used files, `--set` values, seed and version.
     pub run_id: String,
-    /// Number of the report where it differs from the run id: each record of one run has its own number.
+    /// Number of the report if it differs from the run id: each run log of one run has a separate number.
     pub number: Option<String>,
     pub psd_version: String,
     /// Build of that version.
     pub build: Build,
     /// SHA-256 of the plan's text, hex.
     pub plan_sha256: String,
-    /// Date from the plan or `--date`; for a real run otherwise the day on which it began.
+    /// Date from the plan or `--date`; for a real run otherwise the day of its start.
     pub date: Option<String>,
     /// Only for a run on a real rig.
     pub real: Option<RealRun>,
-    /// Equipment from the first line of the record; None where the record states none or does not exist.
+    /// Equipment from the first line of the run log; None if the run log does not state it or does not exist.
     pub equipment: Option<Equipment>,
     /// Prediction of the whole run, only for a completed rehearsal.
     pub prediction: Option<Prediction>,
@@ -71,14 +71,14 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// The id of the report: that of the issue, or else of the record, or else of the run.
+    /// The id of the report: that of the issue, else that of the run log, else that of the run.
     #[must_use]
     pub fn report_id(&self) -> &str {
         let own = self.number.as_ref().unwrap_or(&self.run_id);
         self.issues.as_ref().map_or(own, |issues| &issues.report_id)
     }
 
-    /// The text that the latest issue of the report states for a particular.
+    /// The text that the latest issue of the report states for an administrative field.
     pub(super) fn restated(&self, field: &str) -> Option<&str> {
         let mut changes = self
             .issues
@@ -90,34 +90,34 @@ impl Provenance {
             .map(|change| change.is.as_str())
     }
 
-    /// The operator, as recorded.
+    /// The operator, as logged.
     #[must_use]
     pub fn operator(&self) -> Option<&str> {
         self.real.as_ref().and_then(|real| real.operator.as_deref())
     }
 }
 
-/// Sources and toolchain of the program that made the run. A report that is generated again states the same build.
+/// Sources and toolchain of the program that made the run. A regenerated report states the same build.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Build {
     /// SHA-256 over the digests of its sources, hex.
     pub sources: String,
-    /// Target, profile, compiler; empty in records of older versions.
+    /// Target, profile, compiler; empty in run logs of older versions.
     pub toolchain: String,
 }
 
-/// Operator, machine and times of a real run, from its record. Times are UTC, ISO 8601.
+/// Operator, machine and times of a real run, from its run log. Times are UTC, ISO 8601.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RealRun {
     pub operator: Option<String>,
     /// The machine that controlled the rig.
     pub host: Option<String>,
     pub began: Option<String>,
-    /// Time of the last recorded reading, target or fault.
+    /// Time of the last logged reading, target or fault.
     pub ended: Option<String>,
     /// Differences between the wall clock and the time of the rig.
     pub jumps: Vec<ClockJump>,
-    /// Number of entries of the record and hash of the last one; None where the record could not be kept.
+    /// Number of entries of the run log and hash of the last one; None if the run log could not be written.
     pub sealed: Option<(u64, String)>,
 }
 
@@ -126,6 +126,6 @@ pub struct RealRun {
 pub struct ClockJump {
     /// Rig time of the reading after the jump \[s\].
     pub time: f64,
-    /// Advance of the wall clock over the rig time \[s\]; negative where it falls behind.
+    /// Advance of the wall clock over the rig time \[s\]; negative if it falls behind.
     pub seconds: f64,
 }

@@ -14,7 +14,7 @@ use crate::plan::{Behind, DeviceLink, Limits, PortPlan, RigPlan};
 /// Longest wait for a network rig to accept the connection.
 const CONNECTING: Duration = Duration::from_secs(5);
 
-/// A rig that is open. As long as this lives, a panic and a program that no longer drives hold it.
+/// An open rig. During its lifetime, a panic or a missing heartbeat of the program holds the rig.
 pub struct Connected {
     pub rig: RealRig,
     _armed: Armed,
@@ -23,7 +23,7 @@ pub struct Connected {
 /// Opens the plan's rig: requests the identity of every device, sends it the limits, reads once.
 ///
 /// # Errors
-/// A port cannot be opened, or a device is not the plan's or not fit.
+/// A port cannot be opened, or a device is not the one in the plan or is not suitable.
 pub fn connect(
     plan: &RigPlan,
     limits: &Limits,
@@ -38,7 +38,7 @@ pub fn connect(
     lines.extend(more);
     let actuator =
         actuator.ok_or_else(|| RigFault::Device(format!("nothing moves the rig {}", plan.name)))?;
-    // Armed before the first request: the rig holds whatever happens in the conversation.
+    // Armed before the first request: the rig holds whatever fault occurs in the communication.
     let armed = safety::arm(lines).watched(link.watchdog);
     let rig = RealRig::open(
         plan,
@@ -54,7 +54,7 @@ pub fn connect(
 /// Lines, each with the bytes that stop its device.
 type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
 
-/// The devices of one role as one, None where there are none, with their lines.
+/// All devices of one role as one device, with their lines; None if there is none.
 fn attach_all(
     behind: Vec<Behind<'_>>,
     plan: &RigPlan,

@@ -1,17 +1,16 @@
-//! Dwells: settled readings at one position, with time between them. In: readings that passed the guard. Out: rates of
-//! force and displacement while nothing moved. It reads nothing itself and assesses nothing.
+//! Dwells: settled readings at one position, with time between them. In: readings that passed the guard. Out: rates of force and
+//! displacement during the dwells. It reads nothing itself and assesses nothing.
 //!
-//! In a dwell a force changes by zero drift and by relaxation. The sign of the relaxation is known in one case. Let a
-//! specimen be a spring in parallel with Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ):
-//! each branch force is its stiffness times d minus a weighted mean of the displacement since the specimen rested at 0. At
-//! a displacement beyond all earlier ones, that mean is not larger than d, every bᵢ ≥ 0, and at rest all bᵢ decay to 0: the
-//! force can only fall. A force that grows there is zero drift. After an unloading the force may grow by relaxation, so
-//! those dwells are reported and not assessed. The same applies to frames, whose storey drifts are not largest when their
-//! floor displacements are.
+//! In a dwell a force changes by zero drift and by relaxation. The sign of the relaxation is known in one case. Let a specimen be a
+//! spring in parallel with Maxwell branches, f = k·d + Σ bᵢ with bᵢ = kᵢ·(d(t) − ∫ e^(−(t−s)/τᵢ)·d(s) ds/τᵢ). Each branch force is its
+//! stiffness times the difference of d and a weighted mean of the displacement since the specimen rested at 0. At a displacement beyond
+//! all earlier ones, that mean is not larger than d, and every bᵢ ≥ 0. At rest all bᵢ decay to 0: the force can only decrease. A force
+//! that increases there is zero drift. After an unloading the force may increase by relaxation, so those dwells are reported and not
+//! assessed. The same applies to frames, because their storey drifts are not largest when their floor displacements are.
 
 use super::{Guard, Held, Reading};
 
-/// The holds so far.
+/// The dwells so far.
 #[derive(Debug)]
 pub(super) struct Holds {
     /// Shorter dwells are not evaluated \[s\].
@@ -20,9 +19,9 @@ pub(super) struct Holds {
     home: f64,
     low: f64,
     high: f64,
-    /// The first reading of this hold and its last; where it is.
+    /// The first and the last reading of this dwell.
     now: Option<(Reading, Reading)>,
-    /// +1 or −1 where the specimen is farther out than ever, else 0.
+    /// +1 or −1 if the specimen is farther from its unloaded position than ever before, else 0.
     outward: f64,
     told: Held,
 }
@@ -45,7 +44,7 @@ impl Holds {
         }
     }
 
-    /// A settled reading at this target (m).
+    /// A settled reading at this target \[m\].
     pub(super) fn see(&mut self, commanded: &[f64], reading: &Reading) {
         if let Some((_, last)) = &mut self.now {
             last.clone_from(reading);
@@ -59,7 +58,7 @@ impl Holds {
         self.now = Some((reading.clone(), reading.clone()));
     }
 
-    /// The rig leaves this target (m).
+    /// The rig leaves this target \[m\].
     pub(super) fn leave(&mut self, commanded: &[f64]) {
         self.told = self.so_far();
         self.now = None;
@@ -68,7 +67,7 @@ impl Holds {
         }
     }
 
-    /// With the hold that is not over yet.
+    /// Includes the dwell that is still in progress.
     fn so_far(&self) -> Held {
         let mut told = self.told.clone();
         let Some((first, last)) = &self.now else {
@@ -114,14 +113,14 @@ impl Guard<'_> {
         self.holds.is_some()
     }
 
-    /// Their results. No dwell is evaluated after this call.
+    /// The results of the dwells. No dwell is evaluated after this call.
     pub fn take_held(&mut self) -> Held {
         self.holds
             .take()
             .map_or_else(Held::default, |holds| holds.so_far())
     }
 
-    /// It sets off from where it is.
+    /// The rig leaves its present position.
     pub(super) fn leave(&mut self) {
         self.settled = false;
         if let Some(holds) = &mut self.holds {
@@ -167,7 +166,7 @@ mod tests {
         ]);
         assert_eq!((told.count, told.longest), (5, 2.0));
         assert!((told.slopes[0].0 - 3.5).abs() < 1e-12 && (told.slopes[0].1 - 1e-6).abs() < 1e-18);
-        // On the other side a force that grows away from 0 falls.
+        // On the other side, a force whose absolute value increases has a negative rate.
         assert_eq!(
             told.grown,
             Some(0.25),

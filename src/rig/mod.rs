@@ -44,14 +44,14 @@ pub const JUST_STARTED: &str = "just started";
 /// Boot identifier of one device of several that has none.
 pub const NO_POWER_UP: &str = "-";
 
-/// One reading: measured displacement (m) and restoring force (N) of each degree of freedom.
+/// One reading: measured displacement \[m\] and restoring force \[N\] of each degree of freedom.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// Rig time, s since the run began: motion, settling and pauses.
+    /// Rig time since the start of the run \[s\], with motion, settling and pauses.
     pub time: f64,
     pub displacement: Vec<f64>,
     pub force: Vec<f64>,
-    /// The bytes it was made of, one entry a reply; none on a virtual rig.
+    /// The bytes from which it was decoded, one entry per reply; none on a virtual rig.
     pub raw: Vec<Vec<u8>>,
 }
 
@@ -60,13 +60,13 @@ pub struct Reading {
 pub struct EncodedMove {
     /// Absolute targets \[m\], decoded from the bytes. The guard compares these with the limits.
     pub targets: Vec<f64>,
-    /// m/s, read back from the bytes where they carry one.
+    /// \[m/s\], decoded from the bytes if they contain a speed.
     pub speed: f64,
     /// The bytes that carry the target; empty on a virtual rig.
     pub wire: Vec<u8>,
-    /// Number of the move, where the rig remembers the last one it was given.
+    /// Number of the move, if the rig remembers its last move.
     pub move_id: Option<u64>,
-    /// The targets in the rig's own coordinate, m, where its zero is another than the plan's.
+    /// The targets in the rig's own coordinate \[m\], if its zero differs from that of the plan.
     pub at_the_rig: Option<Vec<f64>>,
 }
 
@@ -82,9 +82,9 @@ pub struct LastMove {
 /// Communication errors that were recovered without harm, for the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LineStatistics {
-    /// Frames sent again for want of an answer.
+    /// Frames that were sent again because of a missing answer.
     pub resent: u64,
-    /// Replies thrown away: broken, late, doubled or not asked for.
+    /// Replies that were discarded: broken, late, duplicated or unsolicited.
     pub ignored: u64,
     /// Readings that were repeated because one was not usable.
     pub reread: u64,
@@ -121,7 +121,7 @@ impl std::fmt::Display for LineStatistics {
     }
 }
 
-/// The reason why a rig could not do a request. The rig holds its position in every case.
+/// The reason why a rig could not execute a request. The rig holds its position in every case.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RigFault {
@@ -159,7 +159,7 @@ pub enum RigFault {
     Device(String),
 }
 
-/// Six digits, since a value just beyond its limit must not read as the limit itself.
+/// Six digits, because a value just beyond its limit must not appear equal to the limit.
 fn breach(
     quantity: LimitedQuantity,
     axis: Option<usize>,
@@ -236,7 +236,7 @@ pub trait Rig {
     /// Actuators with their load cells, at least 1.
     fn degrees_of_freedom(&self) -> usize;
 
-    /// Rig time, s since the run began.
+    /// Rig time since the start of the run \[s\].
     fn time(&self) -> f64;
 
     /// Encodes a move to absolute targets \[m\] at a speed (\[m/s\]; None: the rig's own), and decodes the bytes again.
@@ -246,13 +246,13 @@ pub trait Rig {
     /// The rig cannot encode it.
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault>;
 
-    /// Carries out the proposed move, and waits until in position and settled.
+    /// Executes the proposed move, and waits until the rig is in position and settled.
     ///
     /// # Errors
     /// The rig does not settle or cannot be reached; it holds.
     fn execute(&mut self) -> Result<(), RigFault>;
 
-    /// Stays where it is for `seconds` of rig time.
+    /// Stays at its position for `seconds` of rig time.
     ///
     /// # Errors
     /// The rig cannot be reached.
@@ -261,11 +261,11 @@ pub trait Rig {
     /// Reads once.
     ///
     /// # Errors
-    /// The rig cannot be reached, or the reading is no number.
+    /// The rig cannot be reached, or the reading is not a number.
     fn read(&mut self) -> Result<Reading, RigFault>;
 
-    /// Reads once, and reports when its last move took place, if that was seen: start and end of the equivalent uniform
-    /// motion, in rig time \[s\].
+    /// Reads once. Also reports the time of its last move, if it was observed: start and end of the equivalent uniform motion, in rig
+    /// time \[s\].
     ///
     /// # Errors
     /// As `read`.
@@ -279,7 +279,7 @@ pub trait Rig {
     /// `each` as it is made; if `each` refuses, the rig holds immediately and the refusal is the error.
     ///
     /// # Errors
-    /// As `execute`, `read` and `each`; fewer than two readings, where as many are wanted.
+    /// As `execute`, `read` and `each`; or fewer than two readings if two or more were requested.
     fn traverse(
         &mut self,
         targets: &[f64],
@@ -288,12 +288,12 @@ pub trait Rig {
         each: EachReading<'_>,
     ) -> Result<(), RigFault>;
 
-    /// Follows smooth paths, one per degree of freedom and of equal duration, and reads at `samples` equally spaced times,
-    /// the last at the end of the paths. The rig goes on moving there until the next path or a hold. Each reading is passed
-    /// to `each` as it is made; if `each` refuses, the rig holds immediately and the refusal is the error.
+    /// Follows smooth paths, one per degree of freedom and of equal duration. It reads at `samples` equally spaced times, the last at the
+    /// end of the paths. The rig continues to move there until the next path or a hold. Each reading is passed to `each` as it is made;
+    /// if `each` refuses, the rig holds immediately and the refusal is the error.
     ///
     /// # Errors
-    /// As `traverse`; a rig that takes one target at a time follows no path.
+    /// As `traverse`; a rig that accepts only one target at a time follows no path.
     fn glide(
         &mut self,
         _paths: &[Path],
@@ -320,7 +320,7 @@ pub trait Rig {
         self.traverse(cut_off.to, velocity, cut_off.left(), each)
     }
 
-    /// The same of paths.
+    /// The same for paths.
     ///
     /// # Errors
     /// As `glide`.
@@ -347,8 +347,8 @@ pub trait Rig {
         None
     }
 
-    /// Standard deviation of one force reading, N, and quantum of the displacement reading, m, as declared: they guard the tangent
-    /// stiffness.
+    /// Declared standard deviation of one force reading \[N\] and resolution of the displacement reading \[m\]. They protect the tangent
+    /// stiffness from noise.
     fn declared_noise(&self) -> DeclaredNoise;
 
     /// The position of the plan's zero in the rig's own coordinate \[m\], one per axis. None: the rig has no other
@@ -357,7 +357,7 @@ pub trait Rig {
         None
     }
 
-    /// Speed of a move for which none is asked, m/s; None: as fast as the plan's limits allow.
+    /// Speed of a move without a requested speed \[m/s\]; None: the highest speed that the plan's limits allow.
     fn own_speed(&self) -> Option<f64> {
         None
     }
@@ -379,10 +379,10 @@ pub trait Rig {
     }
 }
 
-/// A traverse that was cut off.
+/// A traverse that was interrupted.
 #[derive(Clone, Copy, Debug)]
 pub struct CutOff<'a> {
-    /// Where it began and where it leads, m.
+    /// Its start and its target \[m\].
     pub from: &'a [f64],
     pub to: &'a [f64],
     /// Readings that were requested for the whole motion, and those that were made.

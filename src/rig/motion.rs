@@ -2,7 +2,8 @@
 //! Out: start and end of the uniform motion with the same mean instant and the same variance about it. For slow relaxation
 //! the two are equal.
 
-/// Begin and end of an even motion of that mean instant (s) and variance about it (s²), no sooner than `start` (s): then the mean counts.
+/// Start and end of a uniform motion with this mean instant \[s\] and this variance about it \[s²\]. It begins no earlier than `start`
+/// \[s\]; if it would, only the mean is kept.
 pub(super) fn even(start: f64, mean: f64, variance: f64) -> [f64; 2] {
     let from = (mean - (3.0 * variance.max(0.0)).sqrt()).max(start);
     [from, 2.0 * mean - from]
@@ -64,7 +65,7 @@ mod tests {
         );
     }
 
-    /// A motion shorter than its lag is even from where it began, with the same mean.
+    /// A motion shorter than its lag is uniform from its start, with the same mean.
     #[test]
     fn no_motion_begins_before_it_does() {
         assert_eq!(even(2.0, 2.5, 1.0), [2.0, 3.0]);

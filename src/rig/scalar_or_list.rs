@@ -1,4 +1,4 @@
-//! A list that is written as its one number if it has one: run logs have always had positions of one axis in this form. In:
+//! A list that is written as a single number if it has one entry: run logs have always contained positions of one axis in this form. In:
 //! numbers. Out: a number or a list. It knows no rig.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

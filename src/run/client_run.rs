@@ -1,5 +1,5 @@
-//! A session in which a client drives the rig of a plan. In: the plan, the rig, the client. Out: the record, and the steps
-//! that the client asked for. It knows no protocol.
+//! A session in which a client drives the rig of a plan. In: the plan, the rig, the client. Out: the record, and the steps that the
+//! client requested. It knows no protocol.
 
 use std::time::Duration;
 
@@ -21,9 +21,9 @@ pub struct ClientRunRecord {
 /// The source of the requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driver {
-    /// A program: a real rig must have passed the gate first.
+    /// A program: a real rig must have passed the pre-test check first.
     Client,
-    /// The operator by hand, who confirms every move; there may be no specimen yet for a pre-test check.
+    /// The operator by hand, who confirms every move; a pre-test check may be impossible because there is no specimen yet.
     ByHand,
 }
 
@@ -95,8 +95,8 @@ pub fn drive(
     }
 }
 
-/// The zeros after the last client, as after a test. If a stop was requested, the rig is to hold: then nothing moves, and
-/// they are not read.
+/// Reads the zeros after the last client, as after a test. If a stop was requested, the rig must hold: nothing moves, and the zeros are
+/// not read.
 fn once_more(drift: &mut Drift, home: &[f64], session: &mut Session<'_>) -> Result<(), Stop> {
     if session.stop_if_requested().is_err() {
         session.event(

@@ -1,5 +1,5 @@
-//! Inputs of a procedure: formulas of the plan, evaluated once every result before it is known. In: formulas. Out:
-//! numbers in SI, inside their domain, and the list of them for the record.
+//! Inputs of a procedure: formulas of the plan, evaluated when all earlier results are known. In: formulas. Out: numbers in SI, inside
+//! their domain, and the list of them for the record.
 
 use crate::plan::formula::{Estimate, Formula, ProcedureId, Results};
 use crate::run::stop::Stop;
@@ -12,9 +12,9 @@ pub(crate) struct Inputs<'record> {
     results: &'record dyn Results,
     procedure: ProcedureId,
     recorded: Vec<(&'static str, Estimate, Dimension)>,
-    /// Whether a source is moved: then nothing is raised to its bound by itself.
+    /// Whether a source is perturbed: then no value is raised to its bound automatically.
     moved: bool,
-    /// By how much the damping was raised to none, in its own unit.
+    /// The amount by which the damping was raised to zero, in its own unit.
     lift: f64,
     /// Remarks on the treatment of an input.
     observations: Vec<String>,
@@ -33,7 +33,7 @@ impl<'record> Inputs<'record> {
         }
     }
 
-    /// The same with a source moved, of a run whose damping was raised by so much.
+    /// The same with a source perturbed, for a run whose damping was raised by `lift`.
     pub(crate) fn moved(results: &'record dyn Results, procedure: ProcedureId, lift: f64) -> Self {
         Self {
             moved: true,
@@ -42,7 +42,7 @@ impl<'record> Inputs<'record> {
         }
     }
 
-    /// By how much the damping was raised to none.
+    /// The amount by which the damping was raised to zero.
     pub(crate) const fn lift(&self) -> f64 {
         self.lift
     }
@@ -52,7 +52,7 @@ impl<'record> Inputs<'record> {
         std::mem::take(&mut self.observations)
     }
 
-    /// Whose inputs they are.
+    /// The procedure of these inputs.
     pub(crate) const fn procedure(&self) -> ProcedureId {
         self.procedure
     }
@@ -64,7 +64,7 @@ impl<'record> Inputs<'record> {
         }
     }
 
-    /// Where its formulas find results.
+    /// The results that its formulas read.
     pub(crate) fn results(&self) -> &'record dyn Results {
         self.results
     }
@@ -159,7 +159,7 @@ impl<'record> Inputs<'record> {
         Ok(0.0)
     }
 
-    /// A number above 0 with its uncertainty; `critical` (s) is for `time_step`.
+    /// A number above 0 with its uncertainty; `critical` \[s\] is for `time_step`.
     pub(crate) fn positive_estimate(
         &mut self,
         field: &'static str,
@@ -180,14 +180,14 @@ impl<'record> Inputs<'record> {
         }
     }
 
-    /// Actuator speed where one is asked for, above 0.
+    /// Actuator speed above 0, if one is requested.
     pub(crate) fn speed(&mut self, formula: Option<&Formula>) -> Result<Option<f64>, Stop> {
         formula
             .map(|formula| self.positive("speed", formula, Dimension::VELOCITY))
             .transpose()
     }
 
-    /// Every entry of a list. The record has them as the commands of its steps.
+    /// Every entry of a list. The record contains them as the commands of its steps.
     pub(crate) fn list(&self, field: &'static str, formulas: &[Formula]) -> Result<Vec<f64>, Stop> {
         let value = |formula: &Formula| {
             formula

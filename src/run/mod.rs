@@ -28,7 +28,7 @@ use stop::Stop;
 
 /// An observer of a run: a progress bar, a live screen, a run log, the operator.
 pub trait Observer {
-    /// A procedure begins; `steps` is an upper bound of its steps where one is known.
+    /// A procedure begins; `steps` is an upper bound of its steps, if one is known.
     fn procedure_started(&mut self, _name: &str, _keyword: &str, _steps: Option<u64>) {}
     fn step_done(&mut self, _report: &StepReport) {}
     fn procedure_finished(&mut self, _name: &str) {}
@@ -41,8 +41,8 @@ pub trait Observer {
     /// The operator is to inspect the specimen; the answer states whether to continue. Asked again while it is
     /// [`Inspection::Wait`].
     fn inspect(&mut self, note: &str) -> Inspection;
-    /// A real rig is about to move for the first time: whether the operator releases it for this motion. `note` is its text
-    /// in the run log. Asked again while it is [`Inspection::Wait`].
+    /// A real rig is about to move for the first time: whether the operator enables this motion. `note` is its text in the run log. Asked
+    /// again while it is [`Inspection::Wait`].
     fn release(&mut self, note: &str, _motion: &Motion) -> Inspection {
         self.inspect(note)
     }
@@ -57,7 +57,7 @@ pub trait Observer {
     }
     /// An event of the run; it is in the run log.
     fn event(&mut self, _: &Event) {}
-    /// A client that drives the rig asks for something; it is about to be done.
+    /// A client that drives the rig has sent a request; it is about to be executed.
     fn asked(&mut self, _: &Request) {}
 }
 
@@ -65,7 +65,7 @@ pub trait Observer {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Next {
     GoOn,
-    /// The run is paused: ask again in a moment.
+    /// The run is paused: ask again after a short time.
     Wait,
     /// An action or observation of the operator, for the run log.
     Record(String),
@@ -76,28 +76,28 @@ pub enum Next {
 pub struct StepReport {
     /// Number within its procedure, from 1.
     pub step: u64,
-    /// Virtual time of an impact, else rig time, s.
+    /// Simulated time of an impact, else laboratory time \[s\].
     pub time: f64,
-    /// Target of the step, m.
+    /// Target of the step \[m\].
     pub command: f64,
-    /// Measured, m.
+    /// Measured \[m\].
     pub displacement: f64,
-    /// Computed, m/s; only of procedures that integrate.
+    /// Computed \[m/s\]; only for procedures that integrate.
     pub velocity: Option<f64>,
-    /// Computed, m/s²; only of procedures that integrate.
+    /// Computed \[m/s²\]; only for procedures that integrate.
     pub acceleration: Option<f64>,
-    /// Measured restoring force, N.
+    /// Measured restoring force \[N\].
     pub force: f64,
     /// Speed of the last motion of the rig \[m/s\]; only for display.
     #[serde(skip)]
     pub speed: Option<f64>,
-    /// Energy error over the input energy; only of procedures that integrate.
+    /// Energy error over the input energy; only for procedures that integrate.
     pub energy_error: Option<f64>,
     /// The tracking errors; only for procedures that integrate.
     pub tracking: Option<Tracking>,
-    /// Its energy error over the energy put into the test so far.
+    /// Its energy error over the present input energy of the test.
     pub tracking_energy_error: Option<f64>,
-    /// The axes after the first, whose numbers are above, for a procedure that moves several.
+    /// The axes after the first, for a procedure that moves several axes. The first axis is above.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<AxisReport>,
 }
@@ -105,20 +105,20 @@ pub struct StepReport {
 /// One axis at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AxisReport {
-    /// m
+    /// \[m\]
     pub command: f64,
-    /// Measured, m.
+    /// Measured \[m\].
     pub displacement: f64,
-    /// Computed, m/s.
+    /// Computed \[m/s\].
     pub velocity: f64,
-    /// Computed, m/s².
+    /// Computed \[m/s²\].
     pub acceleration: f64,
-    /// Measured, N.
+    /// Measured \[N\].
     pub force: f64,
 }
 
 impl StepReport {
-    /// Target (m), measured displacement (m) and force (N) of every axis.
+    /// Target \[m\], measured displacement \[m\] and force \[N\] of every axis.
     pub fn axes(&self) -> impl Iterator<Item = (f64, f64, f64)> {
         let others = self
             .others
@@ -142,7 +142,7 @@ pub enum Inspection {
         /// The operator, if known.
         by: Option<String>,
     },
-    /// No answer yet: ask again in a moment.
+    /// No answer yet: ask again after a short time.
     Wait,
 }
 
@@ -160,7 +160,7 @@ impl Inspection {
 /// The event in the run log before a stopped run unloads.
 pub(crate) const UNLOADING: &str = "unloading to where the run began";
 
-/// Displays nothing, continues at every inspection.
+/// Displays nothing, and continues at every inspection.
 pub struct Unwatched;
 
 impl Observer for Unwatched {
@@ -169,10 +169,10 @@ impl Observer for Unwatched {
     }
 }
 
-/// The record of a procedure, also if it was stopped: all measurements up to there and their results.
+/// The record of a procedure, also if it was stopped: all measurements until then, and their results.
 pub(crate) struct Performed {
     pub(crate) history: History,
-    /// In the schema's order, every one of them.
+    /// All results, in the order of the schema.
     pub(crate) results: Vec<NamedResult>,
     pub(crate) stop: Option<Stop>,
 }

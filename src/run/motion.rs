@@ -1,5 +1,5 @@
-//! The motion of a rig after its release, as the operator must read it before. In: the rig, the plan's limits, the known
-//! facts of the motion. Out: lines of text. Pure: every prompt for motion states the same facts in the same order.
+//! The motion of a rig after its release, as the operator must read it before. In: the rig, the plan's limits, the known facts of the
+//! motion. Out: lines of text. It has no side effects: every prompt for motion states the same facts in the same order.
 
 use crate::plan::{Interval, Limits, Plan};
 use crate::rig::Identity;
@@ -23,21 +23,21 @@ pub struct Motion {
     pub limits: Limits,
 }
 
-/// How far, how hard, how fast and how long, SI. None: not known.
+/// Range of displacement and force, speed and duration, SI. None: not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extent {
-    /// m, over all axes.
+    /// \[m\], over all axes.
     pub travel: Option<Interval>,
-    /// N, over all axes.
+    /// \[N\], over all axes.
     pub force: Option<Interval>,
-    /// The fastest, m/s.
+    /// The highest speed \[m/s\].
     pub speed: Option<f64>,
-    /// s
+    /// \[s\]
     pub duration: Option<f64>,
 }
 
 impl Motion {
-    /// The motion of a plan's rig, as far as the plan alone states it.
+    /// The motion of a plan's rig, with the values that the plan alone determines.
     #[must_use]
     pub fn of(plan: &Plan, identity: Identity, does: String) -> Self {
         Self {
@@ -50,7 +50,7 @@ impl Motion {
         }
     }
 
-    /// The same motion, of which this is known where nothing was known before.
+    /// The same motion, with these values if they were not known before.
     #[must_use]
     pub fn expecting(mut self, expected: Extent) -> Self {
         let before = self.expected;

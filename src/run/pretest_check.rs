@@ -15,11 +15,11 @@ use crate::rig::{Reading, named_axis, of_axis};
 use crate::units::Dimension;
 use crate::units::display::{readable, stated};
 
-/// Time between the two readings at rest, s.
+/// Time between the two readings at rest \[s\].
 const REST: f64 = 1.0;
 
-/// Asks for the release, then tests the rig, axis by axis. Nothing else has moved by then; `afterwards` describes the later
-/// motion.
+/// Requests the motion enable, then tests the rig axis by axis. No motion has occurred before; `afterwards` describes the motion after
+/// the check.
 pub(crate) fn pass(
     plan: &Plan,
     link: &RealLink,
@@ -39,7 +39,7 @@ pub(crate) fn pass(
     } else {
         format!("each of its {axes} axes in turn, by {ways}")
     };
-    // The release of a rig at a different position is not asked for.
+    // No motion enable is requested for a rig at a different position.
     start::check(plan, link, session, session.guard.found())?;
     let note = format!(
         "release rig {}: it will move {by} to prove itself, then {afterwards}",
@@ -76,7 +76,7 @@ pub(crate) fn pass(
     let mut before = at_rest.clone();
     for (axis, gate) in gates.iter().enumerate() {
         session.stop_if_requested()?;
-        // Each is compared with the reading at rest before it, after the axis before it had returned.
+        // Each axis is compared with the reading at rest before its move, after the previous axis has returned.
         let (column, back) = probe(axis, gate, &before, session)?;
         before = back;
         let force = readable(at_rest.force[axis], Dimension::FORCE);
@@ -100,8 +100,8 @@ pub(crate) fn pass(
     Ok(())
 }
 
-/// A small move of one axis alone, and back. Gives its column of the stiffness matrix \[N/m\]: the change of force of every
-/// axis, divided by the travel; and the reading after the return.
+/// Makes a small move of one axis alone, and returns. Gives the column of the stiffness matrix \[N/m\]: the change of force of every axis
+/// divided by the travel. Also gives the reading after the return.
 fn probe(
     axis: usize,
     gate: &Gate,

@@ -1,13 +1,13 @@
-//! A rehearsal: the part of a plan that is measured first, and the prediction of the rest. In: a plan, and the record of
-//! its pre-test check and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen
-//! with the measured stiffness. It moves nothing.
+//! A rehearsal (low-level check run): the part of a plan that is measured first, and the prediction of the rest. In: a plan, and the
+//! record of its pre-test check and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen with
+//! the measured stiffness. It moves nothing.
 
 use crate::plan::formula::ResultValue;
 use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
 use crate::record::{History, RampHistory, Record};
 use crate::rig::VirtualRig;
 
-/// The particular of a plan that marks it as a rehearsal.
+/// The administrative field of a plan that marks it as a rehearsal.
 pub const REHEARSAL: &str = "rehearsal";
 
 /// Why a plan cannot be rehearsed.
@@ -21,8 +21,8 @@ pub enum Unrehearsed {
     NoStiffness(String),
 }
 
-/// Procedures of the plan, from the first on, that a rehearsal runs on the rig: stiffness ramps, with the inspections
-/// before and between them.
+/// Number of leading procedures of the plan that a rehearsal runs on the rig: stiffness ramps, with the inspections before and between
+/// them.
 fn leading(plan: &Plan) -> usize {
     let quiet = |kind: &ProcedureKind| {
         matches!(
@@ -40,11 +40,11 @@ fn leading(plan: &Plan) -> usize {
     ramps.map(|(place, _)| place + 1).last().unwrap_or(0)
 }
 
-/// The part of the plan that a rehearsal runs on the rig: the pre-test check and the leading stiffness ramps. It has no
-/// requirements, because no conformity is assessed by it, and is marked as a rehearsal.
+/// The part of the plan that a rehearsal runs on the rig: the pre-test check and the leading stiffness ramps. It is marked as a
+/// rehearsal. It has no requirements, because it makes no statement of conformity.
 ///
 /// # Errors
-/// There would be nothing to predict the rest on.
+/// Nothing would be measured from which to predict the rest.
 pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     let ramps = leading(plan);
     let bent = VirtualRig::specimen_of(plan)
@@ -83,7 +83,7 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, Unrehearsed> {
     part.particulars.push((REHEARSAL, text));
     part.rehearses = Some(Box::new(plan.clone()));
     part.requirements.clear();
-    // The zeros are those of a test: a rehearsal goes nowhere for them.
+    // The zeros belong to a test: a rehearsal does not move for them.
     part.rig.drift = None;
     part.report
         .figures
@@ -100,8 +100,8 @@ pub fn rehearsed_plan(plan: &Plan) -> Option<&str> {
         .map(|(_, text)| text.as_str())
 }
 
-/// The whole plan on a virtual specimen with the stiffness of `measured`, and with the noise and resolution of the rig. The
-/// noise is the larger of the declared one and that of the ramps.
+/// The whole plan on a virtual specimen with the stiffness of `measured`, and with the noise and resolution of the rig. The noise is the
+/// larger of the declared noise and the noise of the ramps.
 ///
 /// # Errors
 /// A ramp gave no stiffness.
@@ -135,7 +135,7 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, Unrehearsed> {
     Ok(model)
 }
 
-/// The specimen that a ramp beyond yield measured, if its fitted curve is one: with its measured yield point, not the
+/// The specimen that a ramp beyond yield measured, if its fitted curve is a valid model. It has the measured yield point, not the
 /// expected one.
 fn curve_of(history: &History) -> Option<Behaviour> {
     let History::Ramp(RampHistory {
@@ -162,16 +162,16 @@ fn curve_of(history: &History) -> Option<Behaviour> {
     Some(Behaviour::Multilinear { corners })
 }
 
-/// A specimen of the measured stiffness (N/m): the expected one with every force in that proportion, so that it yields and
-/// breaks at the displacements of the plan.
+/// A specimen of the measured stiffness \[N/m\]: the expected one with every force scaled in proportion. It yields and breaks at the
+/// displacements of the plan.
 fn as_stiff_as(stiffness: f64, specimen: &Specimen) -> Behaviour {
-    // During a pause the relaxing part of the force relaxes before the reading.
+    // During a dwell the relaxing part of the force decreases before the reading.
     let expected = specimen
         .behaviour
         .as_ref()
         .map(|behaviour| (behaviour, behaviour.relaxed_stiffness()));
     match expected {
-        // Exactly as measured, which a quotient would not be.
+        // Exactly as measured; a quotient would be rounded.
         None | Some((Behaviour::Elastic { .. } | Behaviour::Beam(_), _)) => {
             Behaviour::Elastic { stiffness }
         }
@@ -180,7 +180,7 @@ fn as_stiff_as(stiffness: f64, specimen: &Specimen) -> Behaviour {
     }
 }
 
-/// Standard deviation of a force reading over all pauses of the ramps, N; 0 where each had one reading.
+/// Standard deviation of a force reading over all dwells of the ramps \[N\]; 0 if each dwell had one reading.
 fn scatter(measured: &Record) -> f64 {
     let steps = measured
         .procedures
@@ -208,7 +208,7 @@ mod tests {
         elastic_plan, impact, ramp, result_of, run_unwatched, struck_frame,
     };
 
-    /// A frame has the behaviours of its storeys: none is measured first, and the impact is predicted with them.
+    /// A frame has the models of its storeys: none is measured first, and the impact is predicted with them.
     #[test]
     fn a_blow_on_a_storey_is_predicted_on_the_storeys_of_the_plan() {
         let plan = struck_frame();
@@ -278,7 +278,7 @@ mod tests {
             yield_force: 40.0,
             hardening: 0.1,
         });
-        // The rig bends 320 N/m where the plan expects 400.
+        // The rig has 320 N/m; the plan expects 400 N/m.
         let record = run_unwatched(&measured_part(&plan()).unwrap());
         let model = prediction(&expected, &record).unwrap();
         let Some(Behaviour::Bilinear {
@@ -294,7 +294,8 @@ mod tests {
                 && (yield_force / stiffness - 0.1).abs() < 1e-12
                 && hardening == 0.1
         );
-        // A ramp past yield measured how it yields, whatever the plan expects: here 250 N/m and 30 N, a twentieth on.
+        // A ramp past yield measures the yielding, whatever the plan expects: here 250 N/m, 30 N and a post-yield stiffness ratio of
+        // 1/20.
         let mut yielding = measured_part(&plan()).unwrap();
         yielding.specimens[0].behaviour = Some(Behaviour::Bilinear {
             stiffness: 250.0,

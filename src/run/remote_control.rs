@@ -1,8 +1,8 @@
-//! A rig that a client drives, behind the guard. In: the client's requests, one after the other. Out: the reading after
-//! each, events, and a summary of the requests. It knows no protocol.
+//! A rig that a client drives, behind the guard. In: the client's requests, one after the other. Out: the reading after each, events, and
+//! a summary of the requests. It knows no protocol.
 //!
-//! Every action of a protocol on the rig goes through [`Specimen`], which reports it to the observer first. So the logged
-//! requests, repeated through `Specimen::carry_out`, make the same calls to the guard and the rig again.
+//! Every action of a protocol on the rig uses [`Specimen`], which reports it to the observer first. The logged requests are repeated
+//! through `Specimen::carry_out`. They make the same calls to the guard and the rig again.
 
 use std::time::{Duration, Instant};
 
@@ -15,17 +15,17 @@ use crate::run::{AxisReport, Observer, StepReport};
 /// Summary of a session, SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Driven {
-    /// Moves carried out.
+    /// Number of executed moves.
     pub targets: u64,
-    /// Targets refused because of a limit.
+    /// Number of targets that were refused because of a limit.
     pub refused: u64,
-    /// Largest |displacement| read, m.
+    /// Largest abs(displacement) that was read \[m\].
     pub displacement: f64,
-    /// Largest |force| read, N.
+    /// Largest abs(force) that was read \[N\].
     pub force: f64,
 }
 
-/// Displacement (m) and force (N) of every axis, settled and inside the limits.
+/// Displacement \[m\] and force \[N\] of every axis, settled and inside the limits.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Feedback {
     pub displacement: Vec<f64>,
@@ -46,13 +46,13 @@ pub struct Specimen<'session, 'rig> {
     pub(super) events: Vec<Event>,
     /// How the worst session ended, and why.
     worst: Option<(Disconnect, String)>,
-    /// A client is there.
+    /// Whether a client is connected.
     inside: bool,
     closed: bool,
 }
 
 impl<'session, 'rig> Specimen<'session, 'rig> {
-    /// With `beat`, for a rig that must be polled at least so often.
+    /// `beat`: for a rig that must be polled at least this often.
     pub fn new(
         guard: &'session mut Guard<'rig>,
         observer: &'session mut dyn Observer,
@@ -79,17 +79,17 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         &self.feedback
     }
 
-    /// Axes, each with its load cell.
+    /// Number of axes, each with its load cell.
     pub fn degrees_of_freedom(&self) -> usize {
         self.guard.commanded().len()
     }
 
-    /// Summary of the present client, or of the last.
+    /// Summary of the present client, or of the last one.
     pub const fn driven(&self) -> Driven {
         self.driven
     }
 
-    /// The last targets carried out, m.
+    /// The last executed targets \[m\].
     pub fn commanded(&self) -> &[f64] {
         self.guard.commanded()
     }
@@ -99,7 +99,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.guard.increments_to(targets)
     }
 
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub fn time(&self) -> f64 {
         self.guard.time()
     }
@@ -130,10 +130,10 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.propose_at(targets, None)
     }
 
-    /// [`Self::propose`] at a speed, m/s; None: the rig's own.
+    /// [`Self::propose`] at a speed \[m/s\]; None: the rig's own.
     ///
     /// # Errors
-    /// As there; or the speed is beyond its limit.
+    /// As for [`Self::propose`]; or the speed is outside its limit.
     pub fn propose_at(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         self.asked(&Request::targets_at(targets, speed));
         let proposed = self.guard.propose(targets, speed);
@@ -188,7 +188,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
                     velocity: 0.0,
                     acceleration: 0.0,
                 });
-        // A client of which nothing was ever read has done no step.
+        // A client without any reading has done no step.
         let Some(AxisReport {
             command,
             displacement,
@@ -224,7 +224,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.read_feedback()
     }
 
-    /// Forgets the proposal, stops all motion and keeps the load.
+    /// Discards the proposal, stops all motion and keeps the load.
     pub fn hold(&mut self) {
         self.asked(&Request::Hold);
         self.guard.hold();
@@ -254,7 +254,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         }
     }
 
-    /// No client is served any more.
+    /// No further client is served.
     pub fn close(&mut self) {
         self.asked(&Request::Close);
         self.closed = true;
@@ -342,7 +342,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.observer.asked(request);
     }
 
-    /// A fault is an event of the record.
+    /// Adds a fault to the events of the record.
     fn note_fault<T>(&mut self, result: Result<T, RigFault>) -> Result<T, RigFault> {
         if let Err(fault) = &result {
             let stop = Stop::Rig(fault.clone());
@@ -363,7 +363,7 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         self.events.push(event);
     }
 
-    /// An interrupted run log is not complete.
+    /// The outcome of an interrupted run log is a fault.
     pub(super) fn outcome(&self) -> Outcome {
         let cut_off = |place: &str| Outcome::Faulted {
             reason: format!("the record ends {place}"),

@@ -11,11 +11,11 @@ use crate::uncertainty::engine::{Tick, Unknown};
 /// A reading, the time of the last move \[s\], and the fault that ends the run.
 pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
 
-/// Longest wait of a real rig between two looks at the operator's decision, rig time \[s\]: it needs a heartbeat at least
-/// this often.
+/// Longest wait of a real rig between two polls of the operator's decision, rig time \[s\]: the rig needs a heartbeat at least this
+/// often.
 const BREATH: f64 = 0.01;
 
-/// Why a run ends that a person wants to end while nothing moves.
+/// The reason if the operator ends a run while nothing moves.
 pub(super) const STOPPED_ON_REQUEST: &str = "stopped on request";
 
 pub(crate) struct Session<'run> {
@@ -27,22 +27,22 @@ pub(crate) struct Session<'run> {
     procedure: Option<String>,
     /// Number of the last step done in this procedure.
     step: Option<u64>,
-    /// Remarks about an impact of this procedure, and the number of its later impacts to which each applies.
+    /// Observations about an impact of this procedure, and the number of its later impacts to which each applies.
     remarks: Vec<(String, usize)>,
-    /// Where the rig was found, m.
+    /// The position of the rig when the session began \[m\].
     pub(super) home: Vec<f64>,
     /// [`Plan::unloads_at_once`]
     pub(crate) unloads_at_once: bool,
-    /// The operator was asked to inspect, or has paused the run: a person may be at the specimen.
+    /// The operator was asked to inspect, or has paused the run: the operator may be at the specimen.
     pub(super) attended: bool,
     pub(crate) settings: Settings,
-    /// Whether rig time is only simulated, and must not pass while the operator decides. An emulator on a line is driven as
-    /// any rig, and has a watchdog as any.
+    /// Whether rig time is only simulated, and must not pass while the operator decides. An emulator on a line is driven like any rig,
+    /// and has a watchdog like any rig.
     reckoned: bool,
 }
 
 impl<'run> Session<'run> {
-    /// Takes the rig behind its guard. The error is the event to record and the reason of the end.
+    /// Puts the rig behind its guard. The error is the event to record and the reason of the end.
     pub(crate) fn begin(
         plan: &Plan,
         rig: &'run mut dyn Rig,
@@ -89,7 +89,7 @@ impl<'run> Session<'run> {
                 })
             }
             Err(fault) => {
-                // Records of older versions have the fault alone.
+                // Run logs of older versions contain only the fault.
                 let stop = match fault {
                     RigFault::LimitBreached { .. } if datum => Stop::AtRest(fault),
                     fault => Stop::Rig(fault),
@@ -107,8 +107,7 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// The events. The last of them states the communication errors that were recovered: a deviation, although without
-    /// harm.
+    /// The events. The last of them states the recovered communication errors: a deviation without effect on the results.
     pub(crate) fn finish(mut self) -> Vec<Event> {
         let line_statistics = self.guard.line_statistics();
         if line_statistics != LineStatistics::default() {
@@ -137,7 +136,7 @@ impl<'run> Session<'run> {
     }
 
     pub(super) fn leave(&mut self) {
-        // Remarks of the last step are not lost.
+        // The observations of the last step are recorded too.
         while let Next::Record(text) = self.observer.next() {
             self.event(EventKind::Note, text);
         }
@@ -158,7 +157,7 @@ impl<'run> Session<'run> {
         self.events.push(event);
     }
 
-    /// A remark about an impact, once: for later impacts of the same procedure it is counted.
+    /// Records an observation about an impact once; later impacts of the same procedure with the same observation are counted.
     pub(crate) fn remark(&mut self, text: String) {
         if let Some((_, again)) = self.remarks.iter_mut().find(|(known, _)| *known == text) {
             *again += 1;
@@ -168,7 +167,7 @@ impl<'run> Session<'run> {
         self.event(EventKind::Remark, text);
     }
 
-    /// Adds the remarks that apply to more than one impact.
+    /// Adds the observations that apply to more than one impact.
     pub(crate) fn remark_again(&mut self) {
         for (text, again) in std::mem::take(&mut self.remarks) {
             match again {
@@ -210,7 +209,7 @@ impl<'run> Session<'run> {
         self.ask(note, &mut |observer| observer.inspect(note))
     }
 
-    /// Asks for the release of a rig that has not moved yet. A refusal stops nothing, because nothing has begun.
+    /// Requests the motion enable of a rig that has not moved yet. A refusal stops nothing, because nothing has begun.
     pub(super) fn release(&mut self, note: &str, motion: &Motion) -> Result<(), Stop> {
         self.ask(note, &mut |observer| observer.release(note, motion))
             .map_err(|stop| match stop {
@@ -254,7 +253,7 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// During an inspection nothing moves: the readings meanwhile show zero drift, if that is evaluated.
+    /// Nothing moves during an inspection: the readings show the zero drift, if it is evaluated.
     fn look_at_a_hold(&mut self) -> Result<(), Stop> {
         if self.guard.watches_holds() {
             self.guard.read()?;
@@ -267,7 +266,7 @@ impl<'run> Session<'run> {
         self.identity.clone()
     }
 
-    /// Whether nothing real is moved, so that the specimen behaves exactly as the plan states.
+    /// Whether no real specimen is moved, so that the specimen behaves exactly as the plan states.
     pub(crate) const fn reckoned(&self) -> bool {
         self.reckoned
     }
@@ -278,8 +277,8 @@ impl<'run> Session<'run> {
         self.breathe()
     }
 
-    /// Evaluates the uncertainty of results, unless the run asks for none. Why it is not known is an event; the stop is that of a rig that
-    /// failed meanwhile.
+    /// Evaluates the uncertainty of results, unless the run requests none. If it is not known, the reason is an event. The stop is that
+    /// of a rig that failed meanwhile.
     pub(crate) fn evaluate_uncertainty(
         &mut self,
         study: impl FnOnce(Tick<'_, Stop>) -> Result<(), Unknown<Stop>>,
@@ -332,7 +331,7 @@ impl<'run> Session<'run> {
         self.at_rest(step, time, &[displacement], &[force])
     }
 
-    /// The same of every axis.
+    /// The same for every axis.
     pub(crate) fn measured_all(
         &mut self,
         step: u64,
@@ -377,17 +376,17 @@ impl<'run> Session<'run> {
         })
     }
 
-    /// Where the last target was, m.
+    /// The last target \[m\].
     pub(crate) fn commanded(&self) -> f64 {
         self.guard.commanded()[0]
     }
 
-    /// One reading: displacement (m) and force (N).
+    /// One reading: displacement \[m\] and force \[N\].
     pub(crate) fn read(&mut self) -> Result<(f64, f64), Stop> {
         Ok(first(&self.guard.read()?))
     }
 
-    /// One reading of every axis, and the fault if it exceeds a limit: the reading is kept all the same.
+    /// One reading of every axis, and the fault if it exceeds a limit: the reading is kept in both cases.
     pub(crate) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
         let read = self.guard.read();
         self.kept(read)
@@ -414,12 +413,12 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Back to `place` \[m\], as one move or, if increments are limited, as equal ones.
+    /// Moves to `place` \[m\], in one move or, if increments are limited, in equal increments.
     pub(crate) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
         self.go_to_all(&[place], speed)
     }
 
-    /// The same of every axis.
+    /// The same for every axis.
     pub(crate) fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
         for target in self.guard.increments_to(places) {
             self.guard.move_to(&target, speed)?;
@@ -438,14 +437,14 @@ pub(super) fn signed(by: Option<&str>) -> String {
     by.map_or_else(String::new, |name| format!(" ({name})"))
 }
 
-/// Standard deviation of the base shear as the cells of all floors read it, N.
+/// Standard deviation of the base shear from the readings of the cells of all floors \[N\].
 pub(crate) fn of_base_shear(session: &Session<'_>) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
     let floors = session.guard.commanded().len() as f64;
     session.guard.declared_noise().force * floors.sqrt()
 }
 
-/// Displacement (m) and force (N) of the one degree of freedom.
+/// Displacement \[m\] and force \[N\] of the single degree of freedom.
 pub(crate) fn first(reading: &Reading) -> (f64, f64) {
     (reading.displacement[0], reading.force[0])
 }

@@ -12,7 +12,8 @@ use crate::units::Dimension;
 use crate::units::display::{plain, readable};
 
 impl Session<'_> {
-    /// Holds the rig, and unloads it: if that is its safe state and no person is at it, or if the operator requests it.
+    /// Holds the rig, and unloads it if unloading is its safe state and the operator is not at the rig. Also unloads it if the operator
+    /// requests it.
     pub(super) fn end_as_declared(&mut self, stop: &Stop, plan: &Plan) -> Outcome {
         let halted = self.end(stop);
         let Some(link) = plan.rig.link.as_real() else {
@@ -21,7 +22,7 @@ impl Session<'_> {
         let held = halted.as_ref().is_none_or(FinalHold::is_held);
         let declared = link.safe_state == SafeState::Unload && stop.leaves_the_rig_sound();
         let alone = declared && !self.attended && !stop.is_a_persons();
-        // A rig that the operator held during a move was seen at rest since: it may move again with the operator's consent.
+        // A rig that the operator held during a move has since been read at rest: it may move again with the operator's consent.
         let sound = stop.leaves_the_rig_sound() || stop.is_a_persons();
         if held && sound && (alone || self.may_unload(plan, halted.as_ref())) {
             self.unload();
@@ -29,7 +30,7 @@ impl Session<'_> {
         stop.outcome()
     }
 
-    /// Records why the run ends here, and where the rig is held.
+    /// Records why the run ends here, and the position at which the rig holds.
     pub(crate) fn end(&mut self, stop: &Stop) -> Option<FinalHold> {
         let halted = self.guard.halt();
         self.event(stop.event_kind(), stop.to_string());
@@ -38,7 +39,7 @@ impl Session<'_> {
         halted
     }
 
-    /// The position at which the rig holds, or that the hold is not confirmed.
+    /// Reports the position at which the rig holds, or that the hold is not confirmed.
     fn report_final_hold(&mut self, halted: Option<&FinalHold>) {
         if let Some(halted) = halted {
             let kind = if halted.is_held() {
@@ -104,7 +105,7 @@ impl Session<'_> {
         }
     }
 
-    /// The motion that takes the load off.
+    /// The motion that removes the load.
     fn unloading(&self, plan: &Plan, halted: Option<&FinalHold>) -> Motion {
         let found = halted.and_then(|halted| halted.found.as_ref());
         let from = found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice());
@@ -138,7 +139,7 @@ impl Session<'_> {
         }
     }
 
-    /// Unloads after a stop, inside the same limits; a fault is one more event.
+    /// Unloads after a stop, inside the same limits; a fault is an additional event.
     fn unload(&mut self) {
         self.event(EventKind::Hold, UNLOADING.to_owned());
         let home = self.home.clone();

@@ -1,6 +1,5 @@
-//! The required position of a real rig when a run begins: the plan's zero. The plan's targets count from there, so the
-//! first target would move a rig at a different position all the way. In: readings at rest. Out: the reason why the run
-//! does not begin.
+//! The required position of a real rig when a run begins: the plan's zero. The plan's targets are relative to it. The first target would
+//! move a rig at a different position by the whole difference. In: readings at rest. Out: the reason why the run does not begin.
 
 use super::replay::Bands;
 use super::session::Session;
@@ -13,7 +12,7 @@ use crate::rig::{named_axis, position_and_force};
 use crate::units::Dimension;
 use crate::units::display::{plain, readable, stated};
 
-/// Displacements of every axis, m, and forces, N.
+/// Displacements of every axis \[m\], and forces \[N\].
 pub(super) type AtRest<'a> = (&'a [f64], &'a [f64]);
 
 /// The largest distance of the axis with this index from the plan's zero \[m\]: its settling band.
@@ -23,7 +22,7 @@ pub fn band(plan: &Plan, link: &RealLink, axis: usize) -> f64 {
         .get(axis)
         .copied()
         .unwrap_or(0.0);
-    // A rig that settles anywhere is near enough where its tiny move is nothing to the specimen.
+    // If the rig accepts any settled position, it is near enough if its distance has no effect on the specimen.
     if settled > 0.0 {
         settled
     } else {
@@ -66,7 +65,7 @@ pub(super) fn check(
     Ok(())
 }
 
-/// The position and force of the rig, and its own coordinate if the plan's zero is different.
+/// The position and force of the rig, and the position in its own coordinate if the plan's zero is different.
 pub(super) fn describe(session: &Session<'_>) -> String {
     let (places, forces) = session.guard.found();
     let stands = format!("at {}", position_and_force(places, forces));
@@ -106,7 +105,8 @@ pub(super) fn log_datum(link: &RealLink, session: &mut Session<'_>) {
     );
 }
 
-/// What to do about a force at rest: a rig that stands where its specimen would carry about as much was left there by a run.
+/// The advice for a force at rest. If the specimen would carry about this force at the position of the rig, an earlier run left the rig
+/// there.
 pub(super) fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
     let carried = force / displacement;
     let bent = within(carried, 0.5 * gate.stiffness.low, 2.0 * gate.stiffness.high)
@@ -121,7 +121,7 @@ pub(super) fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
     }
 }
 
-/// NaN is within nothing.
+/// NaN is outside every interval.
 pub(super) fn within(value: f64, low: f64, high: f64) -> bool {
     low <= value && value <= high
 }

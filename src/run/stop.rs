@@ -14,7 +14,7 @@ pub(crate) enum Stop {
     Rig(RigFault),
     /// A reading outside its limit before any command to move.
     AtRest(RigFault),
-    /// The operator requested it, or asked the program to end.
+    /// The operator requested it, or requested the end of the program.
     Person {
         reason: String,
     },
@@ -22,7 +22,7 @@ pub(crate) enum Stop {
     NotReleased {
         reason: String,
     },
-    /// A real rig did not prove itself before the first step.
+    /// A real rig did not pass the pre-test check before the first step.
     Gate {
         reason: String,
     },
@@ -41,7 +41,7 @@ pub(crate) enum Stop {
 }
 
 impl Stop {
-    /// A procedure on a frame names a specimen that is not one.
+    /// A procedure on a frame names a specimen that is not a frame.
     pub(crate) const fn no_frame() -> Self {
         Self::BadInput {
             field: "specimen",
@@ -51,7 +51,7 @@ impl Stop {
         }
     }
 
-    /// Limits and people abort a run; an input that cannot be used blocks it; a rig that fails is a fault.
+    /// Limits and the operator abort a run; an input that cannot be used blocks it; a rig that fails is a fault.
     pub(crate) fn outcome(&self) -> Outcome {
         let reason = self.to_string();
         match self {
@@ -70,7 +70,7 @@ impl Stop {
         }
     }
 
-    /// Whether rig and readings are still to be trusted with another move.
+    /// Whether rig and readings can still be trusted for another move.
     pub(super) const fn leaves_the_rig_sound(&self) -> bool {
         !matches!(
             self,

@@ -1,5 +1,5 @@
-//! The zeros of a rig, read before the first procedure and after the last. In: the limits of their drift, and the way to
-//! unload. Out: a [`Drift`] of the record, reported as notes. It assesses no requirement.
+//! The zero readings of a rig before the first procedure and after the last. In: the limits of their drift, and how to unload. Out: a
+//! [`Drift`] of the record, reported as notes. It assesses no requirement.
 
 use super::session::Session;
 use super::stop::Stop;
@@ -11,13 +11,13 @@ use crate::rig::{Held, Reading, named_axis};
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// Readings that make a zero.
+/// Number of readings of a zero.
 pub(crate) const READINGS: u32 = 10;
 
 /// The instruction to the operator before the zero of a free cell is read.
 const TAKE_OFF: &str = "take the specimen off the load cell: its zero is read, and nothing moves";
 
-/// The specimen is unloaded: reads the zeros, and has dwells evaluated from here on.
+/// With the specimen unloaded: reads the zeros, and has the following dwells evaluated.
 pub(crate) fn before(check: DriftCheck, session: &mut Session<'_>) -> Result<Drift, Stop> {
     let axes = zeros(check.over, session)?
         .into_iter()
@@ -40,7 +40,8 @@ pub(crate) fn before(check: DriftCheck, session: &mut Session<'_>) -> Result<Dri
     Ok(drift)
 }
 
-/// The zeros once more. Where they are read with the specimen on, the rig goes back to where they were read before: `home`, m.
+/// Reads the zeros again. If they are read with the specimen mounted, the rig returns to the position of the first zero readings: `home`
+/// \[m\].
 pub(crate) fn after(
     drift: &mut Drift,
     home: &[f64],
@@ -81,7 +82,7 @@ fn describe(zero: &Zero) -> String {
     )
 }
 
-/// Several axes by their numbers.
+/// Joins the values of several axes, each with its number.
 fn listed(said: impl Iterator<Item = String>) -> String {
     let said: Vec<String> = said.collect();
     let axes = said.len();
@@ -95,7 +96,7 @@ fn listed(said: impl Iterator<Item = String>) -> String {
         .join("; ")
 }
 
-/// Readings over some seconds, at the present position.
+/// Readings over several seconds, at the present position.
 fn zeros(over: f64, session: &mut Session<'_>) -> Result<Vec<Zero>, Stop> {
     let mut readings = vec![session.guard.read()?];
     for _ in 1..READINGS {

@@ -1,6 +1,6 @@
 //! Makes texts from outside (labels, notes, replies of a rig) harmless, with one function for each sink. In: any text. Out: a text that
-//! the sink shows and never interprets: no terminal control, no change of reading direction, nothing invisible, no formula, no
-//! file name that a file system takes for a device.
+//! the sink shows and never interprets. It contains no terminal control, no change of reading direction, no invisible character, no
+//! formula, and no file name that a file system treats as a device.
 
 use std::fmt::Write as _;
 
@@ -84,7 +84,7 @@ pub fn page(markup: &str) -> String {
         .collect()
 }
 
-/// A cell of text that no spreadsheet takes for a formula: a leading `'` is put before one that begins like a formula.
+/// A cell of text that no spreadsheet treats as a formula: a leading `'` is put before text that begins like a formula.
 #[must_use]
 pub fn cell(text: &str) -> String {
     let shown = one_line(text);
@@ -152,7 +152,7 @@ pub fn file_part(name: &str) -> String {
     }
 }
 
-/// Names that Windows takes for devices, whatever follows the first dot.
+/// Names that Windows treats as devices, whatever follows the first dot.
 fn is_device(stem: &str) -> bool {
     let stem = stem.to_ascii_uppercase();
     let port = stem

@@ -1,6 +1,5 @@
-//! Physical quantities: dimensions, the unit table, numbers for display. Inside the program every
-//! number is SI. Units are converted in two places: `language` on the way in, `report` on the way
-//! out.
+//! Physical quantities: dimensions, the unit table, numbers for display. Inside the program every number is SI. Units are converted only
+//! in `language` (input) and in `report` (output).
 
 pub mod dimension;
 pub mod display;

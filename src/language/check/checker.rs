@@ -41,7 +41,7 @@ pub struct Typed {
     pub percent: bool,
 }
 
-/// Which results an expression may read.
+/// The results that an expression may read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reads {
     /// None: it is fixed before the run. The string names its owner: "a specimen".
@@ -90,17 +90,17 @@ pub struct Checker<'a> {
     pub taken: Vec<(ResultReference, usize, Span)>,
     /// Whether the plan comes from a run log, so that names of older versions are valid.
     pub recorded: bool,
-    /// The rig of the run, where it moves a real specimen.
+    /// The rig of the run, if it moves a real specimen.
     pub real_rig: Option<usize>,
     stack: Vec<Node>,
     /// Whether it was reported that values depend on one another too deeply.
     too_deep: bool,
 }
 
-/// Longest chain of values that depend on one another before they are evaluated: each takes part of the stack.
+/// Longest chain of dependent values before they are evaluated: each needs a part of the stack.
 pub const DEEPEST_VALUES: usize = 100;
-/// Most results and operators of one value that is known only after the run, with those of the values that it names: such a value
-/// is copied wherever it is named, so that `let b = a + a` doubles it.
+/// Largest number of results and operators of one value that is known only after the run, including those of the values that it names.
+/// Such a value is copied at every use of its name, so that `let b = a + a` doubles it.
 pub const MOST_TERMS: usize = 1_000;
 
 /// Number of diagnostics after which no similar name is suggested for an unknown one.
@@ -198,7 +198,7 @@ impl<'a> Checker<'a> {
             return self.fail(message::cycle(&cycle, requested_at));
         }
         if self.stack.len() >= DEEPEST_VALUES {
-            // Only once: where a chain is too deep, each of its parts is too.
+            // Only once: if a chain is too deep, each of its parts is too.
             if !std::mem::replace(&mut self.too_deep, true) {
                 self.diagnostics
                     .push(values::too_deep(requested_at, DEEPEST_VALUES));
@@ -212,7 +212,7 @@ impl<'a> Checker<'a> {
         value
     }
 
-    /// Whether a name may have been declared where the text could not be parsed.
+    /// Whether a name may have been declared in text that could not be parsed.
     pub fn may_be_lost(&self, name: &str) -> bool {
         self.names_lost || self.unread_words.contains(name)
     }
@@ -231,7 +231,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Drops diagnostics from `start` on that were reported of this block before.
+    /// Drops diagnostics of this block from `start` on that were reported before.
     pub fn drop_repeated(&mut self, start: usize, block: usize) {
         let before = self.reported.entry(block).or_default();
         for diagnostic in self.diagnostics.split_off(start) {

@@ -1,5 +1,5 @@
 //! The order of a check: every block in turn, then conditions on several of them, then the warnings. In: the syntax trees and a loader of
-//! data files. Out: the plan, or diagnostics that say why there is none. It knows no particular procedure.
+//! data files. Out: the plan, or diagnostics with the reasons why it is missing. It does not depend on any particular procedure.
 
 use super::checker::Checker;
 use super::declared::Declared;
@@ -10,7 +10,7 @@ use crate::schema::Kind;
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::{FileId, Sources, Span};
 
-/// Whether a check looks for warnings too.
+/// Whether a check also looks for warnings.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Findings {
     ErrorsAlone,
@@ -27,8 +27,8 @@ pub struct PlanText<'a> {
     pub settings: Vec<(String, String)>,
 }
 
-/// The diagnostics in the order of the text, without those that only follow from another at the same position. `misspelt` are the
-/// positions that were read otherwise than they are written, `explained` those that one diagnostic explains in full.
+/// The diagnostics in the order of the text, without those that only follow from another at the same position. `misspelt` contains the
+/// positions that were not read as they are written. `explained` contains those that one diagnostic explains in full.
 pub fn reportable(
     mut diagnostics: Vec<Diagnostic>,
     misspelt: &[Span],
@@ -81,7 +81,7 @@ pub fn unread_lines(sources: &Sources, errors: &[Diagnostic]) -> Vec<Span> {
     labels.map(|label| line(label.span)).collect()
 }
 
-/// Checks every block, then all of them together. None where some part of the plan has an error.
+/// Checks every block, then all of them together. None if a part of the plan has an error.
 pub fn plan(
     checker: &mut Checker,
     text: PlanText,

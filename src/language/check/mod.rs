@@ -42,7 +42,7 @@ pub enum LoadError {
     Refused(String),
 }
 
-/// The options of the command line that bear on the plan.
+/// The options of the command line that affect the plan.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// `--rig NAME`

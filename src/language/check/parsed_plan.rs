@@ -106,11 +106,11 @@ impl ParsedPlan {
     }
 
     /// The plan with other values of its parameters: its expressions are evaluated and checked again, but no text is parsed. A parameter
-    /// without a value here keeps the one of `--set`, or else its own. To be called after [`Self::check`] found no error.
+    /// without a value here keeps the one of `--set`, else its own. To be called after [`Self::check`] found no error.
     ///
     /// # Errors
-    /// The errors of the plan with these values: an unknown parameter, a value of a wrong dimension or out of its bounds, and whatever
-    /// else is wrong with such a plan.
+    /// The errors of the plan with these values: an unknown parameter, a value with a wrong dimension or outside its bounds, and any
+    /// other error of the plan.
     pub fn bind(&self, values: &BTreeMap<String, Quantity>) -> Result<Plan, Vec<Diagnostic>> {
         let known = names_of_parameters(&self.trees);
         let unknown: Vec<Diagnostic> = values
@@ -137,12 +137,12 @@ impl ParsedPlan {
         outcome.plan.ok_or(outcome.diagnostics)
     }
 
-    /// The texts of `--set`, by name; of several for one name the last.
+    /// The texts of `--set`, by name; if several have one name, the last.
     fn written_settings(&self) -> BTreeMap<String, String> {
         self.options.settings.iter().cloned().collect()
     }
 
-    /// Checks the trees with these settings, which `written` has as text, and with these data files at hand.
+    /// Checks the trees with these settings, whose text is in `written`, and with these data files.
     fn evaluate(
         &self,
         settings: &BTreeMap<String, Setting>,

@@ -58,7 +58,7 @@ pub fn check_specimen(checker: &mut Checker, procedures: &[(usize, Option<Proced
     }
 }
 
-/// A procedure for one actuator cannot drive the several of a frame, and a real rig has as many as it declares.
+/// A procedure for one actuator cannot move the several actuators of a frame. A real rig has as many actuators as it declares.
 pub fn check_axes(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],

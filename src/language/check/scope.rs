@@ -36,14 +36,14 @@ pub struct DeclaredValue<'a> {
     pub name: &'a Ident,
     pub value: &'a Expr,
     pub bounds: Option<&'a Expr>,
-    /// The value given in its place from outside the plan.
+    /// The value that replaces it from outside the plan.
     pub setting: Option<&'a Setting>,
 }
 
 /// A value of a parameter that is given from outside the plan.
 #[derive(Clone, Debug)]
 pub enum Setting {
-    /// An expression, as `--set` has it.
+    /// An expression, as given by `--set`.
     Written(Expr),
     /// A number in SI units, bound without any text.
     Bound(Quantity),
@@ -54,7 +54,7 @@ pub enum Setting {
 pub enum Meaning {
     Value(usize),
     Block(usize),
-    /// Its declaration has an error: no other is to follow.
+    /// Its declaration has an error: no other error is to follow.
     Poisoned,
 }
 

@@ -13,8 +13,7 @@ pub struct Ast {
     pub items: Vec<Item>,
     /// Every comment of the file in order of position; text from `#` to the end of the line.
     pub comments: Vec<Spanned<String>>,
-    /// Spans that are read otherwise than they are written. Each has an error already; other errors there only follow
-    /// from it.
+    /// Spans that are not read as they are written. Each has an error already; other errors there only follow from it.
     pub misspelt: Vec<Span>,
 }
 

@@ -1,4 +1,4 @@
-//! Keywords with which other languages begin a condition or a loop. In: a word. Out: the message for it.
+//! Keywords with which other languages begin a condition or a loop. In: a keyword. Out: the message for it.
 
 const CONDITIONS: [&str; 5] = ["if", "elif", "else", "unless", "when"];
 const LOOPS: [&str; 5] = ["for", "foreach", "while", "loop", "repeat"];

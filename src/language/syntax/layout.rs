@@ -64,10 +64,10 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
     (pieces, cutter.errors)
 }
 
-/// Most words and signs of the fields of a block that lacks its `{`.
+/// Largest number of words and characters in the fields of a block without `{`.
 const FIELDS_WITHOUT_BRACE: usize = 500;
 
-/// Signs between two values.
+/// Characters between two values.
 const OPERATORS: [&str; 12] = [
     "+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!=",
 ];
@@ -319,7 +319,7 @@ impl Cutter<'_> {
 
     /// The block whose `{` is here.
     fn block(&mut self, head: Statement) -> Piece {
-        // A block that lacks its brace opens after its last word.
+        // A block without its brace opens after its last word.
         let open = if self.is("{") { self.at } else { head.end - 1 };
         let mut fields = Vec::new();
         self.at += usize::from(self.is("{"));
@@ -346,7 +346,7 @@ impl Cutter<'_> {
                 continue;
             }
             if self.starts_item(self.at) {
-                // A line that is indented no further than the block's own head is the next item: this block was never closed.
+                // A line with no more indentation than the head of the block is the next item: the block was never closed.
                 if self.column(self.at) <= self.column(head.start.min(open)) {
                     self.unclosed(open);
                     return Piece::Block {

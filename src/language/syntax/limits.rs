@@ -12,7 +12,7 @@ pub const TEXT_BYTES: usize = 1 << 10;
 pub const NUMBER_CHARS: usize = 40;
 /// Depth of nested brackets.
 pub const NESTING: usize = 64;
-/// Words, numbers, strings and signs of one file.
+/// Number of words, numbers, strings and characters of one file.
 pub const TOKENS: usize = 200_000;
 /// Operators on the path from the root of an expression to a leaf. Every walk over a tree is recursive, its release
 /// from memory included, so this limit keeps the stack small.

@@ -1,5 +1,5 @@
-//! Every syntax error as a diagnostic: the code, the message, the span and the suggestion. Other files find the errors, this one words
-//! them.
+//! Every syntax error as a diagnostic: the code, the message, the span and the suggestion. Other files find the errors; this file
+//! contains their text.
 
 use super::{
     lexical::{confusable::Confusable, letters, numbers},
@@ -284,7 +284,7 @@ pub fn too_many_operators(span: Span, limit: usize) -> Diagnostic {
     .help("name parts of it with `let`, or write `sum([ … ])`")
 }
 
-/// A file whose every line ends with CR: other programs take it for one line.
+/// A file in which every line ends with CR: other programs read it as one line.
 pub fn carriage_returns(span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadText,

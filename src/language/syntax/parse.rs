@@ -81,7 +81,7 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     errors.extend(normalized.errors);
     ast.misspelt = normalized.spans;
     if errors.is_empty() {
-        // The grammar rejected the whole but accepts the pieces: report where it stopped.
+        // The grammar rejected the whole file but accepts the pieces: report the position at which it stopped.
         errors.extend(
             Grammar::parse(Rule::file, text)
                 .err()
@@ -92,7 +92,7 @@ pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     (ast, errors)
 }
 
-/// Whether an error says only that a line cannot be parsed, which may follow from a confusable on the same line.
+/// Whether an error states only that a line cannot be parsed, which may follow from a confusable on the same line.
 fn follows(error: &Diagnostic) -> bool {
     matches!(
         error.code,

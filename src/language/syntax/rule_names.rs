@@ -2,7 +2,7 @@
 
 use super::grammar::Rule;
 
-/// The name of `rule` in a message, or `None` where it carries no information (helpers of other rules).
+/// The name of `rule` in a message, or `None` if it carries no information (helpers of other rules).
 #[must_use]
 pub const fn human(rule: Rule) -> Option<&'static str> {
     Some(match rule {
@@ -78,7 +78,7 @@ pub fn expected(rules: &[Rule]) -> String {
             names.push(name);
         }
     }
-    // Where a value may start, the other possibilities (a string, an argument's name) are only noise.
+    // If a value may start here, the other possibilities (a string, an argument's name) carry no information.
     if names.contains(&"a value") {
         names.retain(|name| !matches!(*name, "a text in quotes" | "an argument"));
     }

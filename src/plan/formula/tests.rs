@@ -52,7 +52,7 @@ fn uncertainty_is_propagated_to_first_order() {
     );
 }
 
-/// ½mv² of m = 20 ± 0.1 kg and v = 1 ± 0.01 m/s: u = √((½v²u_m)² + (mv·u_v)²), and nothing of a number that is subtracted from itself.
+/// ½mv² of m = 20 ± 0.1 kg and v = 1 ± 0.01 m/s: u = √((½v²u_m)² + (mv·u_v)²). A number minus itself has zero uncertainty.
 #[test]
 fn a_stated_number_carries_its_uncertainty() {
     let of = |source, value, uncertainty| {

@@ -3,43 +3,43 @@
 use crate::plan::BreakCount;
 use crate::plan::formula::Formula;
 
-/// Displacements of a specimen about one place, over and over.
+/// Repeated displacement cycles of a specimen about one position.
 #[derive(Clone, Debug)]
 pub struct Cycle {
     /// Index into `Plan::specimens`.
     pub specimen: usize,
-    /// In the order run, at least one.
+    /// In the order of execution, at least one.
     pub levels: Vec<Level>,
     pub sides: Sides,
-    /// Where the amplitudes count from, m.
+    /// The position from which the amplitudes are measured \[m\].
     pub about: Formula,
     /// Targets between `about` and an amplitude, the amplitude included.
     pub points: u32,
     /// Readings averaged at each target.
     pub samples: u32,
-    /// s, at each target; with a rate only at the ends of the ways.
+    /// Dwell \[s\] at each target; with a rate only at the reversal points.
     pub pause: Formula,
-    /// Actuator speed, m/s.
+    /// Actuator speed \[m/s\].
     pub speed: Option<Formula>,
-    /// Hz: moved without stopping between the ends, and read at this rate. None: step and pause.
+    /// Sampling rate \[Hz\]: the actuator moves without stopping between the reversal points. None: step and pause.
     pub rate: Option<Formula>,
     pub inspect: Vec<CycleInspection>,
-    /// Of the curve that is fitted to the backbone.
+    /// For the curve that is fitted to the backbone.
     pub fit: Option<BreakCount>,
-    /// The targets stand evenly, as older versions placed them; else closer together towards the turns.
+    /// The targets are equally spaced, as in older versions; otherwise they are closer together near the reversal points.
     pub evenly: bool,
 }
 
-/// One amplitude and how often it is run.
+/// One amplitude and its number of cycles.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// m, above 0.
+    /// \[m\], above 0.
     pub amplitude: Formula,
     /// At least 1.
     pub cycles: u32,
 }
 
-/// To which sides of the middle a cycle goes.
+/// The directions of a cycle from its middle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sides {
     /// + then −.
@@ -50,20 +50,20 @@ pub enum Sides {
     Pull,
 }
 
-/// When a person is asked to look, between two amplitudes.
+/// When the operator is asked to inspect the specimen, between two amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CycleInspection {
-    /// After every so many amplitudes.
+    /// After every n amplitudes.
     Every(u32),
-    /// The largest force of an amplitude is less by this fraction than the largest before.
+    /// The largest force of an amplitude is smaller by this fraction than the largest force before it.
     ForceDrop(f64),
 }
 
-/// Targets of one `cycle`, at most.
+/// Largest number of targets of one `cycle`.
 pub const MOST_TARGETS: f64 = 1e6;
 
 impl Sides {
-    /// The ends of one cycle about nought, in amplitudes: it begins and ends at 0.
+    /// The end points of the moves of one cycle about zero, in amplitudes: the cycle begins and ends at 0.
     #[must_use]
     pub const fn ends(self) -> &'static [f64] {
         match self {
@@ -73,7 +73,7 @@ impl Sides {
         }
     }
 
-    /// Of each end, where the move to it begins and ends on the stretch from one turn of the actuator to the next, from 0 to 1.
+    /// For each of these end points, the start and end of the move to it, as fractions (0 to 1) of the path between two reversals.
     #[must_use]
     pub const fn stretches(self) -> &'static [[f64; 2]] {
         match self {
@@ -84,7 +84,7 @@ impl Sides {
 }
 
 impl Cycle {
-    /// Cycles in all.
+    /// Total number of cycles.
     #[must_use]
     pub fn cycles(&self) -> u64 {
         self.levels
@@ -93,7 +93,7 @@ impl Cycle {
             .sum()
     }
 
-    /// Targets in all, of step and pause.
+    /// Total number of targets with step and pause.
     #[must_use]
     pub fn targets(&self) -> u64 {
         let quarters = if self.sides == Sides::Both { 4 } else { 2 };

@@ -11,22 +11,22 @@ macro_rules! damping_sweep_fields {
             struct DampingSweep {
                 /// Index into `Plan::specimens`.
                 specimen: usize = specimen(),
-                /// m/s
+                /// \[m/s\]
                 velocities: Vec<Formula> = quantities(Dimension::VELOCITY, "speeds of the ramps")
                     .required("velocities = [0.5, 1, 2, 5, 10] mm/s")
                     .above_zero(),
-                /// m
+                /// \[m\]
                 stroke: Formula = quantity(Dimension::LENGTH, "length of each ramp")
                     .required("stroke = 1 mm")
                     .above_zero(),
-                /// The middle of the strokes, m. None: they begin where the actuator is.
+                /// The middle of the passes \[m\]. None: they begin at the present position of the actuator.
                 about: Option<Formula> = quantity(Dimension::LENGTH, "the middle of the strokes")
                     .or_said("they begin where the actuator is"),
-                /// K of F_d = R − K·X, N/m.
+                /// K of F_d = R − K·X \[N/m\].
                 stiffness: Formula = quantity(Dimension::STIFFNESS, "K of the damping force R − K·X")
                     .required("stiffness = 300 kN/m")
                     .above_zero(),
-                /// Sampling rate, Hz. None: at least 50 samples on the steady part of each ramp.
+                /// Sampling rate \[Hz\]. None: at least 50 samples in the steady part of each ramp.
                 rate: Option<Formula> = quantity(Dimension::FREQUENCY, "sampling rate")
                     .above_zero()
                     .or_said("at least 50 samples on the steady part"),

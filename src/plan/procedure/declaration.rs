@@ -62,8 +62,8 @@ macro_rules! fields {
     };
 }
 
-/// The reader of a block: every field by the type of its parameter, in the order of the declaration. It reads all fields before it gives
-/// up on one, so that all errors are reported at once.
+/// The reader of a block: it reads every field by the type of its parameter, in the order of the declaration. It reads all fields before
+/// it fails, so that all errors are reported at once.
 macro_rules! reader {
     (
         $(#[$about:meta])*

@@ -1,36 +1,36 @@
-//! Checked identification procedures: a `stiffness ramp`. In: formulas from the check. Out: what is moved, read
-//! and fitted. It fits nothing itself.
+//! Checked identification procedures: a `stiffness ramp`. In: formulas from the check. Out: the displacements, readings and fits of the
+//! procedure. It fits nothing itself.
 
 pub use crate::physics::identification::multilinear_fit::BreakCount;
 pub use crate::physics::relaxation::law::RelaxationLaw;
 pub use crate::physics::relaxation::time_constant::RelaxationModel;
 use crate::plan::formula::Formula;
 
-/// Sec. 5 step 1: prescribed displacements, a pause at each, the mean of some samples.
+/// Sec. 5 step 1: prescribed displacements, a dwell at each, the mean of several samples.
 #[derive(Clone, Debug)]
 pub struct StiffnessRamp {
     /// Index into `Plan::specimens`.
     pub specimen: usize,
-    /// m
+    /// \[m\]
     pub displacements: Vec<Formula>,
-    /// s
+    /// \[s\]
     pub pause: Formula,
-    /// Readings averaged at each pause, at least 1.
+    /// Readings averaged at each dwell, at least 1.
     pub samples: u32,
-    /// Times the whole ramp is run, at least 1.
+    /// Number of repetitions of the whole ramp, at least 1.
     pub repeats: u32,
-    /// Also back to the start through the same displacements.
+    /// Also returns to the start through the same displacements.
     pub return_path: bool,
     pub fit: RampFit,
-    /// Readings during the pauses of the first repeat.
+    /// Readings during the dwells of the first repetition.
     pub relaxation: Option<WatchedHold>,
-    /// Actuator speed, m/s.
+    /// Actuator speed \[m/s\].
     pub speed: Option<Formula>,
 }
 
 impl StiffnessRamp {
-    /// Outward steps that the fit is of, and degrees of freedom of their scatter about it; None where there is no fit of so few, or
-    /// its numbers are not known before the run.
+    /// Number of outward steps in the fit, and degrees of freedom of their scatter about it. None if they are too few for a fit or not
+    /// known before the run.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> Option<(usize, usize)> {
         let of_first = self.displacements.len();
@@ -47,36 +47,36 @@ impl StiffnessRamp {
     }
 }
 
-/// How the force is watched while it relaxes.
+/// How the force is observed during relaxation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WatchedHold {
     pub model: WatchedModel,
-    /// In a pause, after the first.
+    /// Number of readings in a dwell after the first reading.
     pub readings: u32,
 }
 
-/// What is fitted to the force while it relaxes.
+/// The function that is fitted to the relaxing force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WatchedModel {
-    /// A force that comes to rest. `accuracy` (N) is how near to that the force is to be known; None: the noise of the rig's cell, if it
-    /// declares one.
+    /// A force that reaches a final value. `accuracy` \[N\] is the required uncertainty of that value; None: the noise of the rig's cell,
+    /// if it declares one.
     Decay {
         model: RelaxationModel,
         accuracy: Option<f64>,
     },
-    /// A share of what is reached is lost by a law; None: by the one that the readings prefer. `rate` (N/s) is how fast a pause may still
-    /// lose at its end.
+    /// A fraction of the instantaneous force relaxes by a function of time; None: the function that fits the readings best. `rate`
+    /// \[N/s\] is the largest relaxation rate allowed at the end of a dwell.
     Reached {
         law: Option<RelaxationLaw>,
         rate: f64,
     },
 }
 
-/// What is fitted to force on displacement.
+/// The function that is fitted to force against displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RampFit {
     Linear,
-    /// Two lines that meet.
+    /// Two lines that intersect.
     Bilinear,
     Multilinear(BreakCount),
 }

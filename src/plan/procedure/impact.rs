@@ -1,5 +1,5 @@
-//! A checked `impact`: a computed striker meets a structure on the rig, one degree of freedom or one floor of a frame. In: formulas
-//! from the check. Out: SI numbers, and the critical time step as far as they are known. It integrates nothing.
+//! A checked `impact`: a computed striker meets a structure on the rig, either one degree of freedom or one floor of a frame. In:
+//! formulas from the check. Out: SI numbers, and the critical time step if its inputs are known. It integrates nothing.
 
 use crate::physics::contact::contact_time_step::Approach;
 use crate::plan::formula::Formula;
@@ -15,7 +15,7 @@ pub struct Impact {
     pub target: ImpactTarget,
     pub contact: Contact,
     pub stepping: Stepping,
-    /// Upper bound of virtual time, s.
+    /// Upper bound of the simulated time \[s\].
     pub duration: Formula,
     pub until: Until,
 }
@@ -32,13 +32,13 @@ pub enum ImpactTarget {
 /// A struck degree of freedom.
 #[derive(Clone, Debug)]
 pub struct PointTarget {
-    /// M, kg
+    /// M \[kg\].
     pub mass: Formula,
-    /// Standard uncertainty of a mass that is the specimen's, kg; 0 where none is stated, or the mass is another.
+    /// Standard uncertainty of the mass of the specimen \[kg\]; 0 if none is stated or if the mass is not the specimen's.
     pub mass_uncertainty: f64,
-    /// K0, N/m
+    /// K0 \[N/m\].
     pub stiffness: Formula,
-    /// C of eqs. 4–5, N·s/m
+    /// C of eqs. 4–5 \[N·s/m\].
     pub damping: Formula,
 }
 
@@ -48,12 +48,12 @@ pub struct StoreyTarget {
     /// The struck floor, from 0.
     pub storey: usize,
     pub damping: ShakeDamping,
-    /// Standard, of each damping ratio; 0 where none is stated.
+    /// Standard uncertainty of each damping ratio; 0 if none is stated.
     pub damping_uncertainty: f64,
 }
 
 impl Impact {
-    /// The struck degree of freedom; None where a floor is struck.
+    /// The struck degree of freedom; None if a floor is struck.
     #[must_use]
     pub const fn point(&self) -> Option<&PointTarget> {
         match &self.target {
@@ -62,7 +62,7 @@ impl Impact {
         }
     }
 
-    /// The struck floor; None where one degree of freedom is struck.
+    /// The struck floor; None if one degree of freedom is struck.
     #[must_use]
     pub const fn storey(&self) -> Option<&StoreyTarget> {
         match &self.target {
@@ -71,7 +71,8 @@ impl Impact {
         }
     }
 
-    /// Critical time step of an impact of this striker on one degree of freedom, s, as far as `known` knows mass and stiffnesses; None
+    /// Critical time step of an impact of this striker on one degree of freedom \[s\], if `known` contains mass and stiffnesses. None if
+    /// a floor is struck.
     /// where a floor is struck.
     pub fn critical_time_step(
         &self,
@@ -90,14 +91,14 @@ impl Impact {
 #[derive(Clone, Debug)]
 pub enum Contact {
     Rigid,
-    /// N
+    /// \[N\]
     Limit {
         force: Formula,
     },
     Restitution {
         coefficient: Formula,
     },
-    /// k in N/m^1.5; `loss` is the Hunt–Crossley factor in s/m: F = k δ^1.5 (1 + loss·δ̇).
+    /// k \[N/m^1.5\]; `loss` is the Hunt–Crossley factor \[s/m\]: F = k δ^1.5 (1 + loss·δ̇).
     Hertz {
         stiffness: Formula,
         loss: Formula,
@@ -106,7 +107,7 @@ pub enum Contact {
 }
 
 impl Contact {
-    /// k of a contact of finite stiffness, N/m^1.5; None of a law that has none.
+    /// k of a contact of finite stiffness \[N/m^1.5\]; None for a contact law without k.
     #[must_use]
     pub const fn stiffness(&self) -> Option<&Formula> {
         match self {
@@ -115,7 +116,7 @@ impl Contact {
         }
     }
 
-    /// How this striker arrives, as far as `known` knows the stiffness it meets.
+    /// State of the striker at contact, if `known` contains the stiffness that it meets.
     pub fn approach(
         &self,
         striker: &Striker,

@@ -1,20 +1,20 @@
-//! A checked `escalate`: impacts of increasing energy on one specimen, until a condition no longer holds.
+//! A checked `escalate`: an impact series of increasing energy on one specimen, until a condition no longer holds.
 
 use crate::plan::formula::{Formula, ProcedureId};
 use crate::plan::{Condition, Impact, Striker};
 
-/// A series of impacts, each of a higher velocity than the one before.
+/// A series of impacts, each with a higher velocity than the previous one.
 #[derive(Clone, Debug)]
 pub struct Escalate {
-    /// Its own index in the plan: the results of an impact that `condition` reads have it.
+    /// Index of the series in the plan: `condition` reads the results of an impact under it.
     pub own: ProcedureId,
     /// Every impact, except for the velocity of its striker.
     pub impact: Impact,
-    /// Velocity of the striker in each impact, m/s.
+    /// Velocity of the striker in each impact \[m/s\].
     pub velocities: Vec<Formula>,
-    /// Energy of each impact, J, where the plan gives energies; else it follows from the velocities.
+    /// Energy of each impact \[J\], if the plan gives energies; otherwise it follows from the velocities.
     pub energies: Option<Vec<Formula>>,
-    /// The next impact follows only if the results of an impact satisfy every part of it.
+    /// The next impact follows only if the results of the present impact satisfy every part of the condition.
     pub condition: Vec<Condition>,
     pub between: Between,
     /// Whether the operator inspects the specimen between two impacts.
@@ -22,19 +22,19 @@ pub struct Escalate {
 }
 
 impl Escalate {
-    /// The striker of the slowest impact, as far as the velocities are known before the run: it is the last to arrive.
+    /// The striker of the slowest impact, among the velocities that are known before the run: it arrives last.
     #[must_use]
     pub fn slowest(&self, striker: &Striker) -> Striker {
         self.with_known_velocity(striker, f64::min)
     }
 
-    /// The striker of the fastest impact, as far as the velocities are known before the run: all impacts have its time step.
+    /// The striker of the fastest impact, among the velocities that are known before the run: all impacts have its time step.
     #[must_use]
     pub fn fastest(&self, striker: &Striker) -> Striker {
         self.with_known_velocity(striker, f64::max)
     }
 
-    /// The striker at the velocity that `choose` reduces the known ones to; at its own where none is known.
+    /// The striker with the velocity that `choose` selects from the known ones; with its own velocity if none is known.
     fn with_known_velocity(&self, striker: &Striker, choose: fn(f64, f64) -> f64) -> Striker {
         let known = self
             .velocities
@@ -48,16 +48,16 @@ impl Escalate {
     }
 }
 
-/// Where the specimen is brought between two impacts.
+/// The position of the specimen between two impacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Between {
-    /// To zero restoring force.
+    /// The position of zero restoring force.
     Unload,
-    /// Back to where the first impact began.
+    /// The position at the start of the first impact.
     Home,
-    /// Nowhere: the next impact begins where this one ended.
+    /// The position at the end of the present impact: no move.
     Stay,
 }
 
-/// Impacts of one `escalate`, at most.
+/// Largest number of impacts of one `escalate`.
 pub const MOST_IMPACTS: usize = 1000;

@@ -1,5 +1,5 @@
-//! How many steps a procedure that integrates takes, where the plan alone determines it. In: a procedure, the plan around it. Out: an
-//! upper bound of its steps, or none where it depends on results that are measured before. It runs nothing.
+//! The number of steps of a procedure that integrates, if the plan alone determines it. In: a procedure, and its plan. Out: an upper
+//! bound of the number of steps, or None if it depends on measured results. It runs nothing.
 
 use crate::physics::structure::Damping;
 use crate::physics::structure::frame_properties::FrameProperties;
@@ -44,13 +44,13 @@ impl Escalate {
     }
 }
 
-/// The frame of a specimen without damping; None where it has no frame.
+/// The frame of a specimen without damping; None if the specimen has no frame.
 fn undamped(plan: &Plan, specimen: usize) -> Option<FrameProperties> {
     let frame = plan.specimens.get(specimen)?.frame.as_ref()?;
     FrameProperties::of(frame, &Damping::None).ok()
 }
 
-/// Δt, s, for this critical time step, s; None where it reads results.
+/// Δt \[s\] for this critical time step \[s\]; None if it reads results.
 fn known_time_step(stepping: &Stepping, critical: f64) -> Option<f64> {
     let time_step = stepping.time_step.evaluate(&NoResults, Some(critical));
     Some(time_step.ok()?.value)

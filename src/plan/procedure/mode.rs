@@ -1,10 +1,11 @@
-//! How the actuator goes from target to target, shared by every procedure that integrates.
+//! The motion of the actuator between targets, shared by every procedure that integrates.
 
-/// How the actuator goes from target to target.
+/// The motion of the actuator between targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mode {
-    /// It stops at every one; the reading is at rest.
+    /// The actuator stops at every target; the reading is at rest.
     StepAndPause,
-    /// It does not stop: rig time is `time_scale` times virtual time, and what a damper does at that speed is in the force.
+    /// The actuator does not stop: laboratory time is `time_scale` times simulated time. The force includes the damper force at that
+    /// speed.
     Continuous { time_scale: f64 },
 }

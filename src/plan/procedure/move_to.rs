@@ -9,9 +9,9 @@ macro_rules! move_fields {
         $into! {
             /// The actuator moves to a displacement.
             struct Move {
-                /// m, absolute.
+                /// \[m\], absolute.
                 to: Formula = quantity(Dimension::LENGTH, "absolute target").required("to = 0 mm"),
-                /// m/s
+                /// \[m/s\]
                 speed: Option<Formula> = speed(),
             }
         }

@@ -1,41 +1,41 @@
-//! How a procedure that integrates takes its steps, whatever it steps: an impact, an impact on a storey, a shake. In: what
-//! the fields of its block say, SI. It knows neither what is struck nor what shakes.
+//! The steps of a procedure that integrates: an impact, an impact on a storey, or a ground motion. In: the SI values of the fields of its
+//! block. It knows neither the structure nor the excitation.
 
 use crate::plan::formula::Formula;
 use crate::plan::{InspectTrigger, Integrator, Mode};
 
-/// Steps of one procedure, of a frame times its storeys, at most. `check` counts them where it can, `run` where it must.
+/// Largest number of steps of one procedure, for a frame multiplied by its storeys. `check` counts them if it can; otherwise `run` does.
 pub const MOST_STEPS: f64 = 1e7;
 
-/// Steps of all procedures of one run, at most. A step takes 0.5 kB to 2 kB of the run log, and no run log of more than 4 GiB
-/// is read back.
+/// Largest number of steps of all procedures of one run. A step occupies 0.5 kB to 2 kB of the run log, and a run log of more than 4 GiB
+/// is not read back.
 pub const MOST_RECORDED_STEPS: u64 = 2_000_000;
 
-/// What every procedure that integrates says of its steps.
+/// The step parameters of every procedure that integrates.
 #[derive(Clone, Debug)]
 pub struct Stepping {
     pub integrator: Integrator,
-    /// Whether it runs beyond the stability limit of its integrator.
+    /// Whether it may run beyond the stability limit of its integrator.
     pub allow_unstable: bool,
-    /// Whether the recursion takes the force where the specimen was to be, r* = `r_m` − `K_I`(`d_m` − d̃).
+    /// Whether the recursion uses the force at the commanded position, r* = `r_m` − `K_I`(`d_m` − d̃).
     pub i_modification: bool,
     pub mode: Mode,
-    /// s; may read `critical`.
+    /// \[s\]; may read `critical`.
     pub time_step: Formula,
-    /// s, at every step.
+    /// \[s\], at every step.
     pub pause: Formula,
     /// c of "`K_t` is clamped to [0, c·K0]".
     pub max_tangent_ratio: Formula,
     pub inspect: Vec<InspectTrigger>,
 }
 
-/// Steps of `time_step` in `duration` (s): 0.5 s of 0.01 s are 50, whatever rounding says of the ratio.
+/// Number of steps of `time_step` in `duration` \[s\]: 0.5 s contains 50 steps of 0.01 s, despite rounding of the ratio.
 #[must_use]
 pub fn steps_in(duration: f64, time_step: f64) -> f64 {
     (duration / time_step * (1.0 - 1e-12)).ceil()
 }
 
-/// The same as a count, saturating: for bounds, and once it is known to be at most [`MOST_STEPS`].
+/// The same as an integer, saturating: for bounds, and after it is known to be at most [`MOST_STEPS`].
 #[must_use]
 pub fn step_count(duration: f64, time_step: f64) -> u64 {
     #[expect(

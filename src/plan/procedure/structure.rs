@@ -1,34 +1,34 @@
-//! A structure as a blow meets it. In: what is known of it before the first step, the striker of a plan and how the plan steps.
-//! Out: all an impact starts from. It integrates nothing.
+//! The initial state of a struck structure. In: the known values before the first step, the striker of a plan, and the step parameters of
+//! the plan. Out: the initial values of an impact. It integrates nothing.
 
 use crate::physics::contact::state::ContactLaw;
 use crate::physics::impact::ImpactInput;
 use crate::plan::{Stepping, Striker};
 
-/// One degree of freedom that is struck, and how finely.
+/// One struck degree of freedom, and its step parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Structure {
-    /// M, kg
+    /// M \[kg\].
     pub mass: f64,
-    /// C, N·s/m
+    /// C \[N·s/m\].
     pub damping: f64,
-    /// K0, N/m
+    /// K0 \[N/m\].
     pub stiffness: f64,
-    /// `K_I` of α-OS and of the I-modification, N/m.
+    /// `K_I` of α-OS and of the I-modification \[N/m\].
     pub operator_stiffness: f64,
     pub law: ContactLaw,
-    /// Δt, s
+    /// Δt \[s\].
     pub time_step: f64,
-    /// c of `K_t within [0, c·K0]`
+    /// c of `K_t within [0, c·K0]`.
     pub max_tangent_ratio: f64,
-    /// Standard deviation of the load cell, N.
+    /// Standard deviation of the load cell \[N\].
     pub force_noise: f64,
-    /// Of the displacement reading, m.
+    /// Resolution of the displacement reading \[m\].
     pub resolution: f64,
 }
 
 impl Structure {
-    /// The blow of a plan's striker on it, by the plan's integrator.
+    /// The impact of a striker of the plan on it, by the integrator of the plan.
     #[must_use]
     pub const fn struck_by(self, striker: &Striker, stepping: &Stepping) -> ImpactInput {
         ImpactInput {

@@ -1,28 +1,28 @@
-//! A checked `unload`: the load is taken off until the specimen carries none, of one degree of freedom or of a frame.
+//! A checked `unload`: the load is removed until the specimen carries zero force. One degree of freedom or a frame.
 
 use crate::plan::formula::Formula;
 
-/// Moves to where the restoring force is 0, whatever displacement that is.
+/// Moves to the position of zero restoring force.
 #[derive(Clone, Debug)]
 pub struct Unload {
     /// Index into `Plan::specimens`.
     pub specimen: usize,
-    /// With which the force is expected to fall, N/m; the readings correct it.
+    /// The stiffness with which the force is expected to decrease \[N/m\]; the readings correct it.
     pub stiffness: Formula,
-    /// Largest |R| that counts as none, N. None: what the readings can tell from none.
+    /// Largest abs(R) that counts as zero \[N\]. None: the largest force that the readings cannot distinguish from zero.
     pub within: Option<Formula>,
-    /// m/s
+    /// \[m/s\]
     pub speed: Option<Formula>,
 }
 
-/// The same of a frame: all floors move together to where none of them carries a load. With which stiffness its forces are
-/// expected to fall, its storeys say.
+/// The same for a frame: all floors move together to positions of zero load. The storeys give the stiffness with which the forces are
+/// expected to decrease.
 #[derive(Clone, Debug)]
 pub struct FrameUnload {
     /// Index into `Plan::specimens`; it has a frame.
     pub specimen: usize,
-    /// Largest |R| of a floor that counts as none, N. None: what the readings can tell from none.
+    /// Largest abs(R) of a floor that counts as zero \[N\]. None: the largest force that the readings cannot distinguish from zero.
     pub within: Option<Formula>,
-    /// m/s, of the floor that goes farthest.
+    /// Speed of the floor with the longest move \[m/s\].
     pub speed: Option<Formula>,
 }

@@ -24,7 +24,7 @@ impl Figure {
 /// The content of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FigureKind {
-    /// Displacement of structure and striker against virtual time (paper Fig. 9–11, 16).
+    /// Displacement of structure and striker against simulated time (paper Fig. 9–11, 16).
     Displacement,
     /// Striker's velocity (paper Fig. 16).
     StrikerVelocity,
@@ -36,9 +36,9 @@ pub enum FigureKind {
     /// Command against measurement.
     Tracking,
     DampingFit,
-    /// Difference of displacement between floors against virtual time.
+    /// Storey drift against simulated time.
     Drift,
-    /// Storey shear against drift.
+    /// Storey shear against storey drift.
     Hysteresis,
     BaseShear,
     /// Shapes of the natural modes.
@@ -51,14 +51,14 @@ pub enum FigureKind {
     CycleEnergy,
     /// Secant stiffness of each cycle.
     StiffnessDegradation,
-    /// Force that has still to relax against the dwell time.
+    /// Remaining relaxation of the force against the dwell time.
     Relaxation,
     /// Results of each impact of a series, against its energy.
     Blows,
 }
 
 impl FigureKind {
-    /// Every figure, in the order of the reference.
+    /// Every figure, in the order of the language reference.
     pub const ALL: [Self; 18] = [
         Self::Displacement,
         Self::StrikerVelocity,

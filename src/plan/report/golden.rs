@@ -1,9 +1,9 @@
-//! How near a rerun must come to the accepted results, as the plan specifies it.
+//! Required agreement of a rerun with the accepted results, as the plan specifies it.
 
 use crate::plan::formula::ProcedureId;
 use crate::units::Dimension;
 
-/// The `golden` block; without one its defaults.
+/// The `golden` block; its default values if the plan has none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Golden {
     /// For every number, relative to its absolute value.

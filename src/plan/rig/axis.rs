@@ -1,5 +1,5 @@
-//! The axes of a checked rig: the entries of each actuator with its load cell, and the rig's own where an axis has no entry. In: the rig of a
-//! plan, the index of an axis. Out: its polarity, its limits, its pre-test check, its reading rules, its calibration.
+//! The axes of a checked rig: the entries of each actuator with its load cell. The rig's entry applies if an axis has none. In: the rig
+//! of a plan, the index of an axis. Out: its polarity, limits, pre-test check, reading rules and calibration.
 
 use crate::plan::{
     Calibration, DeviceLink, Gate, Interval, Limits, ReadingRules, RealLink, RigPlan,
@@ -21,7 +21,7 @@ pub struct AxisPlan {
     pub force: Option<Interval>,
     pub gate: Option<Gate>,
     pub calibration: AxisCalibration,
-    /// The axis' own pre-test check, in place of the rig's.
+    /// The pre-test check of this axis, instead of that of the rig.
     pub actuator: Option<DeviceLink>,
     pub load_cell: Option<DeviceLink>,
 }
@@ -35,7 +35,7 @@ pub struct AxisCalibration {
     pub force_class: Option<String>,
     /// Absolute value \[N\].
     pub force_calibrated: Option<Interval>,
-    /// Calibration reference of the displacement, where it has a separate one.
+    /// Calibration reference of the displacement, if it is a separate one.
     pub displacement: Option<String>,
     /// `YYYY-MM-DD`
     pub displacement_due: Option<String>,
@@ -55,7 +55,7 @@ pub struct AxisCalibration {
 }
 
 impl AxisCalibration {
-    /// The rig's calibration, with the entries of this axis in their place.
+    /// The calibration of the rig, with the entries of this axis replaced.
     fn over(&self, all: &Calibration) -> Calibration {
         let or = |own: &Option<String>, all: &Option<String>| own.clone().or_else(|| all.clone());
         let of_all = all.displacement.clone();
@@ -85,7 +85,7 @@ impl AxisCalibration {
 }
 
 impl RigPlan {
-    /// Polarity of the axis with this index, the factor on displacement and force: +1 or −1.
+    /// Polarity of the axis with this index, the factor of displacement and force: +1 or −1.
     #[must_use]
     pub fn sign_of(&self, axis: usize) -> f64 {
         self.own(axis).and_then(|own| own.sign).unwrap_or(self.sign)
@@ -112,7 +112,7 @@ impl RigPlan {
         })
     }
 
-    /// The limits of the run for every axis; empty where no axis has limits of its own.
+    /// The limits of the run for every axis; empty if no axis has separate limits.
     #[must_use]
     pub fn limits_of_axes(&self, run: &Limits) -> Vec<Limits> {
         let axes = self.link.as_real().map_or(0, |link| link.axes.len());
@@ -181,7 +181,7 @@ mod tests {
             ..all.clone()
         };
         assert_eq!(own.over(&all), wanted);
-        // Without a certificate of the rig, the certificate of the axis alone applies.
+        // If the rig has no calibration certificate, the certificate of the axis alone applies.
         let alone = AxisCalibration {
             displacement: text("scale 2"),
             ..AxisCalibration::default()

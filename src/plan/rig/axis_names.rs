@@ -1,6 +1,6 @@
-//! How a message names an axis. Only a rig of several axes numbers them.
+//! Names of the axes in messages. Only a rig with several axes numbers them.
 
-/// ` of axis 2`, or nothing.
+/// ` of axis 2`, or an empty string.
 pub(crate) fn of_axis(axis: Option<usize>) -> String {
     axis.map_or_else(String::new, |axis| format!(" of axis {axis}"))
 }
@@ -10,7 +10,7 @@ pub(crate) fn who(axis: Option<usize>) -> String {
     axis.map_or_else(|| "the rig".to_owned(), |axis| format!("axis {axis}"))
 }
 
-/// The number of the axis at this place, from 1, for a fault that names it; None where the rig has no other.
+/// The number (from 1) of the axis with this index, for a fault message; None if the rig has only one axis.
 pub(crate) fn named_axis(place: usize, axes: usize) -> Option<usize> {
     (axes > 1).then_some(place + 1)
 }

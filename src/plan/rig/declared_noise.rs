@@ -1,12 +1,12 @@
-//! Noise and resolution of the readings of a rig, as it declares them.
+//! Noise and resolution of the readings, as the rig declares them.
 
 use serde::{Deserialize, Serialize};
 
-/// What the rig declares of its readings.
+/// Declared properties of the readings of a rig.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct DeclaredNoise {
-    /// N
+    /// \[N\]
     pub force: f64,
-    /// m
+    /// \[m\]
     pub resolution: f64,
 }

@@ -1,5 +1,5 @@
-//! The device that moves each axis of a real rig, and the device that measures its force. In: the links of a rig and of its axes. Out: every
-//! device once, with its axes. It knows no protocol.
+//! The device that moves each axis of a real rig, and the device that measures its force. In: the links of a rig and of its axes. Out:
+//! every device once, with its axes. It does not depend on the protocol.
 
 use crate::plan::{AxisPlan, DeviceLink, RealLink};
 

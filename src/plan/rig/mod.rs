@@ -13,7 +13,7 @@ pub use crate::physics::reintegration::perturbation::ReadingErrors;
 /// The rig of a run, as the plan specifies it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigPlan {
-    /// `ideal` where the plan declares none.
+    /// `ideal` if the plan declares no rig.
     pub name: String,
     pub link: Link,
     pub settle: Settle,
@@ -33,7 +33,8 @@ impl RigPlan {
 }
 
 impl RigPlan {
-    /// The same rig with the zero of the plan's displacements that an earlier opening of it logged \[m\], one for each axis; None: as the plan has it.
+    /// The same rig, with the zero of the plan's displacements from the log of an earlier session \[m\], one for each axis. None: the
+    /// zero of the plan.
     #[must_use]
     pub fn with_recorded_datum(&self, places: Option<&[f64]>) -> Self {
         let mut rig = self.clone();
@@ -53,7 +54,7 @@ pub enum Link {
 }
 
 impl Link {
-    /// The virtual link, where no real actuator moves.
+    /// The virtual link, if no real actuator moves.
     #[must_use]
     pub const fn as_virtual(&self) -> Option<&VirtualLink> {
         match self {
@@ -88,13 +89,14 @@ pub struct VirtualLink {
     /// Zero drift of the load cell \[N/s\] in laboratory time.
     pub drift: f64,
     pub seed: u64,
-    /// For a simulation on an ideal rig: the reading errors that another rig declares. The simulated readings have none of them, the predicted
-    /// uncertainty has all of them.
+    /// For a simulation on an ideal rig: the reading errors that another rig declares. The simulated readings contain none of them; the
+    /// predicted uncertainty contains all.
     pub foretold: Option<ReadingErrors>,
 }
 
 impl VirtualLink {
-    /// An ideal rig in place of another: its readings have no errors, and the predicted uncertainty includes those that the other declares.
+    /// An ideal rig instead of another: its readings have no errors, and the predicted uncertainty includes the errors that the other
+    /// declares.
     #[must_use]
     pub fn ideal_of(rig: &RigPlan) -> Self {
         let (seed, foretold) = match &rig.link {
@@ -138,17 +140,17 @@ impl VirtualLink {
     }
 }
 
-/// Speed of a virtual rig where none is specified \[m/s\]: that of a slow quasi-static test.
+/// Speed of a virtual rig if none is specified \[m/s\]: the speed of a slow quasi-static test.
 pub const VIRTUAL_SPEED: f64 = 1e-3;
 
-/// The conditions under which a reading counts. A zero band means immediately.
+/// The conditions for a settled reading. A zero band means that a reading is valid immediately.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {
-    /// Displacement stays within this of the target \[m\].
+    /// Largest deviation of the displacement from the target \[m\].
     pub band: f64,
     /// abs(dF/dt) stays below this \[N/s\].
     pub force_rate: f64,
-    /// Both hold for this long \[s\].
+    /// Time for which both conditions must be satisfied \[s\].
     pub dwell: f64,
     /// Longest wait \[s\]; after it the rig holds and the run is aborted.
     pub timeout: f64,
@@ -166,19 +168,19 @@ pub struct DriftCheck {
     pub after: ZeroAfter,
 }
 
-/// Where the force is known again when a run is over.
+/// The condition at the end of a run under which the force is known again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZeroAfter {
-    /// At the position where the run began, with a specimen that is as it was there.
+    /// At the position where the run began, with the specimen unchanged there.
     Start,
     /// With the specimen removed from the load cell by the operator.
     Free,
-    /// Nowhere: only changes that neither load nor relaxation can cause are assessed.
+    /// None: only changes that neither load nor relaxation can cause are assessed.
     Nowhere,
 }
 
 impl ZeroAfter {
-    /// The word in a plan.
+    /// The keyword of the language.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -192,7 +194,7 @@ impl ZeroAfter {
 /// The calibrations of a rig.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Calibration {
-    /// Calibration reference, if given; of the force alone where `displacement` has a separate one.
+    /// Calibration reference, if given; only of the force if `displacement` has a separate one.
     pub reference: Option<String>,
     /// Calibration due date, `YYYY-MM-DD`, if given.
     pub due: Option<String>,
@@ -200,7 +202,7 @@ pub struct Calibration {
     pub force_class: Option<String>,
     /// Forces for which the calibration is valid, absolute value \[N\].
     pub force_calibrated: Option<Interval>,
-    /// Calibration reference and due date of the displacement, where they are separate.
+    /// Calibration reference and due date of the displacement, if they are separate.
     pub displacement: Option<(String, Option<String>)>,
     /// Class of the displacement measurement, as stated.
     pub displacement_class: Option<String>,
@@ -210,7 +212,7 @@ pub struct Calibration {
     pub newtons_per_count: Option<f64>,
     /// Zero offset: the count at zero force.
     pub zero_count: f64,
-    /// Standard uncertainty of the scale factor of the force, relative; 0 where none is stated.
+    /// Standard uncertainty of the scale factor of the force, relative; 0 if none is stated.
     pub force_uncertainty: f64,
     /// Standard uncertainty of the scale factor of the displacement, relative.
     pub displacement_uncertainty: f64,
@@ -231,17 +233,16 @@ impl Calibration {
 /// A rig that moves a real specimen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RealLink {
-    /// The actuator, which measures the force too where there is no separate cell.
+    /// The actuator, which also measures the force if there is no separate cell.
     pub actuator: DeviceLink,
     pub load_cell: Option<DeviceLink>,
     pub safe_state: SafeState,
     pub datum: Datum,
     pub gate: Gate,
     pub readings: ReadingRules,
-    /// Watchdog time of the communication between program and rig \[s\]: after it the rig is to hold on its own, and the
-    /// program stops.
+    /// Watchdog time of the communication between program and rig \[s\]. After it the rig must hold automatically, and the program stops.
     pub watchdog: f64,
-    /// Speed of a move for which none is specified and the plan limits none \[m/s\].
+    /// Speed of a move if none is specified and the plan has no speed limit \[m/s\].
     pub own_speed: f64,
     /// Entries of each axis, lowest floor first; empty: one axis, with the entries above.
     pub axes: Vec<AxisPlan>,
@@ -295,11 +296,11 @@ pub enum Dialect {
     Scpi { newtons_per_unit: Vec<f64> },
     /// Instron 8800-style console: moves, measures both.
     Instron,
-    /// Mark-10 stand with its gauge: moves, measures both.
+    /// Mark-10 test frame with its gauge: moves, measures both.
     Mark10,
     /// Load cell: Mark-10 gauge alone.
     Mark10Gauge,
-    /// Modbus RTU with its register map: moves, measures whatever the map has.
+    /// Modbus RTU with its register map: moves, and measures the quantities in the map.
     Modbus(ModbusMap),
     /// NEES "LabVIEW plugin" ASCII, with psd as coordinator: moves, measures both.
     Nees {
@@ -320,7 +321,7 @@ impl Dialect {
         Self::Mark10Gauge,
     ];
 
-    /// The protocol without arguments that has this word in the language; None for all others.
+    /// The protocol without arguments that has this keyword in the language; None for all others.
     #[must_use]
     pub fn without_arguments(name: &str) -> Option<Self> {
         let mut listed = Self::WITHOUT_ARGUMENTS.iter();
@@ -344,7 +345,7 @@ impl Dialect {
         }
     }
 
-    /// Most axes that one device of this protocol moves together.
+    /// Largest number of axes that one device of this protocol moves together.
     #[must_use]
     pub const fn most_axes(&self) -> usize {
         match self {
@@ -353,7 +354,7 @@ impl Dialect {
         }
     }
 
-    /// Most axes whose force one device of this protocol measures.
+    /// Largest number of axes whose force one device of this protocol measures.
     #[must_use]
     pub const fn most_channels(&self) -> usize {
         match self {
@@ -362,19 +363,19 @@ impl Dialect {
         }
     }
 
-    /// Whether a move is proposed to it before it is commanded.
+    /// Whether a move is proposed to the device before it is commanded.
     #[must_use]
     pub const fn proposes(&self) -> bool {
         matches!(self, Self::Nees { .. })
     }
 
-    /// Whether it follows smooth paths without a stop.
+    /// Whether the device follows smooth paths without a stop.
     #[must_use]
     pub const fn glides(&self) -> bool {
         matches!(self, Self::Native)
     }
 
-    /// Whether it can move the specimen.
+    /// Whether the device can move the specimen.
     #[must_use]
     pub const fn moves(&self) -> bool {
         match self {
@@ -384,7 +385,7 @@ impl Dialect {
         }
     }
 
-    /// Whether it measures the force.
+    /// Whether the device measures the force.
     #[must_use]
     pub const fn weighs(&self) -> bool {
         match self {
@@ -394,7 +395,7 @@ impl Dialect {
         }
     }
 
-    /// Whether it returns the force as raw counts, which need a scale factor.
+    /// Whether the device returns the force as raw counts, which need a scale factor.
     #[must_use]
     pub const fn counts(&self) -> bool {
         matches!(self, Self::Hx711)
@@ -443,7 +444,7 @@ pub enum ModbusNumber {
 pub enum SafeState {
     /// Stops and keeps the load.
     Hold,
-    /// Holds, then returns to where the run began, if rig and readings are still trusted.
+    /// Holds, then returns to the start position of the run, if rig and readings are still trusted.
     Unload,
 }
 
@@ -457,10 +458,10 @@ impl SafeState {
     }
 }
 
-/// The zero of the plan's displacements. Targets, readings and limits count from it.
+/// The zero of the plan's displacements. Targets, readings and limits are relative to it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Datum {
-    /// At the rig's own zero: the rig must be there when a run begins.
+    /// The zero of the rig itself: the rig must be there when a run begins.
     Machine,
     /// The position of the rig when it is opened for a run.
     Here,
@@ -482,7 +483,7 @@ pub struct Gate {
 /// The declared properties of the readings, and how many make one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReadingRules {
-    /// Settled readings whose median counts; odd, at least 1.
+    /// Number of settled readings whose median is used; odd, at least 1.
     pub samples: u32,
     /// Readings per second while settling.
     pub rate: f64,
@@ -492,6 +493,6 @@ pub struct ReadingRules {
     pub noise: f64,
     /// Measuring range of the load cell \[N\]; a reading within 0.1 % of an end is saturated.
     pub force_range: Interval,
-    /// Identical force readings in a row while the displacement changes, after which the sensor counts as frozen.
+    /// Number of identical consecutive force readings during a change of displacement after which the sensor counts as frozen.
     pub frozen_after: u32,
 }

@@ -63,7 +63,7 @@ pub struct Shake {
     pub stepping: Stepping,
     /// Factor on the record.
     pub scale: Formula,
-    /// Simulated time \[s\]. None: to the end of the record.
+    /// Simulated time \[s\]. None: until the end of the record.
     pub duration: Option<Formula>,
 }
 
@@ -77,7 +77,7 @@ pub enum ShakeDamping {
 }
 
 impl ShakeDamping {
-    /// The ratios as `physics` takes them, where they are known before the run.
+    /// The ratios in the form that `physics` needs, if they are known before the run.
     #[must_use]
     pub fn known(&self) -> Option<Damping> {
         Some(match self {
@@ -92,7 +92,7 @@ impl ShakeDamping {
     }
 }
 
-/// Rayleigh damping with the same ratio in the first two modes; without a ratio there is no damping.
+/// Rayleigh damping with the same ratio in the first two modes; no damping if no ratio is given.
 #[must_use]
 pub fn rayleigh(ratio: f64) -> Damping {
     if ratio == 0.0 {

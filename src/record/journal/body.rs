@@ -12,7 +12,7 @@ use super::{Refusal, finite};
 /// Appends the body as JSON.
 ///
 /// # Errors
-/// The body is no object of finite numbers; the buffer may hold a part of it.
+/// The body is not an object of finite numbers; the buffer may contain a part of it.
 pub fn write(out: &mut Vec<u8>, body: &impl Serialize) -> Result<(), Refusal> {
     finite::check(body)?;
     let mut serializer = Serializer::with_formatter(out, Ascii);
@@ -20,10 +20,10 @@ pub fn write(out: &mut Vec<u8>, body: &impl Serialize) -> Result<(), Refusal> {
         .map_err(|error| Refusal::NotJson(error.to_string()))
 }
 
-/// Appends the body as JSON, with fields of the journal's own before it.
+/// Appends the body as JSON, after fields of the run log itself.
 ///
 /// # Errors
-/// As `write`; or the body has such a field itself.
+/// As `write`; or the body already has such a field.
 pub fn write_with(
     out: &mut Vec<u8>,
     own: &[(&'static str, Value)],
@@ -42,7 +42,7 @@ pub fn write_with(
     write(out, &own.chain(given).collect::<serde_json::Map<_, _>>())
 }
 
-/// JSON without blanks, in printable ASCII.
+/// JSON without spaces, in printable ASCII.
 struct Ascii;
 
 impl Formatter for Ascii {

@@ -6,7 +6,7 @@ use sha2::{Digest as _, Sha256};
 /// Digits of one link.
 pub const CHAIN_DIGITS: usize = 64;
 
-/// The SHA-256 of all the records so far, in lower-case hexadecimal digits.
+/// The SHA-256 of all the entries so far, in lower-case hexadecimal digits.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Chain([u8; CHAIN_DIGITS]);
 

@@ -1,5 +1,4 @@
-//! Damage of a run log that cannot be trusted. In: nothing. Out: the position and the reason, for the reader. There is no
-//! remedy.
+//! Damage of a run log that cannot be trusted. In: nothing. Out: the position and the reason, for the reader. It cannot be repaired.
 
 use super::{FORMAT, LINE_BYTES, OLDEST_FORMAT};
 
@@ -11,7 +10,7 @@ pub struct Damage {
     pub offset: u64,
     /// From 1.
     pub line: u64,
-    /// The last field `step` in the good lines before it.
+    /// The last field `step` in the valid lines before it.
     pub step: Option<u64>,
     pub reason: Wrong,
 }

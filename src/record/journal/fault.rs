@@ -5,7 +5,7 @@ use std::io;
 
 use super::EntryKind;
 
-/// Objects and lists inside one another, the outermost counted: `serde_json` reads 127.
+/// Largest depth of nested objects and lists, including the outermost: `serde_json` reads 127.
 pub const DEEPEST: usize = 64;
 
 /// An entry was not written, or not made durable.
@@ -38,7 +38,7 @@ impl JournalFault {
 pub enum Doing {
     Append,
     Sync,
-    /// Cut half a line off.
+    /// Removal of an incomplete line.
     Cut,
 }
 

@@ -9,14 +9,14 @@ use super::fault::DEEPEST;
 /// Gives the reason why a body must not be written.
 ///
 /// # Errors
-/// It is not an object, or a part of it would not read back as it was.
+/// It is not an object, or a part of it would be read back differently.
 pub fn check(body: &impl Serialize) -> Result<(), Refusal> {
     let mut walk = Walk { depth: 0 };
     body.serialize(&mut walk)
         .map_err(|Refused(refusal)| refusal)
 }
 
-/// Walks a value. Objects and lists count their depth; at depth 0 only an object will do.
+/// Checks a value recursively. Objects and lists count their depth; at depth 0 only an object is allowed.
 struct Walk {
     depth: usize,
 }

@@ -13,11 +13,11 @@ pub enum EntryKind {
     Plan,
     /// The identity that the rig reported.
     Rig,
-    /// A target about to be sent.
+    /// A target that is about to be sent.
     Intent,
-    /// A reading, with the bytes it was made of.
+    /// A reading, with the bytes from which it was decoded.
     Sample,
-    /// The end of a stroke with readings on the way, and their number.
+    /// The end of a stroke with readings during the motion, and their number.
     Stroke,
     /// The end of a step, as computed.
     Step,
@@ -31,11 +31,11 @@ pub enum EntryKind {
     Tally,
     /// A torn tail was put aside.
     Recover,
-    /// The plan or the program is no longer the one of the header; by whom, and why.
+    /// The plan or the program differs from that of the header: by whom it was changed, and why.
     Amend,
     /// The run is continued.
     Resume,
-    /// The run came to an end; count of records and the chain before it.
+    /// The run was completed; count of entries and the chain before it.
     End,
 }
 

@@ -9,17 +9,17 @@ use serde_json::Value;
 use super::EntryKind;
 use super::chain::{CHAIN_DIGITS, Chain};
 
-/// The most bytes of a line, its LF included.
+/// Maximum length of a line, including its LF \[bytes\].
 pub const LINE_BYTES: usize = 64 * 1024;
 
 /// Digits of the CRC.
 const CRC_DIGITS: usize = 8;
 
-/// Both check words, with a space before each.
+/// Both check values, with a space before each.
 pub const CHECK_BYTES: usize = 1 + CHAIN_DIGITS + 1 + CRC_DIGITS;
 
-/// One entry, as read back. Its body stays the text that was written, shared by all copies: a parsed object is twenty times
-/// as large, and a long run has millions.
+/// One entry, as read back. Its body stays in the written text, shared by all copies: a parsed object is twenty times as large, and a
+/// long run has millions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// From 1.
@@ -27,7 +27,7 @@ pub struct Line {
     pub kind: EntryKind,
     /// An object.
     json: Arc<str>,
-    /// Its field `t`: rig time, s.
+    /// Its field `t`: rig time \[s\].
     time: Option<f64>,
     /// Offset of its first byte in the file.
     pub offset: u64,
@@ -142,16 +142,16 @@ pub struct Parts<'a> {
 /// The reason why a line is invalid on its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsound {
-    /// It has not the parts of a line.
+    /// It does not have the parts of a line.
     Shape,
-    /// Its CRC is of other bytes.
+    /// Its CRC does not match its bytes.
     Checksum,
 }
 
-/// Takes a line apart, its LF cut off.
+/// Splits a line without its LF into its parts.
 ///
 /// # Errors
-/// It is not a line, or not the one that was written.
+/// It is not a line, or differs from the line that was written.
 pub fn parse(line: &[u8]) -> Result<Parts<'_>, Unsound> {
     let text = str::from_utf8(line).map_err(|_| Unsound::Shape)?;
     if !line.iter().all(|byte| (b' '..=b'~').contains(byte)) {
@@ -191,7 +191,7 @@ fn is_hexadecimal(word: &str, digits: usize) -> bool {
             .all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// Decimal digits as the writer writes them: no sign, no zero before them.
+/// Decimal digits as the writer writes them: no sign, no leading zero.
 fn is_number(word: &str) -> bool {
     !word.starts_with('0') && word.bytes().all(|byte| byte.is_ascii_digit())
 }

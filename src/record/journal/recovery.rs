@@ -13,9 +13,9 @@ use super::{Damage, EntryKind, FORMAT, Line, OLDEST_FORMAT, Wrong};
 #[derive(Clone, Debug)]
 pub struct Recovered {
     pub lines: Vec<Line>,
-    /// Bytes that are whole records, from the first byte of the file.
+    /// Number of bytes in complete entries, from the first byte of the file.
     pub whole: u64,
-    /// The bytes after them: an entry that was being written when the power failed.
+    /// The bytes after them: an entry that was being written at the loss of power.
     pub torn: Option<Range<u64>>,
     /// Whether the last entry is END; an interrupted run has none.
     pub ended: bool,
@@ -55,12 +55,12 @@ impl Recovered {
     }
 }
 
-/// Reads a run log. Without END the run was not completed; without any entry it did not begin. The end of the file is torn
-/// if the first bad line is followed by no line with a valid checksum, and if from there on there is no LF, or a NUL (a
-/// block that was never written). The memory needed is little more than the bytes.
+/// Reads a run log. Without END the run was not completed; without any entry it did not begin. The end of the file is torn under two
+/// conditions. The first bad line is followed by no line with a valid checksum. From there on there is no LF, or there is a NUL (a block
+/// that was never written). The required memory is little more than the bytes.
 ///
 /// # Errors
-/// Any other bad line: the journal was altered.
+/// Any other bad line: the run log was altered.
 pub fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
     let mut found = Recovered {
         lines: Vec::new(),
@@ -120,7 +120,7 @@ fn is_torn(rest: &[u8], wrong: &Wrong) -> bool {
         && !later.any(|line| line.len() < LINE_BYTES && line::parse(line).is_ok())
 }
 
-/// A line as the next entry after those found.
+/// Reads a line as the entry after those found.
 fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
     let parts = line::parse(bytes).map_err(|unsound| match unsound {
         Unsound::Shape => Wrong::Shape,

@@ -3,9 +3,9 @@
 
 use std::io;
 
-/// Append-only bytes. An error of any call is final for the run: nothing after it may be believed.
+/// Append-only bytes. An error of any call is final for the run: no later result can be trusted.
 pub trait Storage: Send {
-    /// Appends all the bytes, whatever short writes or interrupted calls it takes.
+    /// Appends all the bytes, and continues after partial writes or interrupted calls.
     ///
     /// # Errors
     /// They could not all be appended; some may have been.
@@ -14,13 +14,13 @@ pub trait Storage: Send {
     /// Returns when all appended bytes would survive a loss of power.
     ///
     /// # Errors
-    /// The promise cannot be made; it is never asked for again.
+    /// Durability cannot be guaranteed; it is never requested again.
     fn sync(&mut self) -> io::Result<()>;
 
-    /// Cuts back to the first `length` bytes: half a line, left by a failed append, must not spoil the final entries.
+    /// Truncates to the first `length` bytes. A failed append may leave an incomplete line, which must not corrupt the final entries.
     ///
     /// # Errors
-    /// The half line is still there.
+    /// The incomplete line remains.
     fn cut(&mut self, length: u64) -> io::Result<()>;
 
     /// Frees the reserve, so that the final entries have space on a full disk.

@@ -1,5 +1,5 @@
-//! Writing: entries become lines on a storage. In: kinds and bodies, and when they must be durable. Out: the fault that
-//! ended the run log. It knows neither the meaning of an entry nor the place of the bytes.
+//! Writing: entries become lines on a storage. In: kinds and bodies, and when they must be durable. Out: the fault that ended the run
+//! log. It does not know the meaning of an entry, nor where the bytes are stored.
 
 use serde::Serialize;
 use serde_json::json;
@@ -9,29 +9,29 @@ use super::line::{self, LINE_BYTES};
 use super::{Doing, EntryKind, FORMAT, JournalFault, Recovered, Refusal, Storage, body};
 use crate::record::failpoint::{Guarding, on};
 
-/// When records are given to the storage.
+/// When entries are passed to the storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Durability {
-    /// In large writes, made safe at the end and by `sync`: a virtual rig, whose run can be made again.
+    /// In large writes, made durable at the end and by `sync`: for a virtual rig, whose run can be repeated.
     Buffered,
     /// Each entry immediately, made durable at every sync point: a real rig.
     EverySyncPoint,
 }
 
-/// Bytes kept back before they are written, when buffered.
+/// Number of bytes that are buffered before they are written.
 const WRITE_BYTES: usize = 64 * 1024;
 
-/// A journal being written.
+/// A run log that is being written.
 pub struct Journal {
     storage: Box<dyn Storage>,
     durability: Durability,
-    /// Records, those kept back included.
+    /// Number of entries, including buffered ones.
     count: u64,
     chain: Chain,
     ended: bool,
     /// Lines that the storage has not accepted yet, or not completely.
     buffered: Vec<u8>,
-    /// Bytes of the lines that it has accepted.
+    /// Number of bytes of the lines that it has accepted.
     taken: u64,
     /// Whether a part of `buffered` may lie after them.
     half_line: bool,
@@ -39,7 +39,7 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// A journal on empty storage.
+    /// A run log on empty storage.
     pub fn create(storage: Box<dyn Storage>, durability: Durability) -> Self {
         Self {
             storage,
@@ -71,8 +71,8 @@ impl Journal {
     /// Writes an entry.
     ///
     /// # Errors
-    /// The body is not an object of finite numbers, is too large or is in the wrong place: nothing was written, and the run
-    /// log can be continued. Or the storage failed, now or before.
+    /// The body is not an object of finite numbers, is too large or is at a wrong position: nothing was written, and the run log can be
+    /// continued. Or the storage failed, now or earlier.
     pub fn append(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), JournalFault> {
         self.healthy()?;
         if kind == EntryKind::End {
@@ -121,7 +121,7 @@ impl Journal {
         let (start, chain) = (self.buffered.len(), self.chain);
         self.buffer(EntryKind::End, body)?;
         if let Err(fault) = self.flush() {
-            // It did not end: final entries are still possible.
+            // The run log has no END: final entries are still possible.
             self.buffered.truncate(start);
             self.chain = chain;
             self.count -= 1;
@@ -133,9 +133,9 @@ impl Journal {
         Ok(())
     }
 
-    /// The final entry before a run is given up: frees the reserve, then writes the buffered lines and this entry and makes
-    /// them durable as far as possible, also if the storage has failed before; after a failed sync they are only written.
-    /// The earlier fault remains for all other calls.
+    /// The final entry before a run is abandoned. It frees the reserve, then writes the buffered lines and this entry. It makes them
+    /// durable as far as possible, also if the storage has failed before; after a failed sync they are only written. The earlier fault
+    /// remains for all other calls.
     ///
     /// # Errors
     /// The entry is invalid or comes after END, or the storage failed now. Nothing more can be done.
@@ -167,8 +167,7 @@ impl Journal {
         unsynced: bool,
     ) -> Result<(), JournalFault> {
         if self.half_line {
-            // After half a line, a further line would make the file indistinguishable from a forged one: so nothing is
-            // written.
+            // After an incomplete line, another line would make the file look like a forged one, so nothing is written.
             let cut = self.storage.cut(self.taken);
             self.record_fault(Doing::Cut, cut)?;
             self.half_line = false;
@@ -178,8 +177,8 @@ impl Journal {
         } else {
             self.buffer(kind, body)
         };
-        // The buffered lines belong into the file, also without the entry. After a failed sync no other is attempted: it
-        // would succeed although data are lost.
+        // The buffered lines are written to the file, also without the entry. After a failed sync no other sync is attempted: it would
+        // succeed although data are lost.
         if unsynced {
             self.flush()?;
         } else {
@@ -188,7 +187,7 @@ impl Journal {
         Ok(kept?)
     }
 
-    /// Records written, those kept back included: the number of the last one.
+    /// Number of entries written, including buffered ones: the number of the last one.
     pub const fn len(&self) -> u64 {
         self.count
     }
@@ -202,13 +201,13 @@ impl Journal {
         self.chain.as_str()
     }
 
-    /// The fault of the storage that ended the journal.
+    /// The fault of the storage that ended the run log.
     pub const fn fault(&self) -> Option<&JournalFault> {
         self.fault.as_ref()
     }
 
-    /// A storage that failed is not used again: after a failed sync the kernel forgets the data that it could not write,
-    /// and the next sync would succeed although they are lost.
+    /// A storage that failed is not used again. After a failed sync the kernel discards the data that it could not write, and the next
+    /// sync would succeed although they are lost.
     fn healthy(&self) -> Result<(), JournalFault> {
         match &self.fault {
             Some(JournalFault::Storage {
@@ -219,7 +218,7 @@ impl Journal {
         }
     }
 
-    /// Makes the line of an entry; a refused one leaves no trace.
+    /// Formats the line of an entry; a refused entry has no effect.
     fn buffer(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), Refusal> {
         let start = self.buffered.len();
         let made = self.make_line(start, kind, body);
@@ -293,7 +292,7 @@ impl Journal {
     }
 }
 
-/// The buffered lines reach the file also if the run is left early; this is not guaranteed.
+/// The buffered lines are written to the file also if the run is left early; this is not guaranteed.
 impl Drop for Journal {
     fn drop(&mut self) {
         if self.fault.is_none() {

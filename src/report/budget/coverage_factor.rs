@@ -5,7 +5,7 @@ use crate::uncertainty::Known;
 use crate::units::display::trimmed;
 use crate::verdict::Assessment;
 
-/// From so many effective degrees of freedom on they are not printed: k is 2 to three digits.
+/// From this number of effective degrees of freedom on they are not printed: k is 2 to three digits.
 const UNLIMITED: f64 = 1e4;
 
 /// k to two decimals without trailing zeros.
@@ -13,12 +13,12 @@ pub(in crate::report) fn factor(known: Known) -> String {
     trimmed(&format!("{:.2}", known.coverage()))
 }
 
-/// Effective degrees of freedom where they are few enough to be printed.
+/// Effective degrees of freedom, if they are few enough to be printed.
 pub(in crate::report) fn degrees(known: Known) -> Option<f64> {
     (known.standard > 0.0 && known.degrees < UNLIMITED).then_some(known.degrees)
 }
 
-/// `12.8`, `3`; `∞` where they are not printed.
+/// `12.8`, `3`; `∞` if they are not printed.
 pub(in crate::report) fn degrees_text(known: Known) -> String {
     degrees(known).map_or_else(
         || "∞".to_owned(),
@@ -31,7 +31,7 @@ pub(in crate::report) fn differs_from_two(known: Known) -> bool {
     known.standard > 0.0 && factor(known) != "2"
 }
 
-/// The largest k of the values and margins of all conditions, where it differs from 2.
+/// The largest k of the values and margins of all conditions, if it differs from 2.
 pub(in crate::report) fn largest(assessment: &Assessment) -> Option<String> {
     let conditions = assessment
         .requirements

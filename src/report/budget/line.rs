@@ -13,7 +13,7 @@ use crate::units::Dimension;
 /// One input of a budget.
 #[derive(Clone, Debug)]
 pub(in crate::report) struct Line {
-    /// The name in the plan where it has one: `k0.stiffness`, `pendulum.mass`.
+    /// The name in the plan, if it has one: `k0.stiffness`, `pendulum.mass`.
     pub input: String,
     pub origin: Origin,
     pub value: Option<f64>,
@@ -28,7 +28,7 @@ pub(in crate::report) struct Line {
     pub sensitivity: Option<f64>,
     /// Number of Monte Carlo trials; None for first-order propagation.
     pub draws: Option<usize>,
-    /// Degrees of freedom of the contribution; infinite where it was not estimated from readings.
+    /// Degrees of freedom of the contribution; infinite if it was not estimated from readings.
     pub degrees: f64,
     /// Whether the response of the result to this input is smooth.
     pub smooth: bool,
@@ -182,7 +182,7 @@ impl Input {
         Self::of_storey(name, Some(stated.unwrap_or_default()), dimension)
     }
 
-    /// A value of a storey with its uncertainty, where the storey exists.
+    /// A value of a storey with its uncertainty, if the storey exists.
     fn of_storey(name: String, stated: Option<(f64, f64)>, dimension: Dimension) -> Self {
         Self {
             name,
@@ -204,7 +204,7 @@ impl Input {
         }
     }
 
-    /// The factor on a matrix of a frame; index 0 is the mass matrix, index 1 the stiffness matrix.
+    /// The scale factor of a matrix of a frame; index 0 is the mass matrix, index 1 the stiffness matrix.
     fn matrix(plan: &Plan, specimen: usize, field: &str, index: usize) -> Self {
         let frame = plan.specimens.get(specimen);
         let frame = frame.and_then(|specimen| specimen.frame.as_ref());

@@ -1,4 +1,4 @@
-//! A comparison as one HTML file that needs no other. In: the comparison, and its figures drawn. Out: text.
+//! A comparison as one self-contained HTML file. In: the comparison, and its drawn figures. Out: text.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -14,7 +14,7 @@ th.n{text-align:right}.pass{color:#046b3a}.fail,.error,.aborted{color:#a11}.inco
 figure{margin:1.5em 0}img{max-width:100%;height:auto}figcaption{color:#555}pre{background:#f5f5f5;padding:.8em;overflow-x:auto}\
 .wide{overflow-x:auto}@media print{body{margin:0;max-width:none}}";
 
-/// A comparison as its page shows it: an entry of each inner list is of one run.
+/// The data of the page of a comparison: inner lists have one entry per run.
 pub struct ComparisonPage<'a> {
     pub names: &'a [String],
     pub verdicts: &'a [String],
@@ -22,11 +22,11 @@ pub struct ComparisonPage<'a> {
     /// By requirement.
     pub requirements: &'a [(String, Vec<Option<String>>)],
     pub facts: &'a [(String, Vec<String>)],
-    /// By run: the lines of its plan that differ from the first one.
+    /// The lines of each plan that differ from the first plan.
     pub plans: &'a [(String, Vec<String>)],
 }
 
-/// Results side by side.
+/// Results of the runs in columns.
 pub struct ResultTable {
     pub title: &'static str,
     /// Heads of the columns after the runs.

@@ -1,5 +1,5 @@
-//! A report as one self-contained HTML page. In: a [`Document`]. Out: HTML without scripts and without anything to load;
-//! every text is escaped by the template, and a figure is an image that runs no script.
+//! A report as one self-contained HTML page. In: a [`Document`]. Out: HTML without scripts and without external files. The template
+//! escapes every text, and a figure is an image that runs no script.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -90,7 +90,7 @@ fn top(document: &Document) -> Markup {
     }
 }
 
-/// Rows of two: the first half on the left, the second on the right.
+/// Rows of two pairs: the first half on the left, the second on the right.
 fn in_two_columns<T>(items: &[T]) -> impl Iterator<Item = &T> {
     let (left, right) = items.split_at(items.len().div_ceil(2));
     left.iter()
@@ -154,7 +154,7 @@ fn table(it: &Table) -> Markup {
             thead {
                 tr {
                     @for column in &it.columns {
-                        // CSS has no share of the remaining width: 70 % are distributed.
+                        // CSS has no fraction of the remaining width: 70 % are distributed.
                         @let width = if column.share == 0 { String::new() } else { format!("width: {}%", 70 * u32::from(column.share) / shares.max(1)) };
                         th class=(class(column.numeric, column.share == 0)) style=[(!width.is_empty()).then_some(width)] { (line(&column.title)) }
                     }

@@ -25,7 +25,7 @@ pub(super) struct Document {
     pub title: Text,
     /// Identifies the report on every page.
     pub id: String,
-    /// Date of the test, `YYYY-MM-DD` or as it was given.
+    /// Date of the test, `YYYY-MM-DD` or as given.
     pub date: Option<String>,
     /// Particulars below the title: names and values.
     pub front: Vec<(Text, Text)>,
@@ -53,7 +53,7 @@ pub(super) struct Verdict {
     pub text: Text,
 }
 
-/// A notice against a wrong use of the report: words in a box, and the reason.
+/// A notice against an incorrect use of the report: text in a box, and the reason.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Notice {
     pub words: Vec<&'static str>,
@@ -114,12 +114,12 @@ pub(crate) struct Column {
     pub title: Text,
     /// Set flush right, never broken.
     pub numeric: bool,
-    /// Share of the width that columns with 0 leave; 0: as wide as its widest cell.
+    /// Fraction of the width that columns with 0 leave; 0: as wide as its widest cell.
     pub share: u8,
 }
 
 impl Column {
-    /// A column of words with a share of the width.
+    /// A column of text with a fraction of the width.
     pub fn words(title: impl Into<Text>, share: u8) -> Self {
         Self {
             title: title.into(),

@@ -1,5 +1,5 @@
-//! A report as PDF. In: a [`Document`]. Out: bytes, the same for the same document: date and identifier come from the document,
-//! the fonts from the program. Every text goes to the template as data, never as markup.
+//! A report as PDF. In: a [`Document`]. Out: bytes, identical for the same document: date and identifier come from the document, the
+//! fonts from the program. Every text is passed to the template as data, never as markup.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::text::glyphs;
 
 const TEMPLATE: &str = include_str!("certificate.typ");
 
-/// The report as a PDF: PDF/A-3b, which requires a date, where the day of the test is known; else PDF 1.7.
+/// The report as a PDF: PDF/A-3b, which requires a date, if the day of the test is known; else PDF 1.7.
 pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
     let day = document.date.as_deref().and_then(day);
     let mut data = serde_json::to_value(document).map_err(|error| error.to_string())?;
@@ -78,7 +78,7 @@ fn day(text: &str) -> Option<(i32, u8, u8)> {
     Datetime::from_ymd(year, month, day).map(|_| (year, month, day))
 }
 
-/// Makes every string below settable: with characters of our fonts only, and with line breaks in long words.
+/// Prepares every string below for typesetting: only characters of the fonts, and line breaks in long words.
 fn make_settable(value: &mut Value) {
     match value {
         Value::String(text) => {

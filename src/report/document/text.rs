@@ -1,12 +1,12 @@
-//! A line of text in pieces, each with its style. In: strings from any source, such as a plan. Out: pieces without control
-//! characters. It knows no fonts and no markup.
+//! A line of text in pieces, each with its style. In: strings from any source, such as a plan. Out: pieces without control characters. It
+//! knows no fonts and no markup.
 
 use serde::Serialize;
 
 use crate::report::wording::common::NOT_GIVEN;
 use crate::text::sanitize;
 
-/// The role of a piece of text; the renderer gives it its look.
+/// The role of a piece of text; the renderer chooses its style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Style {
@@ -49,7 +49,7 @@ impl Text {
         Self::new().with(Style::Missing, words)
     }
 
-    /// A text that may be missing; a blank text is.
+    /// A text that may be missing; a text of spaces counts as missing.
     pub fn given(text: Option<&str>) -> Self {
         match text {
             Some(text) if !text.trim().is_empty() => text.into(),
@@ -106,7 +106,7 @@ impl From<String> for Text {
     }
 }
 
-/// The text without control characters and marks of reading direction: a label reads as it is written.
+/// The text without control characters and marks of reading direction: a label is displayed as it is written.
 pub(crate) fn printable(text: &str) -> String {
     sanitize::printed(text)
 }

@@ -29,9 +29,9 @@ pub(crate) struct Quantity {
 pub(crate) enum End {
     /// At the end of the data, for a time.
     Data,
-    /// A little past the data, so that no marker is on the frame.
+    /// Slightly beyond the data, so that no marker is on the frame.
     Margin,
-    /// At a whole tick past the data.
+    /// At a whole tick beyond the data.
     Tick,
     /// As `Margin`, for a count: every tick is a whole number.
     Whole,

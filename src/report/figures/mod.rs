@@ -41,7 +41,7 @@ pub(super) struct Undrawn {
 }
 
 impl Undrawn {
-    /// None where the procedure recorded no step.
+    /// None if the procedure recorded no step.
     pub fn of(run: &Run<'_>, figure: &Figure) -> Option<Self> {
         let procedure = run.record.procedures.get(figure.procedure.0)?;
         let (chart, caption) = chart_of(run, procedure, figure)?;
@@ -114,7 +114,7 @@ fn name_of(run: &Run<'_>, figure: &Figure) -> String {
     format!("{}_{}", names.join("-"), figure.kind.name())
 }
 
-/// The chart and its caption; None where the procedure does not draw this figure or has no steps.
+/// The chart and its caption; None if the procedure does not draw this figure or has no steps.
 fn chart_of(
     run: &Run<'_>,
     procedure: &ProcedureRecord,

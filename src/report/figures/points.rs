@@ -1,7 +1,7 @@
-//! The points of a curve, collected one by one. A short curve is kept in full. A long one keeps what an image can show: of each
-//! segment the first and the last point and those farthest left, right, down and up, in their order. A run of ten million steps
-//! takes no more memory in a figure than one of some hundred thousand. In: points in SI, in order. Out: points. Segments are
-//! far finer than the pixel columns of an image.
+//! The points of a curve, collected one by one. A short curve is kept in full. A long curve keeps the visible points: for each segment
+//! the first and the last point and the extreme points to the left, right, top and bottom, in their order. A run of ten million steps
+//! needs no more memory in a figure than one of several hundred thousand. In: points in SI, in order. Out: points. Segments are far finer
+//! than the pixel columns of an image.
 
 use std::ops::Deref;
 
@@ -120,7 +120,7 @@ struct Numbered {
     y: f64,
 }
 
-/// Consecutive points: of them the first, the last, and those farthest left, right, down and up.
+/// Consecutive points, reduced to the first, the last, and the extreme points to the left, right, top and bottom.
 #[derive(Clone, Copy, Debug)]
 struct Segment {
     count: usize,
@@ -163,7 +163,7 @@ impl Segment {
         pair[1..].iter().fold(pair[0], |one, next| one.joined(next))
     }
 
-    /// The kept points, in order and each once.
+    /// The kept points, in order and without repetition.
     fn kept(&self) -> Vec<(f64, f64)> {
         let mut extremes = self.extremes;
         extremes.sort_unstable_by_key(|point| point.number);

@@ -18,7 +18,7 @@ const STYLES: [(Colour, f64, &[f64]); MOST_TOGETHER] = [
 
 const LOOP: f64 = 1.2;
 
-/// The chart and its caption; None where no procedure has steps, or none has this figure.
+/// The chart and its caption; None if no procedure has steps, or none has this figure.
 pub(super) fn chart(
     kind: FigureKind,
     procedures: Vec<(&str, Option<SharedCurve>)>,

@@ -9,7 +9,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use super::canvas::{Canvas, Lettering, Point};
 use super::chart::{Colour, Line};
 
-/// The height of a line of DejaVu Sans, ascent and descent, over its em: (1901 + 483)/2048, as its `hhea` table has it.
+/// The line height of DejaVu Sans, ascent and descent, over its em: (1901 + 483)/2048, from its `hhea` table.
 const LINE_OVER_EM: f64 = 2384.0 / 2048.0;
 
 struct Drawing {

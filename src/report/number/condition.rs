@@ -8,8 +8,8 @@ use crate::units::Dimension;
 use crate::units::display::{minus, significant, trimmed, unit};
 use crate::verdict::{Bound, ConditionOutcome};
 
-/// The value of a condition with its expanded uncertainty U, in percent where the plan wrote percent; with u in parentheses
-/// where its budget gives no U.
+/// The value of a condition with its expanded uncertainty U, in percent if the plan specifies percent; with u in parentheses if its
+/// budget gives no U.
 pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
     let value = condition.value?;
     let (scale, percent) = if in_percent(condition) {
@@ -59,7 +59,7 @@ pub(crate) fn bound(condition: &ConditionOutcome) -> String {
         }
         Some(Bound::Within { target, tolerance }) => {
             let (unit, factor) = unit(target, condition.dimension);
-            // A tolerance below a thousandth of the target is printed in its own unit.
+            // A tolerance below a thousandth of the target is printed in a separate unit.
             if unit.is_empty() || (tolerance >= 1e-3 * target.abs() && target != 0.0) {
                 join(
                     &between(scale * target / factor, scale * tolerance / factor),
@@ -72,7 +72,7 @@ pub(crate) fn bound(condition: &ConditionOutcome) -> String {
     }
 }
 
-/// The ends of a tolerance interval, to the third digit of the tolerance where it has no more digits, else to the second.
+/// The ends of a tolerance interval, to the third digit of the tolerance if it has no more digits, else to the second.
 fn between(target: f64, tolerance: f64) -> String {
     let power = power_of(target.abs().max(tolerance));
     let by = 10.0_f64.powi(power);
@@ -84,7 +84,7 @@ fn between(target: f64, tolerance: f64) -> String {
         Some(second) => {
             let decimals = second + usize::from(whole);
             let mut ends = ends.map(|number| format!("{number:.decimals$}"));
-            // Zeros at the end of both are removed.
+            // Trailing zeros of both are removed.
             while ends[0].contains('.')
                 && ends
                     .iter()
@@ -107,13 +107,13 @@ fn between(target: f64, tolerance: f64) -> String {
     }
 }
 
-/// The margin of a condition in the unit of its value; None where there is no margin.
+/// The margin of a condition in the unit of its value; None if it has no margin.
 pub(in crate::report) fn margin(condition: &ConditionOutcome) -> Option<String> {
     condition.bound?;
     condition.margin.map(|margin| distance(margin, condition))
 }
 
-/// The guard band of a condition in the unit of its value; None where there is none.
+/// The guard band of a condition in the unit of its value; None if it has no guard band.
 pub(in crate::report) fn guard_band(condition: &ConditionOutcome) -> Option<String> {
     condition.guard_band.map(|band| distance(band, condition))
 }
@@ -126,7 +126,7 @@ fn distance(distance: f64, condition: &ConditionOutcome) -> String {
     } else {
         (1.0, "")
     };
-    // In the unit of the value, or in its own where that would give a row of zeros.
+    // In the unit of the value, or in a separate unit if that would give many zeros.
     let beside = condition.value.filter(|value| {
         distance == 0.0 || (distance / unit(*value, condition.dimension).1).abs() >= 1e-3
     });

@@ -135,7 +135,7 @@ pub(super) fn tens(power: i32) -> String {
     }
 }
 
-/// Decimals that show two digits of the uncertainty; None where plain decimals would not be readable.
+/// Decimals that show two digits of the uncertainty; None if plain decimals would not be readable.
 pub(super) fn decimals_of(value: f64, uncertainty: f64) -> Option<usize> {
     if uncertainty <= 0.0 || value.abs() >= 1e7 {
         return None;

@@ -12,7 +12,7 @@ pub struct OutputFile {
     pub bytes: Vec<u8>,
 }
 
-/// The reason why an output could not be made. The record of the run is complete all the same.
+/// The reason why an output could not be made. The record of the run is complete in this case too.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     #[error("the table `{table}` could not be written: {reason}")]
@@ -31,7 +31,7 @@ pub enum OutputError {
     Summary(#[from] serde_json::Error),
 }
 
-/// Whether the plan's report asks for a format; a report that names none asks for all.
+/// Whether the plan's report requests a format; a report that names none requests all.
 pub(in crate::report) fn wants(plan: &Plan, format: Format) -> bool {
     plan.report.formats.is_empty() || plan.report.formats.contains(&format)
 }

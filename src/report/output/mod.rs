@@ -28,8 +28,8 @@ pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
     Ok(files)
 }
 
-/// Puts every file of the run folder but the manifest, each as soon as it is made: summary and tables, then the figures
-/// one by one, then the report, which states the digests of the tables, and last the files of the plan.
+/// Writes every file of the run folder except the manifest, each immediately after it is made. The order is: summary and tables, the
+/// figures one by one, the report, which states the digests of the tables, and the files of the plan.
 ///
 /// # Errors
 /// A table, figure or summary that cannot be encoded or kept.
@@ -82,7 +82,7 @@ pub fn put_everything(
     Ok(digests)
 }
 
-/// Draws each figure and puts it before the next one is drawn. The vector drawings are kept for the report.
+/// Draws each figure and writes it before the next one is drawn. The vector drawings are kept for the report.
 fn put_figures(
     run: &Run<'_>,
     progress: &mut Progress,

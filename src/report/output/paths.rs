@@ -1,5 +1,5 @@
-//! Paths of the files in a run folder, and the files of the plan there. In: names from a plan. Out: relative paths that stay inside the folder and that no
-//! file system takes for one another.
+//! Paths of the files in a run folder, and the files of the plan there. In: names from a plan. Out: relative paths that stay inside the
+//! folder and that every file system distinguishes.
 
 use std::collections::BTreeSet;
 
@@ -31,7 +31,7 @@ fn safe_path(name: &str) -> String {
     }
 }
 
-/// Numbers the later of two paths that differ only in upper and lower case: many systems take them for one file.
+/// Numbers the later of two paths that differ only in upper and lower case: many systems treat them as one file.
 pub(in crate::report) fn make_unique<'a>(paths: impl Iterator<Item = &'a mut String>) {
     let mut used = UsedPaths::default();
     paths.for_each(|path| used.make_unique(path));

@@ -23,7 +23,7 @@ pub trait OutputSink {
         write: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<()>;
 
-    /// Is called before each piece is made, which may take a while.
+    /// Called before each piece is made, which may need some time.
     fn begin(&mut self, _: &OutputPiece) {}
 }
 
@@ -73,7 +73,7 @@ impl OutputSink for Vec<OutputFile> {
     }
 }
 
-/// Keeps no file: only the digests are wanted.
+/// Keeps no file: only the digests are needed.
 pub struct NullSink;
 
 impl OutputSink for NullSink {

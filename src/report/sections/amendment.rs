@@ -6,7 +6,7 @@ use crate::report::run::Run;
 use crate::report::status::{IssueKind, issue};
 use crate::report::wording::amendment as wording;
 
-/// Nothing where the report was not amended.
+/// Returns nothing if the report was not amended.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let amendments = issue::amendments(source.run.provenance.issues.as_ref());
     if amendments.is_empty() {

@@ -1,5 +1,5 @@
-//! Conditions of the test: environment, time scale, specimens, ground motions, strikers, limits, parameters. In: a run. Out:
-//! blocks. A condition that was not given is marked, and so is a value that the plan states and nobody measured.
+//! Conditions of the test: environment, time scale, specimens, ground motions, strikers, limits, parameters. In: a run. Out: blocks. A
+//! missing condition is marked, and so is a value that the plan states without a measurement.
 
 use super::frame;
 use super::{Source, described, pairs, with_spaces};
@@ -31,7 +31,7 @@ const ENVIRONMENT: &[(&str, &str)] = &[
     ("humidity", wording::HUMIDITY),
 ];
 
-/// Fields that are printed here where they are given.
+/// Fields that are printed here if they are given.
 const WHERE_GIVEN: &[(&str, &str)] = &[
     ("sampling", wording::SAMPLING),
     ("external", wording::EXTERNAL),
@@ -104,7 +104,7 @@ fn environment(run: &Run<'_>) -> Vec<(Text, Text)> {
     rows
 }
 
-/// Simulated time of each impact beside the laboratory time that it took.
+/// Simulated time of each impact beside its laboratory time.
 fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
     let rows = run.record.procedures.iter().filter_map(|procedure| {
         let (virtual_time, rig_time) = procedures::recorded(&procedure.history).time_spans?;
@@ -128,7 +128,7 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
     }
 }
 
-/// The behaviour of a virtual specimen is printed only on a simulated rig.
+/// The restoring-force model of a virtual specimen is printed only on a simulated rig.
 fn specimen_table(specimen: &Specimen, is_virtual: bool) -> Block {
     let mass = Text::from(with_standard_uncertainty(
         specimen.mass,
@@ -189,7 +189,7 @@ fn striker_table(striker: &Striker) -> Block {
     described(rows)
 }
 
-/// A stated value, with its standard uncertainty where one is stated.
+/// A stated value, with its standard uncertainty if one is stated.
 fn with_standard_uncertainty(value: f64, uncertainty: f64, dimension: Dimension) -> String {
     if uncertainty == 0.0 {
         return number::stated(value, dimension);
@@ -214,7 +214,7 @@ pub(super) fn settling(settle: Settle) -> String {
     )
 }
 
-/// The limits of the guard, those by default too.
+/// The limits of the guard, including default limits.
 fn limits(run: &Run<'_>) -> Block {
     let equipment = run.equipment();
     let row = |limit: &HeldLimit| {

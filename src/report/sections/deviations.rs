@@ -7,22 +7,21 @@ use crate::report::run::Run;
 use crate::report::status::deviations;
 use crate::report::wording::deviations as wording;
 
-/// The section, where it comes before the requirements.
+/// The section, if it precedes the requirements.
 pub(super) fn before_requirements(source: &Source<'_>, body: &mut Vec<Block>) {
     if come_first(source.run) {
         section(source.run, body);
     }
 }
 
-/// The section, where it comes after the requirements.
+/// The section, if it follows the requirements.
 pub(super) fn after_requirements(source: &Source<'_>, body: &mut Vec<Block>) {
     if !come_first(source.run) {
         section(source.run, body);
     }
 }
 
-/// Whether deviations precede the requirements: on a real rig, and where long requirements would push them off the first
-/// page.
+/// Whether deviations precede the requirements: on a real rig, and if long requirements would move them off the first page.
 fn come_first(run: &Run<'_>) -> bool {
     const ON_ONE_PAGE: usize = 8;
     let conditions: usize = run

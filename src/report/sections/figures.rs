@@ -4,7 +4,7 @@ use super::Source;
 use crate::report::document::{Block, Figure};
 use crate::report::wording::figures as wording;
 
-/// Nothing where no figure was drawn.
+/// Returns nothing if no figure was drawn.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     if source.figures.is_empty() {
         return;

@@ -32,7 +32,7 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
         Column::numbers("Height"),
         Column::words("Virtual behaviour", 1),
     ];
-    // A column that is 0 for every storey is left out.
+    // A column that is 0 for every storey is omitted.
     let damping = frame.storeys.iter().any(|storey| storey.damping != 0.0);
     let friction = frame.storeys.iter().any(|storey| storey.coulomb != 0.0);
     columns.extend(damping.then(|| Column::numbers("Virtual damping")));
@@ -61,7 +61,7 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
     }));
 }
 
-/// The record as it was read.
+/// The ground-motion record as read.
 pub(crate) fn ground(ground: &Ground) -> Block {
     let (shortest, longest) = ground.spacing();
     let spacing = if longest - shortest <= 1e-6 * longest {

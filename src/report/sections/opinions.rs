@@ -5,7 +5,7 @@ use crate::report::document::Block;
 use crate::report::status::particulars::stated;
 use crate::report::wording::opinions as wording;
 
-/// Nothing where none is stated.
+/// Returns nothing if none is stated.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     if let Some(text) = stated(source.run, "opinions") {
         body.push(Block::section(wording::TITLE));

@@ -9,7 +9,7 @@ use crate::report::summary::{PredictedLimit, PredictedProcedure, PredictedZeros}
 use crate::report::wording::{common, prediction as wording};
 use crate::units::Dimension;
 
-/// Nothing where the run has no prediction.
+/// Returns nothing if the run has no prediction.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let Some(prediction) = &source.run.provenance.prediction else {
         return;
@@ -95,12 +95,12 @@ fn procedure(procedure: &PredictedProcedure) -> Vec<Text> {
     ]
 }
 
-/// The cell of a quantity that has no value.
+/// The cell of a quantity without a value.
 fn no_value() -> String {
     "–".to_owned()
 }
 
-/// The times of the zero readings, and the drift that is allowed between them.
+/// The times of the zero readings, and the zero drift that is allowed between them.
 fn zeros(zeros: &PredictedZeros) -> String {
     let seconds = |value| number::text(value, Dimension::TIME);
     let force = |value| number::text(value, Dimension::FORCE);

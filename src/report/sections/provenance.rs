@@ -106,7 +106,7 @@ fn files(run: &Run<'_>, tables: &[FileDigest]) -> Block {
     })
 }
 
-/// Operator, machine, times and the record of a real run.
+/// Operator, machine, times and the run log of a real run.
 fn record(real: &RealRun) -> Vec<(&'static str, Text)> {
     let (records, head) = real
         .sealed

@@ -4,7 +4,7 @@ use super::Source;
 use crate::report::document::{Block, Text};
 use crate::report::wording::statements as wording;
 
-/// The statements. They precede the long listings, so that no page holds them alone.
+/// The statements. They precede the long listings, so that they do not occupy a separate page.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::section(wording::TITLE));
     let items = if source.run.record.rig.simulated {

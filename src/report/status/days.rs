@@ -3,7 +3,7 @@
 
 use crate::report::run::Provenance;
 
-/// The last day of the test, from the record, or from the plan or the command line where the record has no times.
+/// The last day of the test, from the run log, or from the plan or the command line if the run log has no times.
 #[must_use]
 pub fn last_day(provenance: &Provenance) -> Option<&str> {
     let real = provenance.real.as_ref();
@@ -31,7 +31,7 @@ pub fn first_day(provenance: &Provenance) -> Option<&str> {
         .find_map(first_ten)
 }
 
-/// The day at the start of an ISO 8601 time. The order of such strings is the order of the days.
+/// The day at the start of an ISO 8601 time. Such strings sort in the order of the days.
 fn first_ten(text: &str) -> Option<&str> {
     let day = text.get(..10)?;
     let fits = |(index, byte): (usize, u8)| {
@@ -52,7 +52,7 @@ pub fn day(text: &str) -> Option<jiff::civil::Date> {
     (day.to_string() == text).then_some(day)
 }
 
-/// Number of days from `earlier` to `later`; negative where `later` comes first. None where one of them is not a day.
+/// Number of days from `earlier` to `later`; negative if `later` comes first. None if one of them is not a day.
 #[must_use]
 pub fn days_after(earlier: &str, later: &str) -> Option<i64> {
     let apart = day(earlier)?.until(day(later)?).ok()?;

@@ -1,5 +1,5 @@
-//! Deviations from the plan as written, found in the record: a reader must know them before the numbers. In: a run. Out: one
-//! sentence each, in the order in which they happened.
+//! Deviations from the plan as written, found in the record: a reader must know them before the numbers. In: a run. Out: one sentence
+//! each, in the order of their occurrence.
 
 use crate::procedures;
 use crate::record::equipment::{Channel, Measures};
@@ -156,7 +156,7 @@ pub(in crate::report) fn position(procedure: Option<&str>, step: Option<u64>) ->
     }
 }
 
-/// The largest reading of a channel of an axis, from 0, by size: m or N. None where nothing was recorded.
+/// The largest absolute reading of a channel \[m\] or \[N\], for an axis counted from 0. None if nothing was recorded.
 fn reached(record: &Record, measures: Measures, axis: usize) -> Option<f64> {
     let mut largest: Option<f64> = None;
     let mut give = |displacement: &[f64], force: &[f64]| {

@@ -1,5 +1,5 @@
-//! The particulars of a report (ISO/IEC 17025, 7.8.2.1). In: a run, and the field of a particular. Out: its text from the record,
-//! the plan or an issue of the report; and the particulars that are missing or whose days are out of order.
+//! The particulars of a report (ISO/IEC 17025, 7.8.2.1). In: a run, and the field of a particular. Out: its text from the run log, the
+//! plan or an issue of the report; and the particulars that are missing or whose days are out of order.
 
 use super::days::{days_after, first_day, last_day};
 use crate::report::run::Run;
@@ -18,7 +18,7 @@ pub(in crate::report) struct Particular {
 pub(in crate::report) enum Wanted {
     /// Every report states it.
     Always,
-    /// A report states it where the validity of the results depends on it.
+    /// A report states it if the validity of the results depends on it.
     WhereItMatters,
     /// The clause does not require it.
     No,
@@ -51,8 +51,8 @@ pub(in crate::report) const FRONT: &[Particular] = &[
     particular("standard", wording::METHOD, Wanted::Always),
 ];
 
-/// The text of a particular; None where it is blank. The operator and the days come from the record, not from the plan; an
-/// issue of the report may correct the operator's name.
+/// The text of a particular; None if it is blank. The operator and the days come from the run log, not from the plan. An issue of the
+/// report may correct the operator's name.
 pub(in crate::report) fn stated(run: &Run<'_>, field: &str) -> Option<String> {
     let restated = || run.provenance.restated(field);
     let recorded = match field {
@@ -72,7 +72,7 @@ pub(in crate::report) fn stated(run: &Run<'_>, field: &str) -> Option<String> {
         .filter(|text| !text.trim().is_empty())
 }
 
-/// The day of the test; the first and the last where they differ.
+/// The day of the test; the first and the last day if they differ.
 fn days(run: &Run<'_>) -> Option<String> {
     let first = run.provenance.date.as_deref().map(sanitize::printed)?;
     let ended = run
@@ -113,8 +113,8 @@ pub(super) fn missing(run: &Run<'_>) -> Vec<String> {
     names.chain(out_of_order(run)).collect()
 }
 
-/// An item is received before its test, and the report is issued after it. The record has days of UTC, which may differ from
-/// those of the laboratory by one.
+/// An item is received before its test, and the report is issued after it. The run log has days of UTC, which may differ from those of
+/// the laboratory by one.
 fn out_of_order(run: &Run<'_>) -> Vec<String> {
     const TIME_ZONES: i64 = 1;
     let (first, last) = (first_day(run.provenance), last_day(run.provenance));

@@ -1,5 +1,5 @@
-//! The status of a run's report: certifiable, or the reasons against it. In: a run. Out: its [`ReportStatus`], and every
-//! reason, the gravest first. Due dates are compared with the days of the record: no clock is read.
+//! The status of a run's report: issuable as a test report, or the reasons against it. In: a run. Out: its [`ReportStatus`], and every
+//! reason, the most serious first. Due dates are compared with the days of the run log: no clock is read.
 
 use std::collections::BTreeSet;
 
@@ -16,9 +16,9 @@ use crate::run::rehearsal;
 pub enum ReportStatus {
     /// A real rig, a completed run, and no field is missing.
     Certifiable,
-    /// No real rig moved, or only the beginning of the plan ran to predict the rest.
+    /// No real rig moved, or only the first part of the plan was run to predict the rest.
     Rehearsal,
-    /// The run did not come to its end, or its record has no end.
+    /// The run was not completed, or its run log has no end.
     Incomplete,
     /// A test of a specimen. Fields are missing that cannot be added after the test.
     NotCertifiable { missing: Vec<String> },
@@ -27,7 +27,7 @@ pub enum ReportStatus {
 }
 
 impl ReportStatus {
-    /// The status of a run: the gravest reason against a certificate.
+    /// The status of a run: the most serious reason against a test report.
     #[must_use]
     pub fn of(run: &Run<'_>) -> Self {
         Self::reasons(run)
@@ -36,7 +36,7 @@ impl ReportStatus {
             .unwrap_or(Self::Certifiable)
     }
 
-    /// Every reason against a certificate, the gravest first; none where the report is certifiable.
+    /// Every reason against a test report, the most serious first; none if the report is issuable.
     #[must_use]
     pub fn reasons(run: &Run<'_>) -> Vec<Self> {
         let mut reasons = Vec::new();
@@ -70,7 +70,7 @@ impl ReportStatus {
     }
 }
 
-/// The particulars that the report of a test must state and does not. A rehearsal is not a test: none is missing there.
+/// The missing particulars that the report of a test must state. A rehearsal is not a test: none is missing there.
 #[must_use]
 pub fn missing_particulars(run: &Run<'_>) -> Vec<String> {
     if run.plan.rig.link.as_real().is_none() || is_rehearsal(run) {
@@ -84,8 +84,8 @@ fn is_rehearsal(run: &Run<'_>) -> bool {
     run.record.rig.simulated || rehearsal::rehearsed_plan(run.plan).is_some()
 }
 
-/// The fields of operator, calibration and program that the report on a real rig must state and cannot. A simulated rig has
-/// neither operator nor calibration.
+/// The missing fields of operator, calibration and program that the report on a real rig must state. A simulated rig has neither operator
+/// nor calibration.
 #[must_use]
 pub fn missing_fields(run: &Run<'_>) -> Vec<String> {
     if run.plan.rig.link.as_real().is_none() {
@@ -132,7 +132,7 @@ pub fn missing_fields(run: &Run<'_>) -> Vec<String> {
     if !self_test::passed() {
         missing.push(wording::PASSING_PROGRAM.to_owned());
     }
-    // A field that two axes miss is listed once.
+    // A field that is missing for two axes is listed once.
     let mut listed = BTreeSet::new();
     missing.retain(|field| listed.insert(field.clone()));
     missing

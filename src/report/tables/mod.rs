@@ -35,7 +35,7 @@ impl Unwritten<'_> {
     }
 }
 
-/// The tables of every procedure that recorded steps, in the formats the plan asks for.
+/// The tables of every procedure that recorded steps, in the formats that the plan requests.
 pub(super) fn of_run<'a>(run: &Run<'a>) -> Vec<Unwritten<'a>> {
     let forms = [(Format::Csv, Form::Csv), (Format::Parquet, Form::Parquet)];
     let forms: Vec<Form> = forms
@@ -63,7 +63,7 @@ fn all<'a>(run: &Run<'a>) -> Vec<Table<'a>> {
     of_procedures.chain(zero_drift).collect()
 }
 
-/// Puts the tables of a run that a client controlled: targets with readings, and the zero drift where it was measured.
+/// Writes the tables of a run that a client controlled: targets with readings, and the zero drift if it was measured.
 ///
 /// # Errors
 /// A table that cannot be encoded or kept.
@@ -72,7 +72,7 @@ pub fn put_driven(
     zero_drift: Option<&Drift>,
     sink: &mut dyn OutputSink,
 ) -> Result<Vec<FileDigest>, OutputError> {
-    // One row per step and axis, with a column for the axis where there are several.
+    // One row per step and axis, with a column for the axis if there are several.
     let axes = steps
         .iter()
         .map(|step| step.command.len())

@@ -440,7 +440,7 @@ wording! {
     }
 }
 
-/// The words that the layout of a page adds.
+/// The text that the layout of a page adds.
 pub(crate) const LABELS: Labels = Labels {
     report: "Report",
     amendment_to: "Amendment to report",

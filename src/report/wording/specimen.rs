@@ -1,5 +1,5 @@
-//! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a behaviour, and a
-//! function that prints a number. Out: labelled strings, for the report and for `psd check --explain`.
+//! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a model, and a function that
+//! prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
 use crate::physics::structure::beam::first_mode_mass_factor;
 use crate::physics::structure::portal::limit::mechanism_limit;
@@ -13,7 +13,7 @@ use crate::units::Dimension;
 /// Prints a stated number, or one that follows from stated numbers.
 pub type Printed<'s> = &'s dyn Fn(f64, Dimension) -> String;
 
-/// The rows of a behaviour: its model and parameters, then derived values.
+/// The rows of a restoring-force model: its name and parameters, then derived values.
 #[must_use]
 pub fn rows(behaviour: &Behaviour, shown: Printed<'_>) -> Vec<(&'static str, String)> {
     let mut rows = vec![("virtual behaviour", words(behaviour, shown))];
@@ -38,7 +38,7 @@ pub fn rows(behaviour: &Behaviour, shown: Printed<'_>) -> Vec<(&'static str, Str
     rows
 }
 
-/// A behaviour with its parameters as one string.
+/// A restoring-force model with its parameters as one string.
 #[must_use]
 pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
     use Dimension as Of;

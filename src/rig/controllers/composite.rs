@@ -6,16 +6,16 @@ use super::{Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Sample};
 use crate::plan::Limits;
 use crate::rig::{LineStatistics, NO_POWER_UP};
 
-/// One of them.
+/// One of these devices.
 pub struct Member {
     pub device: Box<dyn Device>,
-    /// Indices of the rig's axes that it drives or measures, in the order of its own axes.
+    /// Indices of the rig axes that it drives or measures, in the order of its own axes.
     pub axes: Vec<usize>,
     /// Serial number that the device must report.
     pub serial_number: Option<String>,
 }
 
-/// All of them.
+/// All these devices.
 pub struct Several {
     members: Vec<Member>,
     /// Axes of the rig.
@@ -25,7 +25,7 @@ pub struct Several {
     faulty_member: Option<usize>,
 }
 
-/// The devices of one role of a rig of so many axes: one that has them all is itself.
+/// The devices of one role as one device, for a rig with this number of axes. A single device with all axes is returned unchanged.
 #[must_use]
 pub fn together(mut members: Vec<Member>, axes: usize) -> Option<Box<dyn Device>> {
     if members.len() == 1 && members[0].axes.iter().copied().eq(0..axes) {
@@ -43,7 +43,7 @@ pub fn together(mut members: Vec<Member>, axes: usize) -> Option<Box<dyn Device>
 }
 
 impl Several {
-    /// The same of each in turn; the first that fails is remembered.
+    /// Calls each device in turn; the first one that fails is remembered.
     fn each<T>(
         &mut self,
         mut call: impl FnMut(usize, &mut Member) -> Result<T, DeviceFault>,
@@ -61,7 +61,7 @@ impl Several {
         Ok(made)
     }
 
-    /// Every device accepts the move, or it is cancelled on those that have accepted.
+    /// Proposes the move to every device. If one refuses, the move is cancelled on those that have accepted.
     fn offer_to_all(&mut self, moves: &[DeviceMove]) -> Result<(), DeviceFault> {
         let offered = self.each(|place, member| member.device.propose(&moves[place]));
         if offered.is_err() {
@@ -214,7 +214,7 @@ impl Device for Several {
         held
     }
 
-    /// Each has a line of its own, and is armed there.
+    /// Each device has a separate line, and is armed there.
     fn emergency(&self) -> Vec<u8> {
         Vec::new()
     }

@@ -24,18 +24,18 @@ pub struct DeviceIdentity {
 pub struct DeviceMove {
     /// The frames to be sent, in this order. Each waits for its answer.
     pub frames: Vec<Vec<u8>>,
-    /// One an axis, m, read back from the bytes.
+    /// One per axis \[m\], decoded from the bytes.
     pub targets: Vec<f64>,
     /// \[m/s\], of the axis with the longest travel. Decoded from the bytes, or as requested if they carry no speed.
     pub speed: f64,
-    /// Where the device remembers it.
+    /// The number of the move, if the device remembers it.
     pub id: Option<u64>,
 }
 
 /// One reading of a device. A quantity that the device does not report is None.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// The device's own clock, s.
+    /// The device's own clock \[s\].
     pub time: Option<f64>,
     /// Position of its first axis \[m\].
     pub displacement: Option<f64>,
@@ -52,7 +52,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// How many axes it speaks of.
+    /// Number of axes in the reading.
     pub fn axis_count(&self) -> usize {
         1 + self.others.len()
     }
@@ -82,7 +82,7 @@ impl Sample {
 /// The reading of one axis of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Channel {
-    /// m
+    /// \[m\]
     pub displacement: Option<f64>,
     pub force: Option<Force>,
     pub flags: Flags,
@@ -92,7 +92,7 @@ pub struct Channel {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Force {
     Newtons(f64),
-    /// Raw counts, with the lowest and highest the converter knows.
+    /// Raw counts, with the lowest and the highest count of the converter.
     Counts {
         count: i64,
         low: i64,
@@ -124,7 +124,7 @@ pub const NOT_TRUSTED: &str = "its position is not to be trusted";
 /// The reason why a device did not do a request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DeviceFault {
-    /// The same frame was sent again and again, and nothing usable came.
+    /// The same frame was sent several times, and no usable answer was received.
     #[error("no usable answer within {} s", (.seconds * 100.0).round() / 100.0)]
     Silent { seconds: f64 },
     #[error("the line is gone: {reason}")]
@@ -135,10 +135,10 @@ pub enum DeviceFault {
     /// It restarted, so that its position is not to be trusted.
     #[error("the device started anew ({was} became {is}): {NOT_TRUSTED}")]
     Rebooted { was: String, is: String },
-    /// An answer came that is no reading: not to be used, may be asked again.
+    /// An answer that is not a valid reading: it is not used, and the reading may be requested again.
     #[error("`{}` is no reading: {reason}", raw.escape_ascii())]
     NoReading { raw: Vec<u8>, reason: String },
-    /// A reply that came whole holds no number that can be: no fault of the line.
+    /// A complete reply with an impossible number: not a fault of the line.
     #[error("`{}` is no reading: {reason}", raw.escape_ascii())]
     Impossible { raw: Vec<u8>, reason: String },
     /// The device is not configured as required, or lacks this function.
@@ -154,7 +154,7 @@ pub trait Device: Send {
     /// Opens the conversation: requests the identity and checks the configuration. Nothing moves.
     ///
     /// # Errors
-    /// It does not answer, or is not fit.
+    /// It does not answer, or is not suitable.
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault>;
 
     /// Number of axes that it moves or measures, from `identify`.
@@ -175,7 +175,7 @@ pub trait Device: Send {
     /// It was refused or not received.
     fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault>;
 
-    /// Asks whether it would carry out this move, where it can be asked: nothing moves yet.
+    /// Asks whether it would execute this move, if the device can be asked: nothing moves yet.
     ///
     /// # Errors
     /// It refuses, or did not receive the request.

@@ -4,20 +4,20 @@
 use super::{Device, DeviceFault, DeviceIdentity, DeviceMove, Sample};
 use crate::rig::LineStatistics;
 
-/// A load cell on a port of its own. All calls end within a bounded time.
+/// A load cell on a separate port. All calls end within a bounded time.
 pub trait LoadCell: Send {
     /// As [`Device::identify`].
     ///
     /// # Errors
-    /// It does not answer, or is not fit.
+    /// It does not answer, or is not suitable.
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault>;
 
-    /// How many channels it has, one an axis of the rig.
+    /// Number of channels, one per axis of the rig.
     fn axes(&self) -> usize {
         1
     }
 
-    /// As [`Device::sample`]: the force of every channel, in N or counts.
+    /// As [`Device::sample`]: the force of every channel, in newtons or counts.
     ///
     /// # Errors
     /// As every call.

@@ -1,5 +1,5 @@
-//! Drivers against the emulators of their controllers, which share no parsing code with them: the bench moves to the
-//! commanded position, and its force is the one that is read.
+//! Drivers against the emulators of their controllers, which share no parsing code with them. The emulator moves to the commanded
+//! position, and the driver reads the force of the emulator.
 
 use std::io;
 use std::sync::{Arc, Mutex};
@@ -18,10 +18,10 @@ use crate::rig::StopRequest;
 use crate::rig::testing::VirtualClock;
 use crate::rig::transport::{Clock as _, Emergency, Port};
 
-/// Of the spring on the bench, N/m.
+/// Stiffness of the spring of the emulator \[N/m\].
 const STIFFNESS: f64 = 1e5;
 
-/// A controller on its bench, at the other end of a line without delay.
+/// A controller of the rig emulator, at the other end of a line without delay.
 #[derive(Clone)]
 struct Controller {
     clock: VirtualClock,
@@ -31,7 +31,7 @@ struct Controller {
 struct Shared {
     firmware: Box<dyn Firmware>,
     bench: Bench,
-    /// Said and not yet read.
+    /// Bytes that were sent and not yet read.
     coming: Vec<u8>,
 }
 
@@ -118,7 +118,7 @@ fn read(device: &mut dyn Device) -> (f64, f64, Option<bool>) {
     (sample.displacement.unwrap(), force, sample.moving)
 }
 
-/// Goes to 2.5 mm and back to −1 mm at 1 mm/s.
+/// Moves to 2.5 mm and back to −1 mm at 1 mm/s.
 fn goes_there_and_back(device: &mut dyn Device, controller: &Controller, resolution: f64) {
     device.identify().unwrap();
     for target in [0.002_5, -0.001] {
@@ -152,7 +152,7 @@ fn goes_there_and_back(device: &mut dyn Device, controller: &Controller, resolut
     );
 }
 
-/// Held, or stopped by the emergency bytes, in the middle of a way of 10 s it stays there.
+/// Stopped by a hold or by the emergency bytes in the middle of a move of 10 s, the device does not move further.
 fn stays_where_it_is_stopped(device: &mut dyn Device, controller: &Controller) {
     for emergency in [false, true] {
         let from = read(device).0;

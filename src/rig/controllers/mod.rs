@@ -37,8 +37,8 @@ use line::{request_reply, stream, unsequenced};
 pub use load_cell::LoadCell;
 pub use native::driver::{NativeDevice, SIMULATED};
 
-/// The device at a port. Its waits end when `stop_request` is to hold; `settling` (s) is how long a rig that answers only once
-/// it has settled may take to.
+/// The device at a port. Its waits end when `stop_request` demands a hold. `settling` \[s\] is the longest settling time of a rig that
+/// answers only after it has settled.
 #[must_use]
 pub fn open(
     link: &DeviceLink,

@@ -1,4 +1,4 @@
-//! Opening a device: nothing is sent, and a device moves if its protocol says so.
+//! Opening a device: nothing is sent, and the device can be moved if its protocol in the plan includes motion.
 
 use super::*;
 use crate::plan::PortPlan;

@@ -26,7 +26,7 @@ impl Guard<'_> {
         (&self.found.0, &self.found.1)
     }
 
-    /// Speed of a move for which none is asked, m/s; None: as fast as the limits allow.
+    /// Speed of a move without a requested speed \[m/s\]; None: the highest speed that the limits allow.
     #[must_use]
     pub fn own_speed(&self) -> Option<f64> {
         self.rig.own_speed()

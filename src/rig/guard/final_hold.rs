@@ -4,7 +4,7 @@
 use crate::rig::{FinalHold, Guard};
 
 impl Guard<'_> {
-    /// Holds finally and gives the result, for a rig with moving parts. A proposed move is forgotten.
+    /// Holds finally and gives the result, for a rig with moving parts. A proposed move is discarded.
     pub fn halt(&mut self) -> Option<FinalHold> {
         self.proposed = None;
         self.going.clear();

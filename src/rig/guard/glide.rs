@@ -9,8 +9,8 @@ use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{Guard, LimitedQuantity, RigFault, Traversed};
 
 impl Guard<'_> {
-    /// Follows `paths`, one per degree of freedom, and reads at up to `samples` times, the last at the end or where a limit
-    /// was exceeded.
+    /// Follows `paths`, one per degree of freedom, and reads at up to `samples` times. The last reading is at the end or at the point
+    /// where a limit was exceeded.
     pub fn glide(&mut self, paths: &[Path], samples: usize) -> Traversed {
         let refused = |fault| Traversed {
             readings: Vec::new(),
@@ -116,7 +116,7 @@ mod tests {
         }
     }
 
-    /// Out and back: both ends are at 0, the turn is at 2.5 mm; the speed is 0.1 m/s at its ends and more nowhere.
+    /// Loading and unloading: both ends are at 0, the reversal point is at 2.5 mm. The speed is 0.1 m/s at the ends and nowhere higher.
     #[test]
     fn the_whole_path_is_held_against_the_limits_before_it_begins() {
         let first = Path::accelerated(0.0, 0.0, 1.0, 0.1);

@@ -19,25 +19,25 @@ use read::is_finite;
 pub struct Guard<'rig> {
     pub(super) rig: &'rig mut dyn Rig,
     pub(super) limits: Limits,
-    /// Limits of each axis, if one has its own. Empty: `limits` apply to all axes.
+    /// Limits of each axis, if one has separate limits. Empty: `limits` apply to all axes.
     pub(super) own: Vec<Limits>,
-    /// The last target carried out, m; at first where the rig was found.
+    /// The last executed target \[m\]; at first the position at which the rig was found.
     pub(super) commanded: Vec<f64>,
-    /// Velocities at the end of the last path, m/s; none at rest.
+    /// Velocities at the end of the last path \[m/s\]; none at rest.
     pub(super) going: Vec<f64>,
     /// Whether the rig has settled at `commanded`, so that a reading shows the tracking error.
     pub(super) settled: bool,
     /// Checked, and not yet executed: targets \[m\] and the speed decoded from the bytes \[m/s\].
     pub(super) proposed: Option<(Vec<f64>, f64)>,
-    /// Of the last motion \[m/s\].
+    /// Speed of the last motion \[m/s\].
     pub(super) speed: Option<f64>,
-    /// Rig time when the rig last answered, s.
+    /// Rig time when the rig last answered \[s\].
     pub(super) heard: f64,
     /// The evaluation of dwells, if it is requested.
     pub(super) holds: Option<Holds>,
-    /// The first reading: displacements, m, and forces, N.
+    /// The first reading: displacements, m, and forces \[N\].
     pub(super) found: (Vec<f64>, Vec<f64>),
-    /// The reading that broke a limit last, if it is one.
+    /// The last reading that exceeded a limit, if it is a reading.
     pub(super) broken: Option<Reading>,
 }
 
@@ -92,20 +92,20 @@ impl<'rig> Guard<'rig> {
         Ok(guard)
     }
 
-    /// The last targets carried out, m.
+    /// The last targets carried out \[m\].
     #[must_use]
     pub fn commanded(&self) -> &[f64] {
         &self.commanded
     }
 
-    /// Rig time \[s\] of the last reading, or of the fault after it: the time that the run log knows too. A move or pause
-    /// without a reading after it has taken time that is not in the run log, so no event may have a time within it.
+    /// Rig time of the last reading \[s\], or of the fault after it: the time that the run log also contains. A later move or pause
+    /// without a reading takes time that is not in the run log. So no event may have a time within it.
     #[must_use]
     pub const fn time(&self) -> f64 {
         self.heard
     }
 
-    /// Moves to `targets` (m) in one increment and settles. Without a speed (m/s): the rig's own, else the highest that the
+    /// Moves to `targets` (m) in one increment and settles. Without a speed \[m/s\]: the rig's own, else the highest that the
     /// plan allows.
     ///
     /// # Errors
@@ -140,7 +140,7 @@ impl<'rig> Guard<'rig> {
         }
         let proposed = self.rig.propose(targets, speed);
         let offer = self.or_hold(proposed)?;
-        // The decoded bytes are the motion that will happen, so they are compared with the limits once more.
+        // The decoded bytes are the motion that will happen, so they are compared with the limits again.
         self.check_targets(&offer.targets)?;
         self.check(LimitedQuantity::Speed, self.limits.speed, offer.speed)?;
         self.proposed = Some((targets.to_vec(), offer.speed));
@@ -150,7 +150,7 @@ impl<'rig> Guard<'rig> {
     /// The second half: executes the last proposal and settles.
     ///
     /// # Errors
-    /// The rig fails, or nothing was proposed that may be carried out.
+    /// The rig fails, or no proposal can be executed.
     pub fn execute(&mut self) -> Result<(), RigFault> {
         let Some((targets, told)) = self.proposed.take() else {
             self.hold();
@@ -225,7 +225,7 @@ impl<'rig> Guard<'rig> {
     /// Holds the rig if the energy error (a fraction of the input energy) is outside its limit, if there is one.
     ///
     /// # Errors
-    /// It does.
+    /// The error is outside its limit.
     pub fn check_energy_error(&mut self, fraction: f64) -> Result<(), RigFault> {
         if !self.limits.energy_error.is_bounded() || !on(Guarding::EnergyError) {
             return Ok(());
@@ -237,10 +237,11 @@ impl<'rig> Guard<'rig> {
         )
     }
 
-    /// Holds the rig if the tracking-error energy (a fraction of the input energy) or the NRMS tracking error is outside
-    /// its limit. The first always has a limit.
+    /// Holds the rig if the tracking-error energy (a fraction of the input energy) or the NRMS tracking error is outside its limit. The
+    /// first always has a limit.
     ///
     /// # Errors
+    /// An error is outside its limit.
     /// It does.
     pub fn check_tracking(&mut self, energy_share: Option<f64>, nrms: f64) -> Result<(), RigFault> {
         if !on(Guarding::Tracking) {
@@ -256,13 +257,13 @@ impl<'rig> Guard<'rig> {
         Ok(())
     }
 
-    /// Share of the input energy up to which tracking may err: the plan's, else the default.
+    /// Allowed tracking-error energy as a fraction of the input energy: the plan's limit, else the default.
     #[must_use]
     pub fn tracking_energy_limit(&self) -> Interval {
         self.limits.held().tracking_energy_error
     }
 
-    /// Stops all motion and keeps the load. A proposed move is forgotten.
+    /// Stops all motion and keeps the load. A proposed move is discarded.
     pub fn hold(&mut self) {
         self.proposed = None;
         self.going.clear();
@@ -314,7 +315,7 @@ impl<'rig> Guard<'rig> {
         }
     }
 
-    /// `place`: the index of the axis, for a quantity of one axis.
+    /// `place` is the index of the axis, for a quantity of one axis.
     pub(super) fn breach(
         &mut self,
         quantity: LimitedQuantity,

@@ -3,7 +3,7 @@
 
 use super::{Guard, increment};
 
-/// Moves of one motion, at most.
+/// Largest number of moves of one motion.
 const MOST: f64 = 1e5;
 
 impl Guard<'_> {
@@ -27,8 +27,8 @@ impl Guard<'_> {
         )]
         let parts = if parts <= MOST { parts as u32 } else { 1 };
         let way = self.increments_in(parts, targets);
-        // Positions far from 0 are rounded more coarsely than a short increment near 0 allows. With one increment more they
-        // fit.
+        // Positions far from 0 have a coarser rounding than a short increment near 0. One more increment keeps all increments inside the
+        // limit.
         if parts == 1 || self.fits(&way) {
             way
         } else {
@@ -65,8 +65,7 @@ mod tests {
     use crate::rig::{VirtualRig, virtual_rig};
     use crate::tests::testing::elastic_plan;
 
-    /// Back to 0 from 10 mm in increments of 0.1 mm: the positions beyond 1 mm were rounded by more than the tolerance of
-    /// an increment.
+    /// Back to 0 from 10 mm in increments of 0.1 mm: rounding of the positions beyond 1 mm exceeds the tolerance of an increment.
     #[test]
     fn every_way_out_and_back_fits_its_own_limit() {
         let plan = elastic_plan(300.0, Vec::new());

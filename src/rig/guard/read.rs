@@ -63,7 +63,7 @@ impl Guard<'_> {
         Ok(())
     }
 
-    /// The reading that broke a limit, once: it was made all the same.
+    /// The reading that exceeded a limit, given only once.
     pub fn take_broken(&mut self) -> Option<Reading> {
         self.broken.take()
     }

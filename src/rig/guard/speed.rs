@@ -1,15 +1,14 @@
-//! The speed of the last motion. In: the speed decoded from a move, and the speed that was seen. Out: a speed for display.
-//! It checks nothing: the guard has compared the speed of a move with the limit before it is sent.
+//! The speed of the last motion. In: the speed decoded from a move, and the observed speed. Out: a speed for display. It checks nothing:
+//! the guard has compared the speed of a move with the limit before it is sent.
 
 use crate::rig::Guard;
 
-/// Fraction of the commanded speed by which the seen speed must exceed it to count: the rounding of clocks and positions is
-/// less.
+/// Fraction of the commanded speed by which the observed speed must exceed it. The rounding of clocks and positions is smaller.
 const BEYOND: f64 = 1e-3;
 
 impl Guard<'_> {
-    /// Speed of the last motion \[m/s\]. For a move: the commanded speed, or the seen speed if that was higher. For a
-    /// stroke: the commanded speed. For smooth paths: the highest speed of the fastest axis. None before the first motion.
+    /// Speed of the last motion \[m/s\]. For a move: the commanded speed, or the observed speed if that was higher. For a stroke: the
+    /// commanded speed. For smooth paths: the highest speed of the fastest axis. None before the first motion.
     #[must_use]
     pub const fn speed(&self) -> Option<f64> {
         self.speed

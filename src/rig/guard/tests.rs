@@ -3,14 +3,14 @@
 use super::*;
 use crate::rig::{DeclaredNoise, EachReading, EncodedMove, Identity};
 
-/// Says what it is told to say, and remembers what it was asked.
+/// Returns scripted readings, and records the calls.
 #[derive(Default)]
 struct Scripted {
     displacement: f64,
     /// Added to the displacement after a move.
     error: f64,
     force: f64,
-    /// Added to a target on its way into the bytes.
+    /// Added to a target when it is encoded.
     misspoken: f64,
     proposed: Vec<(f64, Option<f64>)>,
     held: bool,
@@ -119,7 +119,7 @@ fn quantity(fault: RigFault) -> LimitedQuantity {
     }
 }
 
-/// What one move breaches, having proposed nothing.
+/// The limit that one move exceeds; the move must not be proposed.
 fn refused(target: f64, speed: Option<f64>) -> LimitedQuantity {
     let mut rig = Scripted::default();
     let fault = Guard::new(&mut rig, LIMITS)
@@ -145,7 +145,7 @@ fn targets_increments_and_speeds_beyond_a_limit_are_never_proposed() {
 
 #[test]
 fn what_the_bytes_say_is_held_against_the_limits_too() {
-    // 25 mm is allowed; rounded into the bytes it would be more.
+    // 25 mm is allowed; the encoded value would be larger because of rounding.
     let mut rig = Scripted {
         displacement: 0.0248,
         misspoken: 3e-4,

@@ -13,7 +13,7 @@ pub(super) struct Coordinate {
 }
 
 impl Coordinate {
-    /// For an axis whose own zero is the plan's.
+    /// For an axis with the same zero as the plan.
     pub(super) const fn of_sign(sign: f64) -> Self {
         Self { sign, datum: 0.0 }
     }
@@ -31,7 +31,7 @@ impl Coordinate {
     /// A position of the plan \[m\], in the device's coordinate.
     pub(super) fn at_device(self, place: f64) -> f64 {
         let turned = self.sign * place;
-        // A sum with 0 would make 0 of −0, and other bytes of it.
+        // The sum of 0 and −0 would be 0, which is encoded in different bytes.
         if self.datum == 0.0 {
             turned
         } else {
@@ -39,12 +39,12 @@ impl Coordinate {
         }
     }
 
-    /// A force or a velocity, of either side as the other has it.
+    /// A force or a velocity, converted from either side to the other.
     pub(super) fn turned(self, value: f64) -> f64 {
         self.sign * value
     }
 
-    /// Limits of the plan as the device has them.
+    /// Limits of the plan in the coordinate of the device.
     pub(super) fn limits_at_device(self, limits: &Limits) -> Limits {
         let between = |ends: [f64; 2]| Interval {
             low: ends[0].min(ends[1]),

@@ -9,7 +9,7 @@ use crate::rig::{FinalHold, RigFault};
 /// Longest wait for a rig that still moves after the command to hold \[s\].
 const COMES_TO_REST: f64 = 5.0;
 
-/// Displacement (m) and force (N) of every axis, where they could be read, with their bytes.
+/// Displacement \[m\] and force \[N\] of every axis, if they could be read, with their bytes.
 type Found = (Option<(Vec<f64>, Vec<f64>)>, Vec<Vec<u8>>);
 
 impl RealRig {
@@ -54,7 +54,7 @@ impl RealRig {
     /// one position.
     fn until_at_rest(&mut self) -> Result<(), String> {
         let began = self.clock.now();
-        // At its own speed it would be several bands farther.
+        // At its own speed it would move by several bands in this time.
         let between = self
             .period()
             .max(4.0 * self.settle.band / self.link.own_speed)
@@ -112,7 +112,7 @@ impl RealRig {
         }
     }
 
-    /// Waits without observing a stop request, because it is being carried out.
+    /// Waits without observing a stop request, because the request is already being executed.
     fn sleep(&mut self, seconds: f64) {
         let until = self.clock.now() + seconds;
         loop {

@@ -42,7 +42,7 @@ pub struct RealRig {
     load_cell: Option<Box<dyn Device>>,
     clock: Box<dyn Clock>,
     stop_request: StopRequest,
-    /// The clock when it was opened, s.
+    /// Time of the clock at opening \[s\].
     began: f64,
     /// Time of the last answer of the devices \[s\], by the clock.
     heard: f64,
@@ -51,18 +51,18 @@ pub struct RealRig {
     settled: Option<Vec<f64>>,
     /// For each axis, the start of the dwell in which it settled \[s\] and its median force \[N\].
     rested: Vec<Option<(f64, f64)>>,
-    /// Mean speed of the last move as it was seen \[m/s\].
+    /// Mean observed speed of the last move \[m/s\].
     seen_speed: Option<f64>,
-    /// Times (\[s\], by the clock) and positions \[m\] of the first axis during the last move, as they were seen.
+    /// Observed times (\[s\], by the clock) and positions \[m\] of the first axis during the last move.
     seen_places: Vec<(f64, f64)>,
     reread: u64,
     /// It has moved since it was opened.
     moved: bool,
-    /// Why its position is not to be trusted.
+    /// Why its position cannot be trusted.
     untrusted: Option<String>,
     /// The hold command was not received: only the bytes that need no answer are left.
     deaf: bool,
-    /// Why they found none.
+    /// The reason why the hold command was not received.
     unheard: String,
     /// Publishes readings as they are made.
     live: Live,
@@ -70,12 +70,12 @@ pub struct RealRig {
 
 /// One actuator with its load cell.
 struct Axis {
-    /// How displacement and force of the devices count in the plan.
+    /// Conversion of displacement and force between the devices and the plan.
     coordinate: Coordinate,
     limits: Limits,
     rules: ReadingRules,
     calibration: Calibration,
-    /// Another device than the one that moves it reads its force.
+    /// A device other than the actuator measures its force.
     weighed_apart: bool,
     validator: ReadingValidator,
     /// The last reading during the motion was outside a limit.
@@ -89,18 +89,18 @@ struct Axis {
     off: bool,
 }
 
-/// A move that was offered and not yet sent.
+/// A move that was proposed and not yet sent.
 #[derive(Clone, Debug)]
 struct Proposed {
     going: DeviceMove,
-    /// m, in the plan's sign.
+    /// \[m\], in the polarity of the plan.
     targets: Vec<f64>,
     /// The position at the time of the proposal \[m\].
     from: Vec<f64>,
 }
 
 impl RealRig {
-    /// Whether its position and readings are to be trusted: no device restarted or lost its reference.
+    /// Whether its position and readings can be trusted: no device restarted or lost its reference.
     #[must_use]
     pub const fn trusted(&self) -> bool {
         self.untrusted.is_none()
@@ -145,7 +145,7 @@ impl RealRig {
                 self.actuator.faulty_member(),
             ),
         };
-        // Among several devices the one with the fault; the first if that is not known.
+        // Among several devices, the faulty one; the first if the faulty one is not known.
         let place = behind.get(faulty_member.unwrap_or(0)).map_or_else(
             || role.to_owned(),
             |behind| format!("{} on {}", behind.name(role), behind.link.port),
@@ -168,7 +168,7 @@ impl RealRig {
     }
 }
 
-/// As a sentence has it.
+/// Formatted for a sentence.
 fn degrees_of_freedom(count: usize) -> String {
     if count == 1 {
         "one degree of freedom".to_owned()
@@ -177,7 +177,7 @@ fn degrees_of_freedom(count: usize) -> String {
     }
 }
 
-/// m, after each other.
+/// Positions \[m\], as a list.
 fn places(places: &[f64]) -> String {
     places
         .iter()
@@ -186,7 +186,7 @@ fn places(places: &[f64]) -> String {
         .join(", ")
 }
 
-/// Which device.
+/// The device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Actuator,

@@ -14,11 +14,11 @@ use crate::units::{Dimension, display};
 /// travel. The overshoot of a servo is smaller, and so is the motion that a moving neighbour causes.
 const BESIDE_BANDS: f64 = 2.0;
 const BESIDE_WAY: f64 = 0.25;
-/// Standard deviations of the noise between two readings of the same force that no chance brings.
+/// Number of standard deviations of the noise that two readings of the same force cannot differ by chance.
 const LEAP: f64 = 6.0;
 
 impl RealRig {
-    /// Sends the offered move and waits until settled.
+    /// Sends the proposed move and waits until the rig has settled.
     pub(super) fn carry_out(&mut self) -> Result<(), RigFault> {
         let (began, told) = (
             self.clock.now(),
@@ -92,8 +92,8 @@ impl RealRig {
         self.wait_until(until)
     }
 
-    /// Compares a reading during the motion with the limits, because the settled one would come too late. A single reading
-    /// may be a spike.
+    /// Compares a reading during the motion with the limits, because the settled reading would be too late. A single reading may be a
+    /// spike.
     pub(super) fn watch(&mut self, point: &Point) -> Result<(), RigFault> {
         let count = self.axes.len();
         let mut found = None;
@@ -125,8 +125,8 @@ impl RealRig {
         found.map_or_else(|| self.check_path_deviation(point), Err)
     }
 
-    /// An axis that leaves its path is held before it arrives elsewhere: a target may have been received wrong, or a limit
-    /// forgotten. A single reading may be a spike.
+    /// An axis that deviates from its path is held before it arrives at another position. The device may have received a wrong target, or
+    /// lost a limit. A single reading may be a spike.
     fn check_path_deviation(&mut self, point: &Point) -> Result<(), RigFault> {
         let count = self.axes.len();
         for (place, axis) in self.axes.iter_mut().enumerate() {
@@ -158,7 +158,7 @@ impl RealRig {
                 return Err(RigFault::Interrupted);
             }
             let left = until - self.clock.now();
-            // A microsecond is nothing, and the rounding of a clock in nanoseconds is less.
+            // A microsecond is negligible, and the rounding of a clock in nanoseconds is smaller.
             if left.is_nan() || left <= 1e-6 {
                 return Ok(());
             }
@@ -200,7 +200,7 @@ impl RealRig {
         Ok((targets, farthest / going.speed))
     }
 
-    /// Whether a reading where it settled shows that it has not.
+    /// Whether a reading at the settled position shows that the rig is not settled.
     pub(super) fn disturbed(&self, point: &Point, targets: &[f64]) -> Option<Disturbed> {
         let astray = first_astray(&Settling::of(self.settle, targets), point);
         (astray.is_some() || point.moving == Some(true) || point.unsettled)
@@ -237,7 +237,8 @@ impl RealRig {
         }
     }
 
-    /// Too late. The axis with this index is the first of those that delayed settling, if that is known.
+    /// The fault for a rig that did not settle in time. The axis with this index is the first of those that delayed settling, if that is
+    /// known.
     pub(super) fn unsettled(&self, place: Option<usize>) -> RigFault {
         let axis = place.and_then(|place| named_axis(place, self.axes.len()));
         RigFault::NotSettled {
@@ -247,7 +248,7 @@ impl RealRig {
     }
 }
 
-/// The rig is no longer settled.
+/// Why the rig is not settled any more.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disturbed {
     /// The first axis that left its band, by index. None: a device reports that it moves, or that its reading has not

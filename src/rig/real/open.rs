@@ -14,7 +14,7 @@ impl RealRig {
     /// position, that is read first.
     ///
     /// # Errors
-    /// A device does not answer, is another one than the plan's, or is not fit; or the reading is not to be used.
+    /// A device does not answer, is not the one in the plan, or is not suitable; or the reading cannot be used.
     pub fn open(
         plan: &RigPlan,
         limits: &Limits,
@@ -77,7 +77,7 @@ impl RealRig {
         Ok(rig)
     }
 
-    /// One device was not looked at while another was met.
+    /// One device was not polled while another was identified.
     fn heard_now(&mut self) {
         self.heard = self.clock.now();
         let _ = self.stop_request.take_line_gap();
@@ -114,7 +114,7 @@ impl RealRig {
             .actuator
             .identify()
             .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
-        // Several devices of one role know each its own serial number.
+        // Several devices of one role each check their own serial number.
         let alone = |behind: Vec<Behind<'_>>| match behind.as_slice() {
             [one] => Some(one.link.clone()),
             _ => None,
@@ -225,7 +225,7 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
     (0..count).map(axis).collect()
 }
 
-/// Whether nothing measures where the actuator is.
+/// Whether the position of the actuator is not measured.
 #[must_use]
 pub const fn commands_only(link: &RealLink) -> bool {
     matches!(link.actuator.dialect, Dialect::Grbl)
@@ -244,7 +244,7 @@ fn nobody(name: &str) -> Identity {
     }
 }
 
-/// The plan may state the serial number of the device.
+/// Compares the serial number of the device with that of the plan, if the plan states one.
 fn pinned(link: &DeviceLink, identity: &DeviceIdentity) -> Result<(), DeviceFault> {
     match &link.serial_number {
         Some(wanted) if *wanted != identity.serial => Err(DeviceFault::Unfit(format!(

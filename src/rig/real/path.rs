@@ -10,8 +10,8 @@ use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{EachReading, Reading, Rig as _, RigFault, named_axis};
 
 impl RealRig {
-    /// Follows `paths` and reads at up to `samples` equal times, the last at their end. A time that has passed while a reading
-    /// was on the line is left out.
+    /// Follows `paths` and reads at up to `samples` equally spaced times, the last at their end. A time that passed during an earlier
+    /// reading is omitted.
     pub(super) fn follow(
         &mut self,
         paths: &[Path],
@@ -116,8 +116,8 @@ impl RealRig {
         Ok(self.clock.now() + left)
     }
 
-    /// Whether every axis follows its path: an axis that is farther behind than all its travel on this path and the one
-    /// before does not follow. The effect of a lag on the test is checked by the limits of tracking.
+    /// Whether every axis follows its path. An axis does not follow if it lags by more than its whole travel on this path and the
+    /// previous one. The tracking limits check the effect of a lag on the test.
     fn keeps_up(&mut self, paths: &[Path], reading: &Reading) -> Result<(), RigFault> {
         let count = self.axes.len();
         for (place, (axis, path)) in self.axes.iter_mut().zip(paths).enumerate() {

@@ -10,23 +10,23 @@ use crate::rig::controllers::{DeviceFault, Flags, Force, Sample};
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{Reading, RigFault, safety};
 
-/// How often an invalid reading is requested again.
+/// Number of times an invalid reading is requested again.
 pub(super) const REREADS: u32 = 3;
 
-/// One usable reading, in the plan's sign.
+/// One usable reading, in the polarity of the plan.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Point {
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub(super) time: f64,
-    /// One an axis, m.
+    /// One an axis \[m\].
     pub(super) displacement: Vec<f64>,
-    /// One an axis, N.
+    /// One an axis \[N\].
     pub(super) force: Vec<f64>,
     /// Whether the actuator reports that it still moves.
     pub(super) moving: Option<bool>,
     /// A device reports that its reading has not settled.
     pub(super) unsettled: bool,
-    /// Also of replies that were no reading.
+    /// Includes replies that were not valid readings.
     pub(super) raw: Vec<Vec<u8>>,
 }
 
@@ -95,7 +95,7 @@ impl RealRig {
         }
     }
 
-    /// As many readings as the plan wants, up to the first that shows that the rig has not settled.
+    /// Up to the number of readings that the plan requests; ends at the first that shows an unsettled rig.
     fn readings_at(
         &mut self,
         targets: Option<&[f64]>,
@@ -115,7 +115,7 @@ impl RealRig {
         Ok((points, None))
     }
 
-    /// The median of each axis, at the time of the last of them, with all their bytes.
+    /// The median of each axis, at the time of the last reading, with the bytes of all readings.
     fn reading_of(&self, mut points: Vec<Point>, began: f64) -> Reading {
         if points.len() == 1
             && let Some(Point {
@@ -169,19 +169,19 @@ impl RealRig {
         })
     }
 
-    /// s between two polls.
+    /// Time between two polls \[s\].
     pub(super) fn period(&self) -> f64 {
         (1.0 / self.link.readings.rate).min(self.link.watchdog / 4.0)
     }
 
-    /// The devices are asked again after whatever else was done.
+    /// Polls the devices again after other work.
     fn come_back(&mut self) -> Result<(), RigFault> {
         let now = self.clock.now();
         let away = now - std::mem::replace(&mut self.heard, now);
         self.check_line_gap(away)
     }
 
-    /// The devices have answered, or were polled repeatedly: the longest time without a look at a line is checked.
+    /// The devices have answered, or were polled repeatedly: the longest gap between polls of a line is checked.
     pub(super) fn look_up(&mut self) -> Result<(), RigFault> {
         self.heard = self.clock.now();
         safety::beat();
@@ -251,7 +251,7 @@ impl RealRig {
             let force = newtons(&self.axes[place].calibration, original)
                 .ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
             let flags = either(moved_axis.flags, weighed_axis.flags);
-            // One clock for all axes: the first judges it.
+            // All axes have one clock: it is checked with the first axis.
             let device_time = moved.time.filter(|_| place == 0);
             let said = RawSample {
                 displacement,
@@ -322,7 +322,7 @@ impl RealRig {
     }
 }
 
-/// N, in the cell's sign.
+/// \[N\], in the polarity of the cell.
 pub(super) fn newtons(calibration: &Calibration, force: Force) -> Option<f64> {
     match force {
         Force::Newtons(force) => Some(force),
@@ -336,15 +336,15 @@ pub(super) fn newtons(calibration: &Calibration, force: Force) -> Option<f64> {
     }
 }
 
-/// Why an answer is no reading.
+/// Why an answer is not a valid reading.
 enum Unusable {
     AskAgain(RigFault),
-    /// Asked again once the rig has moved; before that its readings cannot be trusted.
+    /// Requested again if the rig has moved; before the first move its readings cannot be trusted.
     Impossible(RigFault),
     Fault(RigFault),
 }
 
-/// A reading that a sound rig never gives at rest. Nothing is sent to it.
+/// The fault for a reading that a rig without faults never gives at rest. Nothing is sent to the rig.
 fn before_the_first_move(fault: RigFault) -> RigFault {
     match fault {
         RigFault::Device(reason) => RigFault::Device(format!(
@@ -368,7 +368,7 @@ const fn either(one: Flags, other: Flags) -> Flags {
     }
 }
 
-/// The median, which a single spike does not move; of an even count the mean of the middle two.
+/// The median, which a single spike does not change; for an even count the mean of the middle two.
 #[must_use]
 pub fn representative(mut values: Vec<f64>) -> f64 {
     if !on(Guarding::Median) {

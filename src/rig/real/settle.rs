@@ -1,5 +1,5 @@
-//! When a real rig counts as settled. In: readings with their times, after the motion. Out: whether they have met the
-//! plan's criterion for the dwell. It reads no clock and no rig.
+//! The settling criterion of a real rig. In: readings with their times, after the motion. Out: whether they have met the plan's criterion
+//! for the dwell. It reads no clock and no rig.
 
 use std::collections::VecDeque;
 
@@ -10,9 +10,9 @@ use crate::plan::Settle;
 #[derive(Clone, Debug)]
 pub(super) struct Settling {
     settle: Settle,
-    /// m
+    /// \[m\]
     target: f64,
-    /// s and N
+    /// \[s\] and \[N\]
     window: VecDeque<(f64, f64)>,
 }
 
@@ -33,12 +33,12 @@ impl Settling {
         }
     }
 
-    /// Whether `displacement` (m) is in position. A zero band asks for nothing.
+    /// Whether `displacement` \[m\] is in position. A zero band requires nothing.
     pub(super) fn in_position(&self, displacement: f64) -> bool {
         self.settle.band == 0.0 || (displacement - self.target).abs() <= self.settle.band
     }
 
-    /// When the dwell began, s, and the median force of it, N; None before any reading of it.
+    /// Start of the dwell \[s\] and its median force \[N\]; None before its first reading.
     pub(super) fn rested(&self) -> Option<(f64, f64)> {
         let began = self.window.front()?.0;
         Some((

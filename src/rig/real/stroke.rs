@@ -90,8 +90,8 @@ impl RealRig {
         }
     }
 
-    /// Waits at the end of a stroke until it rests there, so that the next one sets off from rest. How the force settles
-    /// is of no matter to a stroke.
+    /// Waits at the end of a stroke until the rig is at rest there, so that the next one begins from rest. The settling of the force is
+    /// not relevant for a stroke.
     fn come_to_rest(&mut self, targets: &[f64], arrival: f64) -> Result<(), RigFault> {
         let settling = Settling::of(self.settle, targets);
         let deadline = arrival + self.settle.timeout;

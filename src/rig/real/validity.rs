@@ -8,40 +8,40 @@ use crate::rig::safety::failpoint::{Guarding, on};
 /// Nearness to an end of the range at which a reading is saturated, as a fraction of that end.
 const SATURATION: f64 = 1e-3;
 
-/// Resolutions of displacement over which a force that does not change is frozen.
+/// Displacement, in resolutions, over which a constant force counts as frozen.
 const FROZEN_OVER: f64 = 5.0;
 
-/// One answer of the rig, in its own sign.
+/// One answer of the rig, in the polarity of the rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RawSample {
-    /// m
+    /// \[m\]
     pub(super) displacement: f64,
-    /// N
+    /// \[N\]
     pub(super) force: f64,
-    /// As the converter gave it.
+    /// As received from the converter.
     pub(super) original: Force,
     pub(super) flags: Flags,
-    /// The device's own clock, s.
+    /// The device's own clock \[s\].
     pub(super) device_time: Option<f64>,
 }
 
 /// Why a reading may not be used.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Invalid {
-    /// The next may be good.
+    /// The next reading may be valid.
     AskAgain(String),
-    /// A sound rig never gives this at rest. After a motion, the next reading may be valid.
+    /// A rig without faults never gives this at rest. After a motion, the next reading may be valid.
     Impossible(String),
     /// The rig holds.
     Hold(String),
     /// As `Hold`: the force is at or beyond an end of its range.
     Saturated(String),
-    /// The rig holds, and its position is no longer known.
+    /// The rig holds, and its position is unknown.
     Untrusted(String),
 }
 
 impl Invalid {
-    /// The same, with the axis that it befell.
+    /// The same, with its axis.
     fn named(self, axis: Option<usize>) -> Self {
         let Some(axis) = axis else { return self };
         let named = |reason| format!("axis {axis}: {reason}");
@@ -58,20 +58,19 @@ impl Invalid {
 /// The history against which a reading is validated.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ReadingValidator {
-    /// Number of the axis it judges, from 1, where the rig has several.
+    /// Number of the axis, from 1, if the rig has several.
     axis: Option<usize>,
     same: Option<Same>,
-    /// The device's own clock, s.
+    /// The device's own clock \[s\].
     device_time: Option<f64>,
 }
 
-/// Readings in a row that gave the very same force.
+/// Consecutive readings with exactly the same force.
 #[derive(Clone, Copy, Debug)]
 struct Same {
-    /// N
+    /// \[N\]
     force: f64,
-    /// Number of them at a different position from the one before: an actuator at rest at its target is no sign of a frozen
-    /// sensor.
+    /// Number of them at a different position from the previous one: an actuator at rest at its target does not indicate a frozen sensor.
     places: u32,
     /// The last, lowest and highest of these positions \[m\].
     last: f64,
@@ -102,7 +101,7 @@ impl ReadingValidator {
             .map_err(|invalid| invalid.named(self.axis))
     }
 
-    /// A clock that goes back belongs to a device that restarted.
+    /// A clock that runs backwards indicates a device that restarted.
     fn same_device(&mut self, said: &RawSample) -> Result<(), Invalid> {
         let before = self.device_time;
         self.device_time = said.device_time.or(before);
@@ -116,7 +115,7 @@ impl ReadingValidator {
         }
     }
 
-    /// The force stays the very same while the specimen is bent.
+    /// The force stays exactly the same while the specimen is displaced.
     fn frozen(&mut self, said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
         let x = said.displacement;
         let same = match self.same {
@@ -194,8 +193,7 @@ fn number(said: &RawSample) -> Result<(), Invalid> {
     )))
 }
 
-/// At an end of the range of converter or cell, the true force may be anywhere beyond. A force that is not finite is not
-/// checked here.
+/// At an end of the range of converter or cell, the true force may be anywhere beyond it. A force that is not finite is not checked here.
 fn saturation(said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
     if !on(Guarding::Saturation) {
         return Ok(());
@@ -224,7 +222,7 @@ fn saturation(said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
         range.low + SATURATION * range.low.abs(),
         range.high - SATURATION * range.high.abs(),
     );
-    // An end that is not given is infinite and the margin makes it NaN, so nothing is compared with it.
+    // An end that is not given is infinite; the margin then makes it NaN, and every comparison is false.
     if said.force <= low || said.force >= high {
         return hold(format!(
             "{} N of {} .. {} N",
@@ -394,14 +392,14 @@ mod tests {
             only_caught_by(Guarding::Frozen, RULES, &stuck),
             Invalid::Hold(_)
         ));
-        // If displacement and force are read one after the other, the first reading after a move may combine the force at
-        // the end with a displacement during the motion: resting there is not freezing.
+        // If displacement and force are read one after the other, the first reading after a move may be mixed. It may combine the force
+        // at the end with a displacement during the motion. A constant force at rest afterwards does not indicate a frozen sensor.
         let mut validator = ReadingValidator::default();
         validator.validate(&at(1e-5, 5.0), &RULES).unwrap();
         for _ in 0..50 {
             validator.validate(&at(3e-5, 5.0), &RULES).unwrap();
         }
-        // At rest, or with a force that moves, nothing is frozen.
+        // At rest, or with a changing force, no sensor is frozen.
         let mut validator = ReadingValidator::default();
         for i in 0..50 {
             validator

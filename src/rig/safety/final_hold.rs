@@ -4,14 +4,14 @@
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// Where a run that ended early left its rig.
+/// The state of the rig after a run that ended early.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FinalHold {
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub time: f64,
     /// The reason why the hold is not confirmed. None: the rig was seen at rest after the command.
     pub unconfirmed: Option<String>,
-    /// Displacement (m) and force (N) of every axis, read then; None: they could not be read.
+    /// Displacement \[m\] and force \[N\] of every axis, read then; None: they could not be read.
     pub found: Option<(Vec<f64>, Vec<f64>)>,
     /// The bytes of that reading.
     pub raw: Vec<Vec<u8>>,

@@ -7,17 +7,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[derive(Clone, Debug, Default)]
 pub struct Live(Arc<Mutex<Option<Feedback>>>);
 
-/// Displacement (m) and force (N) of every axis.
+/// Displacement \[m\] and force \[N\] of every axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feedback {
-    /// How many readings came before it.
+    /// Number of readings before it.
     pub number: u64,
     pub displacement: Vec<f64>,
     pub force: Vec<f64>,
 }
 
 impl Live {
-    /// A newer reading.
+    /// Stores a newer reading.
     pub fn show(&self, displacement: &[f64], force: &[f64]) {
         let mut feedback = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let number = feedback.as_ref().map_or(0, |feedback| feedback.number + 1);
@@ -28,7 +28,7 @@ impl Live {
         });
     }
 
-    /// The newest.
+    /// The newest reading.
     #[must_use]
     pub fn newest(&self) -> Option<Feedback> {
         self.0

@@ -1,7 +1,6 @@
-//! The last resort: the rig receives a hold command whatever happens to the program. In: lines that
-//! can still send, and a heartbeat of the driving thread. Out: hold commands, after a panic or when
-//! the heartbeat stops. It waits for no reply and knows no protocol. A killed program sends
-//! nothing: the rig's own watchdog and the wired stop are for that.
+//! The last safety measure of the program: the rig receives a hold command after any failure of the program. In: lines that can still
+//! send, and a heartbeat of the driving thread. Out: hold commands, after a panic or when the heartbeat stops. It waits for no reply and
+//! knows no protocol. A killed program sends nothing: the rig's own watchdog and the wired stop protect against this.
 
 pub(crate) mod final_hold;
 pub(crate) mod live;
@@ -21,7 +20,7 @@ use super::transport::{Clock as _, Emergency, MonotonicClock};
 /// Lines, each with the bytes that stop its device.
 pub type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
 
-/// A line that is armed.
+/// An armed line.
 struct Line {
     /// Number of the owner that armed it.
     owner: u64,
@@ -29,13 +28,13 @@ struct Line {
     bytes: Vec<u8>,
 }
 
-/// All that is armed.
+/// All armed lines.
 static LINES: Mutex<Vec<Line>> = Mutex::new(Vec::new());
 static NEXT: AtomicU64 = AtomicU64::new(0);
 static BEATS: AtomicU64 = AtomicU64::new(0);
 static TRIPPED: AtomicBool = AtomicBool::new(false);
 
-/// How often the watch looks, and a panic tries for the lines, s.
+/// Time between two checks of the watchdog thread, and between two attempts of a panic to lock the lines.
 const LOOK: Duration = Duration::from_millis(50);
 const TRIES: u32 = 20;
 
@@ -46,7 +45,7 @@ pub struct Armed {
     watch: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
-/// Arms lines: from now on a panic in any thread sends their bytes. Lines without bytes are left out.
+/// Arms lines: from now on a panic in any thread sends their bytes. Lines without bytes are omitted.
 pub fn arm(lines: Lines) -> Armed {
     hook();
     let number = NEXT.fetch_add(1, Ordering::SeqCst);
@@ -66,7 +65,7 @@ pub fn arm(lines: Lines) -> Armed {
 }
 
 impl Armed {
-    /// Also sends the bytes, once, when no [`beat`] came for `watchdog` seconds.
+    /// Also sends the bytes, once, if there was no [`beat`] for `watchdog` seconds.
     pub fn watched(mut self, watchdog: f64) -> Self {
         let (stop, stopped) = channel();
         let guarded = on(Guarding::HostWatchdog);
@@ -129,7 +128,7 @@ fn take_lines() -> Option<MutexGuard<'static, Vec<Line>>> {
     None
 }
 
-/// Before anything else a panic holds the rig.
+/// Installs a panic hook that holds the rig first.
 fn hook() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -147,7 +146,7 @@ fn hook() {
 struct Pulse {
     watchdog: f64,
     beats: u64,
-    /// s
+    /// \[s\]
     last: f64,
     told: bool,
 }

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const NOTHING: u8 = 0;
 const STOP_AFTER_STEP: u8 = 1;
 const HOLD_NOW: u8 = 2;
-/// A request to hold that has been seen: the hold command itself must not be interrupted by it.
+/// A request to hold that has been acknowledged: it must not interrupt the hold command itself.
 const ACKNOWLEDGED: u8 = 3;
 
 /// A stop request that all clones share.
@@ -23,7 +23,7 @@ pub struct StopRequest {
     client: Client,
 }
 
-/// Whether the client that asked for the present move is disconnected. None: no client asked for it.
+/// Whether the client that requested the present move is disconnected. None: no client requested it.
 #[derive(Clone, Default)]
 struct Client(Arc<Mutex<Option<IsGone>>>);
 
@@ -76,7 +76,7 @@ impl StopRequest {
 
     /// A line was not looked at for this long \[s\]: no code sent to it or waited for its answer.
     pub fn note_line_gap(&self, seconds: f64) {
-        // For numbers that are not negative, the greater number has the greater bits.
+        // For numbers that are not negative, the larger number has the larger bit pattern.
         self.absence
             .fetch_max(seconds.max(0.0).to_bits(), Ordering::SeqCst);
     }
@@ -102,8 +102,7 @@ impl StopRequest {
         self.what.store(HOLD_NOW, Ordering::SeqCst);
     }
 
-    /// Carries out a client's move. The rig is to hold immediately if the client disconnects meanwhile; the run does not
-    /// end with that.
+    /// Executes a client's move. The rig must hold immediately if the client disconnects meanwhile; this does not end the run.
     pub fn for_client<T>(
         &self,
         is_gone: impl Fn() -> bool + Send + 'static,

@@ -9,43 +9,43 @@ use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity, DeviceMove, F
 use crate::rig::transport::Clock as _;
 use crate::rig::{LastMove, LineStatistics};
 
-/// What becomes of the n-th sample, counted from 0, on its way out.
+/// Alteration of the n-th sample, counted from 0, before it is returned.
 pub type Alteration = Box<dyn FnMut(u64, &mut Sample) -> Result<(), DeviceFault> + Send>;
 
-/// What the device is and has been through; a test reads and sets it at any time.
+/// The state and the history of the device; a test can read and set it at any time.
 pub struct Inside {
     pub identity: DeviceIdentity,
-    /// m
+    /// \[m\]
     pub position: f64,
     pub target: f64,
-    /// m/s
+    /// \[m/s\]
     pub speed: f64,
-    /// N/m
+    /// \[N/m\]
     pub stiffness: f64,
-    /// Force as raw counts of so many N each.
+    /// Force as raw counts: scale factor \[N per count\].
     pub newtons_per_count: Option<f64>,
-    /// Where it stops on its way to a target, as a fraction of the target: 1 arrives.
+    /// Fraction of a target that the device reaches: 1 arrives.
     pub reaches: f64,
-    /// Added to a target on its way into the bytes, m.
+    /// Added to a target when it is encoded \[m\].
     pub misspoken: f64,
-    /// Whether it says that it moves.
+    /// Whether the device reports that it moves.
     pub tells_motion: bool,
-    /// How long every answer takes, s.
+    /// Duration of every reply \[s\].
     pub answer_time: f64,
     pub alter: Option<Alteration>,
     pub samples: u64,
-    /// Targets it was sent to, m.
+    /// Targets of the moves that were started \[m\].
     pub started: Vec<f64>,
     pub holds: u32,
-    /// It does not hear that it is to hold.
+    /// The device ignores the hold command.
     pub deaf: bool,
     pub narrowed: Option<Limits>,
     pub last_move: Option<LastMove>,
-    /// s
+    /// \[s\]
     time: f64,
 }
 
-/// Clones share all.
+/// All clones share one state.
 #[derive(Clone)]
 pub struct FakeDevice {
     clock: VirtualClock,
@@ -53,7 +53,7 @@ pub struct FakeDevice {
 }
 
 impl FakeDevice {
-    /// At zero on a spring of 1e5 N/m, and well.
+    /// At zero on a spring of 1e5 N/m, without faults.
     #[must_use]
     pub fn new(clock: &VirtualClock) -> Self {
         let identity = DeviceIdentity {
@@ -87,7 +87,7 @@ impl FakeDevice {
         }
     }
 
-    /// What it is by now.
+    /// The present state of the device.
     pub fn inside(&self) -> MutexGuard<'_, Inside> {
         let mut inside = self.inside.lock().unwrap();
         let way = inside.speed * (self.clock.now() - inside.time);
@@ -101,7 +101,7 @@ impl FakeDevice {
         inside
     }
 
-    /// What becomes of its samples from now on, counted from 0.
+    /// Alters the samples from now on, counted from 0.
     pub fn alter(
         &self,
         alter: impl FnMut(u64, &mut Sample) -> Result<(), DeviceFault> + Send + 'static,
@@ -163,7 +163,7 @@ impl Device for FakeDevice {
         };
         let number = inside.samples;
         inside.samples += 1;
-        // The script may look inside.
+        // The script may read the state.
         let Some(mut alter) = inside.alter.take() else {
             return Ok(sample);
         };

@@ -1,5 +1,5 @@
-//! Test support for real rigs: a clock that moves only while someone waits, and a scripted port.
-//! In: a script. Out: bytes at their times. No test of a rig sleeps.
+//! Test support for real rigs: a clock that advances only during a wait, and a scripted port. In: a script. Out: bytes at their times. No
+//! test of a rig sleeps.
 
 mod device;
 mod transcript;
@@ -14,12 +14,12 @@ use super::transport::{Clock, Emergency, Port};
 pub use device::FakeDevice;
 pub use transcript::Transcript;
 
-/// Time that all clones share, s.
+/// Time that all clones share \[s\].
 #[derive(Clone, Debug, Default)]
 pub struct VirtualClock(Arc<Mutex<f64>>);
 
 impl VirtualClock {
-    /// Lets time pass, s.
+    /// Advances the time \[s\].
     pub fn advance(&self, seconds: f64) {
         *self.0.lock().unwrap() += seconds;
     }
@@ -37,16 +37,16 @@ impl Clock for VirtualClock {
     }
 }
 
-/// What a scripted port does next.
+/// The next action of a scripted port.
 #[derive(Clone, Debug)]
 pub enum Say {
-    /// These bytes come in one piece, this many seconds after the piece before (or after they are waited for).
+    /// These bytes arrive in one piece, this many seconds after the previous piece (or after the start of the wait).
     After(f64, Vec<u8>),
-    /// The other side hangs up.
+    /// The other side disconnects.
     HangUp,
 }
 
-/// A port that says what it is told to say, and remembers what it was sent. Clones share all.
+/// A port that sends scripted bytes and records the bytes that it receives. All clones share one state.
 #[derive(Clone, Debug)]
 pub struct ScriptedPort {
     clock: VirtualClock,
@@ -55,9 +55,9 @@ pub struct ScriptedPort {
 
 #[derive(Debug, Default)]
 struct Said {
-    /// Bytes and the moment they come, s; None: hung up.
+    /// Bytes and their arrival times \[s\]; None: disconnected.
     coming: VecDeque<(f64, Option<Vec<u8>>)>,
-    /// What to say to the n-th frame.
+    /// Replies to the frames, in their order.
     replies: VecDeque<Vec<Say>>,
     sent: Vec<(f64, Vec<u8>)>,
 }
@@ -71,7 +71,7 @@ impl ScriptedPort {
         }
     }
 
-    /// What is said from now on without being asked.
+    /// Unsolicited bytes from now on.
     pub fn say(&self, script: &[Say]) {
         let mut shared = self.shared.lock().unwrap();
         let mut at = shared
@@ -90,7 +90,7 @@ impl ScriptedPort {
         }
     }
 
-    /// What is said to the next frame that has no reply yet.
+    /// The reply to the next frame that has no reply yet.
     pub fn reply(&self, script: &[Say]) {
         self.shared
             .lock()
@@ -99,7 +99,7 @@ impl ScriptedPort {
             .push_back(script.to_vec());
     }
 
-    /// What was sent, with its moments, s.
+    /// The frames that were sent, with their times \[s\].
     #[must_use]
     pub fn sent(&self) -> Vec<(f64, Vec<u8>)> {
         self.shared.lock().unwrap().sent.clone()

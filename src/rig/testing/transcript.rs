@@ -2,12 +2,12 @@
 
 use super::{Say, ScriptedPort};
 
-/// Frames as they are to be sent, each with the line that answers it.
+/// The expected frames, each with the line that answers it.
 pub struct Transcript {
     pub port: ScriptedPort,
-    /// From a frame to its answer, s.
+    /// Time from a frame to its answer \[s\].
     delay: f64,
-    /// How a frame is written here.
+    /// Formats a frame for the transcript.
     written: fn(&[u8]) -> String,
     expected: Vec<String>,
 }
@@ -34,7 +34,7 @@ impl Transcript {
         self
     }
 
-    /// All that was expected was sent, and nothing else.
+    /// Checks that all expected frames were sent, and no others.
     pub fn done(&self) {
         let sent: Vec<String> = self
             .port

@@ -7,8 +7,7 @@ use rustix::time::{ClockId, clock_gettime};
 
 use super::Clock;
 
-/// Seconds since it was made, by the clock that continues while the machine is suspended: a rig does not wait for the
-/// machine.
+/// Seconds since its creation, by the clock that continues while the machine is suspended: a rig does not wait for the machine.
 #[derive(Clone, Copy, Debug)]
 pub struct MonotonicClock(Duration);
 

@@ -10,7 +10,7 @@ use rustix::io::Errno;
 
 use super::Emergency;
 
-/// How long an emergency may take to be sent, s.
+/// Longest time to send an emergency command.
 const EMERGENCY_TIMEOUT: Duration = Duration::from_millis(200);
 
 /// Sends all the bytes to a descriptor that does not block.
@@ -78,7 +78,7 @@ fn hang_up(errno: Errno) -> io::Error {
     }
 }
 
-/// A descriptor of its own on the same line.
+/// A separate descriptor of the same line.
 pub(super) struct Sender(OwnedFd);
 
 impl Sender {
@@ -89,7 +89,7 @@ impl Sender {
 
 impl Emergency for Sender {
     fn send(&mut self, bytes: &[u8]) {
-        // There is no receiver left for an error.
+        // An error cannot be reported to any receiver.
         write(self.0.as_fd(), bytes, EMERGENCY_TIMEOUT).ok();
     }
 }

@@ -22,7 +22,7 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 /// Opens the port of a plan. Nothing is sent.
 ///
 /// # Errors
-/// It is not there, is no line, or is in use.
+/// The port does not exist, is not a line, or is in use.
 pub fn open(port: &PortPlan) -> io::Result<Box<dyn Port>> {
     Ok(match port {
         PortPlan::Serial { path, baud } => Box::new(SerialPort::open(path, *baud)?),
@@ -57,7 +57,7 @@ pub trait Port: Send {
     fn emergency(&self) -> io::Result<Box<dyn Emergency>>;
 }
 
-/// Sends without waiting for anybody.
+/// Sends without waiting for an answer.
 pub trait Emergency: Send {
     /// Sends the bytes, within a fraction of a second or not at all.
     fn send(&mut self, bytes: &[u8]);
@@ -65,7 +65,7 @@ pub trait Emergency: Send {
 
 /// Monotonic time, and waiting.
 pub trait Clock: Send {
-    /// s since some fixed moment.
+    /// Seconds since a fixed moment.
     fn now(&self) -> f64;
 
     fn sleep(&mut self, seconds: f64);

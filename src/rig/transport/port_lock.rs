@@ -1,6 +1,6 @@
-//! Only one psd on this machine uses an address. In: the address. Out: the lock on it, for its lifetime, or that another
-//! program has it. The lock is a name in the kernel: it disappears with the program, however that ends, and leaves no file
-//! behind. Other machines on the network are not known here.
+//! An address is used by only one psd on this machine. In: the address. Out: the lock on it, for its lifetime, or that another program
+//! has it. The lock is a name in the kernel. It disappears with the program, however that ends, and no file remains. Other machines on
+//! the network are not known here.
 
 use std::io;
 use std::net::SocketAddr;
@@ -9,14 +9,14 @@ use std::os::{linux::net::SocketAddrExt as _, unix::net};
 
 use crate::rig::safety::failpoint::{Guarding, on};
 
-/// The right to one address.
+/// The lock on one address.
 #[derive(Debug)]
 pub(super) struct PortLock {
     #[cfg(target_os = "linux")]
     _name: net::UnixListener,
 }
 
-/// Takes an address; nothing is sent to it.
+/// Locks an address; nothing is sent to it.
 ///
 /// # Errors
 /// Another program has it.
@@ -44,7 +44,7 @@ pub(super) fn lock(place: SocketAddr) -> io::Result<Option<PortLock>> {
     })
 }
 
-/// Other systems have no such names.
+/// Other operating systems have no such names.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn lock(_: SocketAddr) -> io::Result<Option<PortLock>> {
     Ok(on(Guarding::Lock).then_some(PortLock {}))

@@ -26,7 +26,7 @@ impl SerialPort {
     /// Opens `path` at `baud` \[bit/s\]. A path that is not a serial line is not opened.
     ///
     /// # Errors
-    /// It is no serial line, is in use, or cannot be set up.
+    /// It is not a serial line, is in use, or cannot be set up.
     pub fn open(path: &str, baud: u32) -> io::Result<Self> {
         let kind = std::fs::metadata(path)
             .map_err(|error| readable_error(&error))?
@@ -62,7 +62,7 @@ impl SerialPort {
     }
 }
 
-/// The error in words that help a reader who may have only a cable in hand.
+/// An error message for a reader who may have only a cable at hand.
 fn readable_error(error: &io::Error) -> io::Error {
     use rustix::io::Errno;
     let busy = [Errno::BUSY, Errno::AGAIN]
@@ -143,7 +143,7 @@ mod tests {
         assert_eq!(port.read(&mut buffer, LONG).unwrap(), 5);
         assert_eq!(&buffer[..5], b"\x00\xff\r\n\x03", "raw");
         master.write_all(b"late").unwrap();
-        // The flush must find the bytes there.
+        // The flush must find the bytes in the buffer.
         while rustix::io::ioctl_fionread(&port.descriptor).unwrap() < 4 {
             std::thread::yield_now();
         }
@@ -154,7 +154,7 @@ mod tests {
         );
     }
 
-    /// The last bytes of the other side are lost in the kernel if it closes this kind of pair; the line is lost for good.
+    /// If the other side of this kind of pair closes, the kernel loses its last bytes, and the line is lost permanently.
     #[test]
     fn a_hangup_is_a_broken_pipe_for_ever() {
         let (master, path) = pair();

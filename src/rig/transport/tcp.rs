@@ -1,5 +1,5 @@
-//! A line over the network. In: `host:port`. Out: a [`Port`]. The other side is not authenticated: a rig belongs on
-//! loopback, a tunnel or its own wire. Only one program of this machine may use it. It knows no protocol.
+//! A line over the network. In: `host:port`. Out: a [`Port`]. The other side is not authenticated: a rig must use loopback, a tunnel or a
+//! separate cable. Only one program of this machine may use it. It knows no protocol.
 
 use std::io::{self, ErrorKind};
 use std::net::{TcpStream, ToSocketAddrs as _};
@@ -10,7 +10,7 @@ use super::descriptor::{self, Sender};
 use super::port_lock::{PortLock, lock};
 use super::{Emergency, Port};
 
-/// Bytes thrown away by one discard, so that a flood does not keep it busy for ever.
+/// Largest number of bytes that one discard removes, so that a continuous flow does not block it permanently.
 const MOST_DISCARDED: usize = 1 << 20;
 
 /// An open connection.
@@ -21,10 +21,10 @@ pub struct TcpPort {
 }
 
 impl TcpPort {
-    /// Connects to `address`; each of its addresses is tried for `timeout`, where no other program of this machine has it.
+    /// Connects to `address`; each of its addresses is tried for `timeout`, unless another program of this machine uses it.
     ///
     /// # Errors
-    /// There is no answer, or another program has it.
+    /// There is no answer, or another program uses the address.
     pub fn connect(address: &str, timeout: Duration) -> io::Result<Self> {
         let told = |error: &io::Error| {
             io::Error::new(

@@ -1,5 +1,5 @@
-//! The virtual actuator. In: reference motion, rig time \[s\]. Out: position and velocity of the piston. In closed form, so
-//! that a settling of minutes costs no more than none. It knows no specimen and no load cell.
+//! The virtual actuator. In: reference motion, rig time \[s\]. Out: position and velocity of the piston. In closed form, so that a long
+//! settling time costs no more than a short one. It knows no specimen and no load cell.
 
 use crate::physics::relaxation::maxwell::Motion;
 use crate::physics::tracking::trajectory::Rate;
@@ -7,15 +7,15 @@ use crate::physics::tracking::trajectory::Rate;
 /// A servo whose piston follows its reference with a first-order lag: ẋ = (reference − x) / lag.
 #[derive(Clone, Debug)]
 pub(crate) struct Actuator {
-    /// Time constant, s; 0: the piston is where the reference is.
+    /// Time constant \[s\]; 0: the piston is at the reference.
     lag: f64,
     /// Fraction of each increment not reached.
     tracking: f64,
-    /// m
+    /// \[m\]
     reference: f64,
-    /// reference − position, m.
+    /// reference − position \[m\].
     lagging: f64,
-    /// Velocity of the reference, m/s; 0 at rest.
+    /// Velocity of the reference \[m/s\]; 0 at rest.
     reference_velocity: f64,
 }
 
@@ -35,7 +35,7 @@ impl Actuator {
         self.reference - self.lagging
     }
 
-    /// Velocity of the piston, m/s.
+    /// Velocity of the piston \[m/s\].
     pub(crate) fn velocity(&self) -> f64 {
         if self.lag > 0.0 {
             self.lagging / self.lag
@@ -50,12 +50,12 @@ impl Actuator {
         target - self.tracking * (target - self.position())
     }
 
-    /// m, from which the reference moves on.
+    /// Present position of the reference \[m\].
     pub(crate) const fn reference(&self) -> f64 {
         self.reference
     }
 
-    /// How far the piston is behind its reference, m, by size.
+    /// Distance of the piston behind its reference \[m\], absolute value.
     pub(crate) const fn lagging(&self) -> f64 {
         self.lagging.abs()
     }
@@ -88,8 +88,8 @@ impl Actuator {
         Motion::rest(0.0)
     }
 
-    /// The reference runs to `to` in `seconds`, its velocity a parabola in time with these ends. With e = reference − x:
-    /// ė = q − e/lag, so e = `e_p` + (e₀ − `e_p0`)·exp(−t/lag) with `e_p` = lag·q − lag²·q' + lag³·q''.
+    /// The reference moves to `to` in `seconds`; its velocity is a parabola in time with these end values. With e = reference − x: ė = q
+    /// − e/lag, so e = `e_p` + (e₀ − `e_p0`)·exp(−t/lag) with `e_p` = lag·q − lag²·q' + lag³·q''.
     pub(crate) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) -> Motion {
         let mut travel = Motion {
             start: before,
@@ -99,7 +99,7 @@ impl Actuator {
         };
         if self.lag > 0.0 {
             let lag = self.lag;
-            // ẋ = e/lag, its first part a parabola again.
+            // ẋ = e/lag; its first part is also a parabola.
             let Rate {
                 velocity,
                 acceleration,
@@ -137,7 +137,7 @@ impl Actuator {
         travel
     }
 
-    /// Stays where it is.
+    /// Stays at its position.
     pub(crate) fn hold(&mut self) {
         self.reference = self.position();
         self.lagging = 0.0;

@@ -1,4 +1,4 @@
-//! The virtual rig of a frame: forces of the floors by the shears of its storeys, load cells, settling, and smooth paths of all floors
+//! The virtual rig of a frame: forces of the floors from the storey shears, load cells, settling, and smooth paths of all floors
 //! together.
 
 use super::tests::AT_ONCE;
@@ -90,7 +90,7 @@ fn lag_and_tracking_are_each_axes_own() {
         (reading.displacement[0] - 0.0009).abs() < 1e-15
             && (reading.displacement[1] + 0.0018).abs() < 1e-15
     );
-    // 0.2 s on the way: the slower axis lags by half as much.
+    // 0.2 s of motion: the slower axis lags by half as much.
     let reading = go(
         &mut rig(VirtualLink {
             lag: 0.02,
@@ -103,8 +103,8 @@ fn lag_and_tracking_are_each_axes_own() {
     assert!((reading.displacement[0] - 0.001 + 0.5 * behind).abs() < 1e-15);
 }
 
-/// A branch of 1 kN/m and 2 s in the upper storey feels the drift: 1 mm in 0.2 s; and strength that grows with the speed
-/// feels the velocity of the drift while a lagging floor still moves.
+/// A branch of 1 kN/m and 2 s in the upper storey responds to the storey drift: 1 mm in 0.2 s. Strength that increases with speed
+/// responds to the velocity of the storey drift while a lagging floor still moves.
 #[test]
 fn what_relaxes_or_gains_with_speed_is_felt_storey_by_storey() {
     let of = || Box::new(Behaviour::Elastic { stiffness: 2000.0 });
@@ -143,7 +143,7 @@ fn what_relaxes_or_gains_with_speed_is_felt_storey_by_storey() {
         1.0,
     );
     let reading = go(&mut rig, [0.001, 0.003]);
-    // Each floor moves at e/lag; the drift is 2 mm less what it lags, 0.3 s on the way.
+    // Each floor moves at e/lag; the storey drift is 2 mm minus its lag, after 0.3 s of motion.
     let lagging = |way: f64| way / 0.3 * 0.1 * (1.0 - f64::exp(-3.0));
     let (drift, velocity) = (0.002 - lagging(0.002), lagging(0.002) / 0.1);
     let shear = 2000.0 * drift * (1.0 + (velocity / 0.01).sqrt());
@@ -169,8 +169,9 @@ fn refuses_what_it_cannot_do() {
     assert!(rig.traverse(&[0.0, 0.1], 0.01, 4, &mut |_| Ok(())).is_err());
 }
 
-/// Storeys of 3 kN/m and 2 kN/m and, beside each, 1 kN/m that relaxes with 2 s: bent alike by 1 mm, the force of the lower floor
-/// stands from the first moment on, but each shear loses 0.5 N/s at first. 0.02 N/s of both come after 2 ln 50 s.
+/// Storeys of 3 kN/m and 2 kN/m, each in parallel with 1 kN/m that relaxes with 2 s. With the same drift of 1 mm in both, the force of
+/// the lower floor is constant from the start, but each shear decreases by 0.5 N/s at first. The rate of both together decreases to 0.02
+/// N/s after 2 ln 50 s.
 #[test]
 fn settles_when_every_storey_has_nearly_relaxed() {
     let relaxing = |stiffness| {
@@ -194,7 +195,7 @@ fn settles_when_every_storey_has_nearly_relaxed() {
     };
     let waited = |settle: Settle| {
         let mut rig = VirtualRig::of_frame(VirtualLink::default(), settle, &frame, 1.0);
-        // Fast, so that nothing relaxes on the way.
+        // Fast, so that nothing relaxes during the motion.
         rig.propose(&[0.001, 0.002], Some(1e3)).unwrap();
         rig.execute().map(|()| rig.time())
     };
@@ -261,8 +262,8 @@ fn readings(link: VirtualLink, samples: usize) -> Vec<crate::rig::Reading> {
     readings
 }
 
-/// Each storey resists its own drift and the velocity of it: k d + c ḋ + F_c sign ḋ, and a floor feels its storey less the
-/// one above.
+/// Each storey resists its drift and drift velocity: k d + c ḋ + F_c sign ḋ. The force of a floor is that of its storey minus that of the
+/// storey above.
 #[test]
 fn storeys_are_damped_at_the_velocity_of_their_drifts() {
     for reading in readings(VirtualLink::default(), 4) {
@@ -302,7 +303,7 @@ fn the_number_of_readings_is_of_no_account_to_a_lag() {
     }
 }
 
-/// At rest a damper gives nothing, and friction keeps the direction of the last motion.
+/// At rest the damper force is zero, and friction keeps the direction of the last motion.
 #[test]
 fn friction_stays_through_a_pause() {
     let mut rig = damped_rig(VirtualLink::default());

@@ -13,9 +13,9 @@ use crate::rig::{EachReading, Rig as _, RigFault};
 pub(crate) struct Course {
     path: Path,
     sign: f64,
-    /// At the beginning, m.
+    /// The undershoot at the beginning \[m\].
     missed: f64,
-    /// m/s
+    /// The change of the undershoot \[m/s\].
     drifts: f64,
 }
 
@@ -64,10 +64,10 @@ impl Course {
     }
 }
 
-/// The instants at which paths are read, from their beginning on: 0 and the ends of `samples` equal parts, s.
+/// The times at which paths are read, from their beginning \[s\]: 0 and the ends of `samples` equal parts.
 ///
 /// # Errors
-/// The paths are not of one length, or lead nowhere.
+/// The paths differ in duration, or contain no motion.
 pub(crate) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64>, RigFault> {
     let seconds = paths.first().map_or(0.0, |path| path.seconds);
     let numbers = |path: &Path| {
@@ -94,11 +94,11 @@ pub(crate) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64>, RigFa
 }
 
 impl VirtualRig {
-    /// Reads at `samples` equal times, of which the first may be done; the last at the end of the paths, where the references
-    /// are still moving.
+    /// Reads at `samples` equally spaced times, of which the first may be done. The last is at the end of the paths, where the references
+    /// still move.
     ///
     /// # Errors
-    /// The paths lead nowhere, or `each` refuses; the rig then holds.
+    /// The paths contain no motion, or `each` refuses; the rig then holds.
     pub(super) fn glide_along(
         &mut self,
         paths: &[Path],
@@ -173,7 +173,7 @@ mod tests {
         }
     }
 
-    /// ẋ = (path − x)/lag by the midpoint rule, against the closed form; and the number of readings is of no account.
+    /// ẋ = (path − x)/lag by the midpoint rule, compared with the closed form; the number of readings has no effect.
     #[test]
     fn a_lag_follows_the_path_exactly_whatever_the_number_of_readings() {
         let link = VirtualLink {
@@ -197,7 +197,7 @@ mod tests {
         );
     }
 
-    /// A tenth of the increment is the undershoot at the end, and the path has no step.
+    /// The undershoot at the end is a tenth of the increment, and the path has no step.
     #[test]
     fn what_is_missed_of_an_increment_comes_evenly() {
         let found = readings(

@@ -1,5 +1,5 @@
-//! The virtual load cell. In: its force and the rig time. Out: its reading, with zero drift, noise and resolution. Its
-//! generator is a named one (PCG-64-MCG), so a seed gives the same readings on every version.
+//! The virtual load cell. In: its force and the rig time. Out: its reading, with zero drift, noise and resolution. Its random generator
+//! is PCG-64-MCG, so a seed gives the same readings in every version.
 
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -7,11 +7,11 @@ use rand_pcg::Pcg64Mcg;
 
 #[derive(Clone, Debug)]
 pub(crate) struct LoadCell {
-    /// Standard deviation of one reading, N.
+    /// Standard deviation of one reading \[N\].
     noise: f64,
-    /// N
+    /// \[N\]
     resolution: f64,
-    /// N/s of rig time.
+    /// Zero drift in rig time \[N/s\].
     drift: f64,
     generator: Pcg64Mcg,
 }
@@ -26,7 +26,7 @@ impl LoadCell {
         }
     }
 
-    /// One reading at `time` (s of rig time) of `force` (N).
+    /// One reading of `force` \[N\] at the rig time `time` \[s\].
     pub(crate) fn read(&mut self, force: f64, time: f64) -> f64 {
         let deviation: f64 = if self.noise > 0.0 {
             StandardNormal.sample(&mut self.generator)
@@ -40,7 +40,7 @@ impl LoadCell {
     }
 }
 
-/// The nearest multiple of `quantum`; the value itself if the quantum is 0.
+/// The nearest multiple of the resolution `quantum`; the value itself if the resolution is 0.
 pub(crate) fn to_quantum(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 {
         (value / quantum).round() * quantum

@@ -30,18 +30,18 @@ pub struct VirtualRig {
     name: String,
     link: VirtualLink,
     settle: Settle,
-    /// +1 or −1, of every axis: how displacement and force at the rig count in the plan. The specimen is at the rig.
+    /// Polarity of every axis, +1 or −1, between rig and plan. The specimen has the polarity of the rig.
     sign: f64,
     axes: Vec<Axis>,
     springs: Springs,
-    /// s
+    /// \[s\]
     time: f64,
-    /// Where the axes were last bent to (m), and their restoring forces there (N).
+    /// The last positions of the axes \[m\], and their restoring forces there \[N\].
     bent: Vec<f64>,
     restoring_force: Vec<f64>,
-    /// Targets at the rig (m) and speed of the fastest axis (m/s).
+    /// Targets at the rig \[m\] and speed of the fastest axis \[m/s\].
     proposed: Option<(Vec<f64>, f64)>,
-    /// When it went on its last move.
+    /// Start and end of its last move.
     moved: Option<[f64; 2]>,
     /// The paths that the axes follow, or were stopped on.
     under_way: Vec<Course>,
@@ -54,18 +54,18 @@ struct Axis {
 
 /// The seed of one load cell: the plan's own for the first.
 const fn seed_of(seed: u64, axis: u64) -> u64 {
-    // The odd number nearest to 2⁶⁴ over the golden ratio: no two axes of any two near seeds meet.
+    // The odd number nearest to 2⁶⁴ over the golden ratio: two axes with similar seeds have different generator seeds.
     seed.wrapping_add(axis.wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
 impl VirtualRig {
-    /// A rig that bends `specimen`, or nothing, on one axis; `sign` is +1 or −1.
+    /// A rig with `specimen`, or without one, on one axis; `sign` is +1 or −1.
     #[must_use]
     pub fn new(link: VirtualLink, settle: Settle, specimen: Option<&Specimen>, sign: f64) -> Self {
         Self::of_springs(link, settle, Springs::of_specimen(specimen), sign)
     }
 
-    /// A rig with a floor of the frame an axis.
+    /// A rig with one axis for each floor of the frame.
     #[must_use]
     pub fn of_frame(link: VirtualLink, settle: Settle, frame: &Frame, sign: f64) -> Self {
         Self::of_springs(link, settle, Springs::of_frame(frame), sign)
@@ -128,7 +128,7 @@ impl VirtualRig {
         plan.specimen_on_the_rig()
     }
 
-    /// A number of axes that is not the rig's.
+    /// The fault for a number of axes that differs from that of the rig.
     fn other_order(&self, found: usize) -> RigFault {
         let own = match self.axes.len() {
             1 => "one degree of freedom".to_owned(),
@@ -137,7 +137,7 @@ impl VirtualRig {
         RigFault::Device(format!("this rig has {own}, not {found}"))
     }
 
-    /// Targets at the rig, m.
+    /// Targets at the rig \[m\].
     fn at_rig(&self, targets: &[f64]) -> Result<Vec<f64>, RigFault> {
         if targets.len() != self.axes.len() {
             return Err(self.other_order(targets.len()));
@@ -196,7 +196,7 @@ impl VirtualRig {
         self.follow(&travels);
     }
 
-    /// The readings of an even motion between two positions at the rig (m), of which some may be done.
+    /// The readings of a uniform motion between two positions at the rig \[m\], of which some may be done.
     fn stroke(
         &mut self,
         (from, aim): (f64, f64),
@@ -267,7 +267,7 @@ impl VirtualRig {
         }
     }
 
-    /// The remaining motion at an axis that misses its target by `miss` \[m\].
+    /// The remaining motion of an axis that misses its target by `miss` \[m\].
     fn unsettled(&self, axis: usize, miss: f64) -> Unsettled {
         let actuator = &self.axes[axis].actuator;
         let (stiffness, damping) = self.springs.rows(axis);
@@ -300,7 +300,7 @@ impl VirtualRig {
         })
     }
 
-    /// Waits until every axis has settled, and every storey's own force with it; false if one does not within the timeout.
+    /// Waits until every axis and the force of every storey have settled; false if one does not settle within the timeout.
     fn settle(&mut self, misses: &[f64]) -> bool {
         let waited = self.longest(misses, |axis, unsettled| {
             let relaxes = !self.springs.relaxing_at(axis).is_empty();
@@ -385,7 +385,7 @@ impl Rig for VirtualRig {
             .zip(&aims)
             .map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
         let travels: Vec<Motion> = went.collect();
-        // A first-order lag delays a motion by its time constant, and adds the square of it to the variance.
+        // A first-order lag delays a motion by its time constant, and adds its square to the variance.
         let lag = self.link.lag;
         self.moved = Some(even(
             self.time,
@@ -486,7 +486,8 @@ impl Rig for VirtualRig {
     }
 }
 
-/// Whether a stroke was cut off just where its next reading is due, a step (m) after the one before: that it is read again, moving.
+/// Whether a stroke was interrupted exactly when its next reading was due, one step \[m\] after the previous one: that reading is then
+/// repeated during the motion.
 fn done_already(to: f64, stands: f64, step: f64) -> bool {
     (to - stands).abs() < 1e-6 * step.abs()
 }

@@ -1,4 +1,4 @@
-//! When the virtual rig counts as settled. In: the plan's criterion and how far the piston lags. Out: seconds to wait.
+//! The settling time of the virtual rig. In: the plan's criterion and the lag of the piston. Out: the waiting time \[s\].
 
 use crate::physics::relaxation::maxwell::MaxwellBranch;
 use crate::physics::relaxation::relaxation_state::RelaxationState;
@@ -8,24 +8,24 @@ use crate::plan::Settle;
 /// The motion after the reference has arrived.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unsettled {
-    /// Size of reference − position, m, dying away with `lag`.
+    /// abs(reference − position) \[m\], which decays with `lag`.
     pub(crate) lagging: f64,
-    /// s
+    /// \[s\]
     pub(crate) lag: f64,
-    /// Size of target − reference, m: it stays.
+    /// abs(target − reference) \[m\], which is constant.
     pub(crate) miss: f64,
-    /// Stiffness (N/m) and viscous damping (N·s/m) that turn motion into a force rate.
+    /// Stiffness \[N/m\] and viscous damping \[N·s/m\], which convert motion into a force rate.
     pub(crate) stiffness: f64,
     pub(crate) damping: f64,
-    /// N/s
+    /// \[N/s\]
     pub(crate) drift: f64,
-    /// Restoring force (N) that grows with the speed, and how.
+    /// Restoring force \[N\] that increases with the speed, and its law.
     pub(crate) rate: Option<(f64, StrengthRate)>,
 }
 
 impl Unsettled {
-    /// |dF/dt| less the drift at a lag of `lagging` (m), N/s: with v = e/lag, K v + c v/lag and, of a force R that gains
-    /// (v/v₀)ⁿ, R n (v/v₀)ⁿ/lag.
+    /// abs(dF/dt) minus the zero drift at a lag of `lagging` \[m\], in \[N/s\]. With v = e/lag it is K v + c v/lag. A force R that
+    /// increases with (v/v₀)ⁿ adds R n (v/v₀)ⁿ/lag.
     fn force_rate(&self, lagging: f64) -> f64 {
         let velocity = lagging / self.lag;
         let steady = self.stiffness * velocity + self.damping * velocity / self.lag;
@@ -75,7 +75,7 @@ pub(crate) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
     (total <= settle.timeout).then_some(total)
 }
 
-/// The branches of several specimens that relax.
+/// The relaxing branches of several specimens.
 pub(crate) fn dying(relaxing: &[&RelaxationState]) -> Vec<MaxwellBranch> {
     relaxing
         .iter()
@@ -84,7 +84,7 @@ pub(crate) fn dying(relaxing: &[&RelaxationState]) -> Vec<MaxwellBranch> {
         .collect()
 }
 
-/// The criterion with half of its force rate reserved for relaxation. The lag has all of it if nothing relaxes.
+/// The criterion with half of its force rate reserved for relaxation. If nothing relaxes, the lag has all of it.
 pub(crate) fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> Settle {
     let left = settle.force_rate - unsettled.drift.abs();
     if !relaxes || settle.force_rate <= 0.0 || left <= 0.0 || unsettled.lag == 0.0 {
@@ -96,9 +96,9 @@ pub(crate) fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> S
     }
 }
 
-/// Further time \[s\], after the `waited` of the lag, until relaxing branches change the force no faster than their part of
-/// the bound, for the whole dwell. None if that is not reached within the timeout. The rates fall, so the first such
-/// instant is found by bisection.
+/// Further time \[s\], after the `waited` of the lag, until the force rate of the relaxing branches is within their part of the bound,
+/// for the whole dwell. None if that is not reached within the timeout. The rates decrease, so the first such instant is found by
+/// bisection.
 pub(crate) fn relaxing_time(
     settle: &Settle,
     unsettled: &Unsettled,
@@ -135,8 +135,8 @@ pub(crate) fn relaxing_time(
     Some(high + settle.dwell)
 }
 
-/// The largest lag up to `most` at which `met` holds, which does so at all smaller ones: by halving, over a range of powers
-/// of two, for an exponent below 1 may need a lag far below the band.
+/// The largest lag up to `most` that satisfies `met`, which all smaller lags also satisfy. It is found by bisection over a range of
+/// powers of two, because an exponent below 1 may need a lag far below the band.
 fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
     if most <= 0.0 || met(most) {
         return most;
@@ -178,7 +178,7 @@ mod tests {
     fn waits_for_the_band_then_for_the_force_rate_and_dwells() {
         let band = settling_time(&SETTLE, &LAGGING).unwrap();
         assert!((band - (0.1 * 100_f64.ln() + 0.3)).abs() < 1e-12);
-        // 5 N/s at 1e5 N/m and 0.1 s allows 5 µm of lag: later than the 10 µm band.
+        // 5 N/s at 1e5 N/m and 0.1 s allow 5 µm of lag, which is reached later than the 10 µm band.
         let rate = settling_time(
             &Settle {
                 force_rate: 5.0,
@@ -237,7 +237,7 @@ mod tests {
         );
     }
 
-    /// R = 1000 N gains (v/v₀)^½, v₀ = 1 m/s, with no stiffness: dF/dt = R ½ √(e/0.1)/0.1 ≤ 50 N/s at e = 1e-5 m.
+    /// R = 1000 N increases with (v/v₀)^½, v₀ = 1 m/s, without stiffness: dF/dt = R ½ √(e/0.1)/0.1 ≤ 50 N/s at e = 1e-5 m.
     #[test]
     fn a_strength_that_grows_with_speed_keeps_the_force_moving_longer() {
         let rate = Some((
@@ -263,7 +263,7 @@ mod tests {
         assert!((wait - by_hand).abs() < 1e-9, "{wait} s is not {by_hand} s");
     }
 
-    /// 200 N that relax with 2 s change by 100 N/s at first: 5 N/s are reached after 2 ln 20 s.
+    /// 200 N that relax with 2 s change by 100 N/s at first: the rate is 5 N/s after 2 ln 20 s.
     #[test]
     fn what_relaxes_keeps_the_rig_unsettled_until_it_is_slow() {
         let mut branch = MaxwellBranch::new(1e5, 2.0);

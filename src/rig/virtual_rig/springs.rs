@@ -10,7 +10,7 @@ use crate::plan::{Behaviour, Frame, Specimen};
 
 /// Springs between the axes and the ground.
 pub(super) enum Springs {
-    /// `R_i = V_i − V_{i+1}`, V each storey's shear at its drift; one degree of freedom is one storey.
+    /// `R_i = V_i − V_{i+1}`, V is the shear of each storey at its drift; one degree of freedom is one storey.
     Storeys(Vec<Storey>),
     /// R = K X.
     Matrix {
@@ -25,11 +25,11 @@ pub(super) struct Storey {
     /// The cells measure its rate-dependent force, which is zero at rest; its friction remains.
     damper: CellDamping,
     relaxing: RelaxationState,
-    /// N/m, the initial one.
+    /// Initial stiffness \[N/m\].
     stiffness: f64,
-    /// m
+    /// \[m\]
     drift: f64,
-    /// N
+    /// \[N\]
     shear: f64,
 }
 
@@ -128,7 +128,7 @@ impl Springs {
         }
     }
 
-    /// The axes go on at these velocities, m/s: each storey's friction knows its direction.
+    /// The axes continue at these velocities \[m/s\]: the friction of each storey follows their direction.
     pub(super) fn slide(&mut self, velocities: &[f64]) {
         if let Self::Storeys(storeys) = self {
             for (storey, velocity) in storeys.iter_mut().zip(of_drifts(velocities)) {
@@ -165,9 +165,9 @@ impl Springs {
         storeys.iter().skip(axis).take(2)
     }
 
-    /// The relaxing parts of the force of an axis: those of its own storey and of the storey above. The force of an axis is
-    /// the difference of two shears, and would be steady if both relaxed alike. They are added in absolute value, so that
-    /// each shear has settled too.
+    /// The relaxing parts of the force of an axis: those of its own storey and of the storey above. The force of an axis is the
+    /// difference of two shears, and would be constant if both relaxed equally. The parts are added in absolute value, so that each shear
+    /// has settled too.
     pub(super) fn relaxing_at(&self, axis: usize) -> Vec<&RelaxationState> {
         self.beside(axis)
             .map(|storey| &storey.relaxing)
@@ -208,7 +208,7 @@ impl Springs {
     }
 }
 
-/// Velocities of the drifts, m/s.
+/// Velocities of the storey drifts \[m/s\].
 fn of_drifts(velocities: &[f64]) -> Vec<f64> {
     let mut drift = vec![0.0; velocities.len()];
     drifts(velocities, &mut drift);

@@ -24,10 +24,11 @@ fn rig(link: VirtualLink) -> VirtualRig {
     VirtualRig::new(link, AT_ONCE, Some(&specimen(0.0, 0.0)), 1.0)
 }
 
-/// A way that was cut off where a reading is due is gone on with: the reading is made again, and of a damper that moves.
+/// A move that was interrupted when a reading was due is continued: the reading is made again, and it includes the force of a moving
+/// damper.
 #[test]
 fn a_reading_that_was_lost_is_made_again_under_way() {
-    /// Takes readings, and is killed at the one after so many.
+    /// Accepts `most` readings, and is killed at the next one.
     fn up_to(read: &mut Vec<f64>, most: usize) -> impl FnMut(Reading) -> Result<(), RigFault> {
         move |reading| {
             if read.len() == most {
@@ -94,7 +95,7 @@ fn tracking_resolution_and_drift_change_a_reading_as_computed_by_hand() {
         0.002,
     );
     assert!((x - 0.0018).abs() < 1e-15 && (r - 1.8).abs() < 1e-12);
-    // The cell feels the place; the resolution is of the displacement reading.
+    // The cell measures the force at the true position; the resolution applies to the displacement reading.
     let (_, x, r) = go(
         &mut rig(VirtualLink {
             resolution: 5e-4,
@@ -153,7 +154,7 @@ fn settling_takes_rig_time_and_a_rig_that_cannot_settle_holds() {
     let behind = 0.01 * 0.02 * (1.0 - (-10.0_f64).exp());
     assert!((time - (0.2 + 0.02 * (behind / 1e-5).ln() + 0.3)).abs() < 1e-12);
     assert!((0.002 - x) < 1e-5);
-    // 10 % of 2 mm is 0.2 mm: outside 0.01 mm for ever.
+    // 10 % of 2 mm is 0.2 mm: permanently outside 0.01 mm.
     let link = VirtualLink {
         tracking: 0.1,
         ..VirtualLink::default()
@@ -210,7 +211,7 @@ fn a_negative_sign_turns_displacement_and_force_between_plan_and_rig() {
     };
     let mut turned = VirtualRig::new(link, AT_ONCE, Some(&specimen(0.0, 0.0)), -1.0);
     let (_, x, r) = go(&mut turned, 0.002);
-    // Only what the rig adds by itself shows its sign.
+    // Only the errors that the rig itself adds show its polarity.
     assert!(x == 0.002 && (r - (2.0 - 0.6)).abs() < 1e-12);
 }
 

@@ -1,5 +1,5 @@
-//! Differences of older versions. In: a plan, and a run log of it. Out: the plan as the version that wrote the run log ran
-//! it. It assesses nothing, and changes nothing that this version writes.
+//! Differences of older versions. In: a plan, and a run log of it. Out: the plan as it was run by the version that wrote the run log. It
+//! assesses nothing, and changes nothing that this version writes.
 
 use std::borrow::Cow;
 
@@ -12,24 +12,24 @@ use crate::rig::RigFault;
 use crate::run::session::STOPPED_ON_REQUEST;
 use crate::run::zero_drift::READINGS;
 
-/// The computation rules of this version, as the header of a run log states them. 1: an `unload` may pass the unloaded
-/// position, and a `cycle` has ten targets a quarter unless it states another number. 2: neither applies, but the targets
-/// of a `cycle` are equally spaced. 3: they are not.
+/// The computation rules of this version, as stated in the header of a run log. 1: an `unload` may pass the unloaded position, and a
+/// `cycle` without a number has ten targets in each quarter. 2: neither applies, but the targets of a `cycle` are equally spaced. 3: they
+/// are not equally spaced.
 pub const RULES: u32 = 3;
 
-/// Targets between the middle and an amplitude where the plan gave no number, now and by the rules of 1.
+/// Targets between the middle and an amplitude if the plan gives no number, now and by rules 1.
 const POINTS: u32 = 25;
 const OLDER_POINTS: u32 = 10;
 
-/// The plan as the version that wrote the run log ran it.
+/// The plan as it was run by the version that wrote the run log.
 pub(super) fn as_it_was_run<'a>(plan: &'a Plan, logged: &LoggedRun) -> Cow<'a, Plan> {
     let without_zeros = plan.rig.drift.is_some() && serves_without_zeros(logged);
     if !without_zeros && logged.header.rules >= RULES {
         return Cow::Borrowed(plan);
     }
     let mut plan = plan.clone();
-    // The first versions that served a rig with a limit of its zero drift read no zeros before the first client: their run
-    // logs go from the pre-test check to the first request, and are replayed so, without a zero drift.
+    // The first versions that served a rig with a zero-drift limit read no zeros before the first client. In their run logs the first
+    // request follows the pre-test check. They are replayed in this form, without a zero drift.
     if without_zeros {
         plan.rig.drift = None;
     }
@@ -47,7 +47,7 @@ pub(super) fn as_it_was_run<'a>(plan: &'a Plan, logged: &LoggedRun) -> Cow<'a, P
     Cow::Owned(plan)
 }
 
-/// Whether a client's first request is in the run log, without as many consecutive readings before it as a zero needs.
+/// Whether the run log has a client's first request, with fewer consecutive readings before it than a zero needs.
 fn serves_without_zeros(logged: &LoggedRun) -> bool {
     let Some(first) = logged.lines.iter().position(is_request) else {
         return false;

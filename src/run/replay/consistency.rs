@@ -1,6 +1,6 @@
-//! The consistency of a run log with itself: each entry is one that psd writes and nothing more, times increase, targets
-//! are numbered without gaps, the datum is that of the plan, and a virtual rig has no raw bytes. In: the lines of a run
-//! log, those that count, the plan. Out: the first entry that contradicts another. Replay finds the other differences.
+//! The internal consistency of a run log. Each entry is exactly one that psd writes, times increase, and targets are numbered without
+//! gaps. The datum is that of the plan, and a virtual rig has no raw bytes. In: the lines of a run log, those that count, the plan. Out:
+//! the first entry that contradicts another. Replay finds the other differences.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -26,10 +26,10 @@ pub struct Contradiction {
     pub reason: String,
 }
 
-/// Checks a run log for consistency with itself.
+/// Checks a run log for internal consistency.
 ///
 /// # Errors
-/// The first of its lines that does not agree with itself or with those before it.
+/// The first line that contradicts itself or an earlier line.
 pub fn check_consistency(
     recovered: &Recovered,
     logged: &LoggedRun,
@@ -47,8 +47,8 @@ pub fn check_consistency(
     })
 }
 
-/// Whether an entry can belong to the plan's rig: one datum throughout, which is zero if the plan says so, and no raw bytes
-/// for a virtual rig. `first_datum`: that of the first RIG entry \[m\], one per axis.
+/// Whether an entry can belong to the plan's rig: one datum throughout, which is zero if the plan specifies this, and no raw bytes for a
+/// virtual rig. `first_datum`: that of the first RIG entry \[m\], one per axis.
 fn is_of_the_plans_rig(
     line: &Line,
     plan: &Plan,
@@ -104,7 +104,7 @@ fn at(line: &Line, reason: impl Into<String>) -> Contradiction {
     }
 }
 
-/// Whether psd would write the very same object, no field more and none less.
+/// Whether psd would write exactly the same object, with the same fields.
 fn is_ours(line: &Line) -> Result<(), Contradiction> {
     match line.kind {
         EntryKind::Header => written::<Header>(line, &["format"]),
@@ -126,7 +126,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
     }
 }
 
-/// `own` are the fields of the journal itself.
+/// `own` are the fields of the run log itself.
 fn written<T: DeserializeOwned + Serialize>(
     line: &Line,
     own: &[&str],
@@ -150,7 +150,7 @@ fn written<T: DeserializeOwned + Serialize>(
     })
 }
 
-/// Rig time goes forward only.
+/// Rig time only increases.
 fn runs_on<'a>(lines: impl Iterator<Item = &'a Line>) -> Result<(), Contradiction> {
     let mut before = f64::NEG_INFINITY;
     for line in lines {

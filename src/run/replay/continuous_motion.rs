@@ -1,5 +1,5 @@
-//! Logging and replay of motions with readings on the way: strokes at constant velocity, and smooth paths. INTENT is
-//! durable before either begins; each reading is logged before it is used, and STROKE marks the end of the motion.
+//! Logging and replay of motions with readings during the motion: strokes at constant velocity, and smooth paths. INTENT is durable
+//! before either begins; each reading is logged before it is used, and STROKE marks the end of the motion.
 
 use std::rc::Rc;
 
@@ -77,7 +77,7 @@ impl ContinuousMove<'_> {
 /// A function that moves a rig along a motion, or along the rest of it.
 type Goes<'a> = &'a mut dyn FnMut(&mut dyn Rig, EachReading<'_>) -> Result<(), RigFault>;
 
-/// Bit for bit.
+/// Compares bit by bit.
 fn same(one: &IntentBody, other: &IntentBody) -> bool {
     let numbers = |intent: &IntentBody| {
         let paths = intent.path.iter().flatten();
@@ -146,7 +146,7 @@ impl RecordedRig<'_> {
         self.follow_recorded(0, each, &mut |rig, each| motion.follow(rig, samples, each))
     }
 
-    /// Carries out a motion and logs its readings; the first `done` readings are in the run log already.
+    /// Executes a motion and logs its readings; the first `done` readings are in the run log already.
     fn follow_recorded(
         &mut self,
         done: usize,
@@ -158,7 +158,7 @@ impl RecordedRig<'_> {
         let Some(rig) = self.live() else {
             return Err(ended());
         };
-        // A refusal by the guard or by the run log is not a fault of the rig, and comes out again in the replay.
+        // A refusal by the guard or by the run log is not a fault of the rig, and occurs again in the replay.
         let (mut refused, mut taken) = (false, done);
         let followed = goes(rig, &mut |reading| {
             let recorded = finite(Reading {

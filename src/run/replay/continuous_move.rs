@@ -1,10 +1,10 @@
-//! A move that is read while the actuators travel.
+//! A move with readings during the motion.
 
 use crate::physics::tracking::trajectory::Path;
 
-/// A move as it was requested.
+/// A move as requested.
 pub(super) enum ContinuousMove<'a> {
-    /// m, m/s
+    /// \[m\], \[m/s\]
     Stroke(&'a [f64], f64),
     Paths(&'a [Path]),
 }

@@ -8,21 +8,20 @@ use crate::record::equipment::Equipment;
 use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
 use crate::run::{Inspection, Request};
 
-/// The entry in place of a protocol if the operator drives by hand.
+/// Written instead of a protocol if the operator drives by hand.
 pub const BY_HAND: &str = "by hand";
 
-/// HEADER: all a run starts from. Enough to check the plan again, on any machine.
+/// HEADER: the initial data of a run. They are sufficient to check the plan again on any machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     pub run_id: String,
     pub psd: String,
     /// SHA-256 of the program's sources, hex.
     pub build: String,
-    /// The computation rules of the run ([`RULES`](super::RULES)). Run logs from before there were others do not state
-    /// them.
+    /// The computation rules of the run ([`RULES`](super::RULES)). Run logs older than the second rules do not state them.
     #[serde(default = "first_rules", skip_serializing_if = "is_first")]
     pub rules: u32,
-    /// Target, profile and compiler that it was built for and with; empty where they were not recorded.
+    /// Target, profile and compiler of the build; empty if they were not recorded.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub toolchain: String,
     /// The plan first, then the files it uses. Their texts follow in PLAN entries.
@@ -34,13 +33,13 @@ pub struct Header {
     /// Measuring equipment and limits. None in run logs of version 1, which do not state them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub equipment: Option<Equipment>,
-    /// Whether only the part that a rehearsal measures was to run.
+    /// Whether only the measured part of a rehearsal was to run.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rehearsal: bool,
     /// Protocol of the clients that drive the rig, or that it is driven by hand. None: the plan's procedures drive it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub served: Option<String>,
-    /// As `--date` gave it.
+    /// As given by `--date`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
     /// For a real rig: the operator, the machine, and the start.
@@ -77,7 +76,7 @@ pub struct PlanBody {
 }
 
 impl PlanBody {
-    /// Characters of a part: at most six bytes each in the journal.
+    /// Characters of a part: at most six bytes each in the run log.
     const PART: usize = 8192;
 
     /// The parts of the texts, in order.
@@ -99,12 +98,12 @@ impl PlanBody {
 /// RIG: the identity of the rig, at the start of the run and at every resumption.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RigBody {
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub t: f64,
     pub identity: Identity,
     pub axes: usize,
     pub noise: DeclaredNoise,
-    /// m/s
+    /// \[m/s\]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub own_speed: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -118,16 +117,16 @@ pub struct RigBody {
     pub said: Vec<String>,
 }
 
-/// INTENT: a target about to leave.
+/// INTENT: a target that is about to be sent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IntentBody {
     /// Number of the target in this run, from 1.
     pub n: u64,
     /// Rig time of the entry before \[s\].
     pub t: f64,
-    /// As computed, m.
+    /// As computed \[m\].
     pub to: Vec<f64>,
-    /// As asked, m/s; of a stroke signed.
+    /// As requested \[m/s\]; signed for a stroke.
     pub speed: Option<f64>,
     /// As decoded from the bytes \[m\] and \[m/s\], if different.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -145,7 +144,7 @@ pub struct IntentBody {
     /// too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<Vec<Path>>,
-    /// For a motion with readings on the way: the largest number of readings.
+    /// For a motion with readings during the motion: the largest number of readings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -155,16 +154,16 @@ pub struct IntentBody {
 /// SAMPLE: a reading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SampleBody {
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub t: f64,
-    /// m
+    /// \[m\]
     pub x: Vec<f64>,
-    /// N
+    /// \[N\]
     pub r: Vec<f64>,
-    /// The replies it was made of, escaped.
+    /// The replies from which it was decoded, escaped.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub raw: Vec<String>,
-    /// If it was requested and seen: start and end of the uniform motion equivalent to the last move, rig time \[s\].
+    /// If it was requested and observed: start and end of the uniform motion equivalent to the last move, rig time \[s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moved: Option<[f64; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -174,31 +173,31 @@ pub struct SampleBody {
 /// STROKE: the end of a stroke. A run log with readings and without this entry was interrupted during the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StrokeBody {
-    /// Rig time of the last reading, s.
+    /// Rig time of the last reading \[s\].
     pub t: f64,
     /// Its number of readings: a rig that cannot keep up makes fewer than requested.
     pub samples: usize,
 }
 
-/// STEP: the end of a step, as computed. A replay must give the same, bit for bit.
+/// STEP: the end of a step, as computed. A replay must give a bit-identical step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepBody {
     pub step: u64,
-    /// Virtual time of an impact, else rig time, s.
+    /// Simulated time of an impact, else rig time \[s\].
     pub time: f64,
-    /// Target, m.
+    /// Target \[m\].
     pub u: f64,
-    /// Measured, m.
+    /// Measured \[m\].
     pub x: f64,
-    /// m/s
+    /// \[m/s\]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub v: Option<f64>,
-    /// m/s²
+    /// \[m/s²\]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub a: Option<f64>,
-    /// N
+    /// \[N\]
     pub r: f64,
-    /// Energy error over the input; none where it is not finite.
+    /// Energy error over the input energy; None if it is not finite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub e: Option<f64>,
     /// The axes after the first.
@@ -246,7 +245,7 @@ pub enum OperatorBody {
 pub struct OperatorEntry {
     #[serde(flatten)]
     pub said: OperatorBody,
-    /// Records of other builds may have none; a virtual run has none.
+    /// Run logs of other builds may have none; a virtual run has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
 }
@@ -264,7 +263,7 @@ pub struct FaultBody {
 /// HELD: the result of the final hold. Run logs of older versions have none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeldBody {
-    /// Rig time, s.
+    /// Rig time \[s\].
     pub t: f64,
     /// The reason why the hold is not confirmed.
     #[serde(default, rename = "doubt", skip_serializing_if = "Option::is_none")]
@@ -272,7 +271,7 @@ pub struct HeldBody {
     /// Its position \[m\] and force \[N\]. None if they could not be read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<(Vec<f64>, Vec<f64>)>,
-    /// The replies it was made of, escaped.
+    /// The replies from which it was decoded, escaped.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub raw: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -291,14 +290,14 @@ pub enum Call {
     Record,
 }
 
-/// AMEND: plan or program are no longer those of the header, or of the amendment before.
+/// AMEND: plan or program differ from those of the header, or of the previous amendment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AmendBody {
     pub by: String,
     pub reason: String,
     /// The differences, as text.
     pub differences: Vec<String>,
-    /// The header that applies from here on.
+    /// The header that applies from this entry on.
     pub header: Header,
 }
 
@@ -313,14 +312,14 @@ pub struct ResumeBody {
     /// The assurances of the operator who resumes it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub assured: Vec<Assurance>,
-    /// Found before anything moved: m, N.
+    /// Found before any motion: \[m\], \[N\].
     pub found: (Vec<f64>, Vec<f64>),
-    /// As recorded last: m, N.
+    /// The last logged values: \[m\], \[N\].
     pub recorded: Option<(Vec<f64>, Vec<f64>)>,
-    /// Where it held when the run had stopped, where that was read: m, N.
+    /// The position and force of the final hold, if they were read: \[m\], \[N\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub held: Option<(Vec<f64>, Vec<f64>)>,
-    /// The operator who released the rig, and the typed text.
+    /// The operator who enabled motion, and the typed text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub released: Option<String>,
     /// Rig time at which the run log continues \[s\].
@@ -333,18 +332,18 @@ pub struct ResumeBody {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Assurance {
-    /// It was not switched off since, and cannot report so itself.
+    /// It was not switched off since then; it cannot report this itself.
     SamePowerUp,
     /// It was referenced again.
     ReReferenced,
-    /// The force that changed means no harm to the specimen.
+    /// The change of force has not damaged the specimen.
     AcceptedRelaxation,
-    /// It was on hold, and may be released at its position.
+    /// It was on hold, and the hold may be cleared at its position.
     LetGo,
 }
 
 impl Assurance {
-    /// As it is reported, after the name of the operator.
+    /// The text of the report, after the name of the operator.
     #[must_use]
     pub const fn describe(self) -> &'static str {
         match self {
@@ -365,7 +364,7 @@ pub struct RecoverBody {
     pub put_aside: String,
 }
 
-/// END: the end of the run; count and head are written by the journal.
+/// END: the end of the run; the run log writes count and head.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EndBody {
     pub outcome: EndOutcome,
@@ -384,17 +383,17 @@ pub enum EndOutcome {
 pub enum TargetStatus {
     /// The run log ended at rest: no target was uncertain.
     None,
-    /// It was carried out; its reading is late.
+    /// It was executed; its reading is made late.
     Executed,
     /// It never arrived: it is sent now.
     NotExecuted,
-    /// It was held during the motion: the same absolute target is sent again.
+    /// The rig was held during the motion: the same absolute target is sent again.
     HeldOnTheWay,
-    /// A motion with readings on the way was interrupted, and is continued from the present position: no part of it is
-    /// travelled twice. Its start \[m\].
+    /// A motion with readings during the motion was interrupted. It is continued from the present position: no part of it is travelled
+    /// twice. Its start \[m\].
     RestOfTheWay { from: Vec<f64> },
-    /// A stroke was interrupted, went on to its end, and most of its readings are missing: the rig moves back to its start
-    /// (\[m\]; the axes after the first in `others`), and the stroke is repeated.
+    /// A stroke was interrupted, continued to its end, and most of its readings are missing. The rig moves back to its start (\[m\]; the
+    /// axes after the first in `others`), and the stroke is repeated.
     Stroke {
         back_to: f64,
         #[serde(default, skip_serializing_if = "Vec::is_empty")]

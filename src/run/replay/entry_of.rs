@@ -88,7 +88,7 @@ pub(super) fn append_sample(
     state.append(EntryKind::Sample, &sample)
 }
 
-/// A reading that is no number is a fault of the rig, with the numbers as they came.
+/// A reading that is not a number is a fault of the rig, with the values as received.
 pub(super) fn finite(reading: Reading) -> Result<Reading, RigFault> {
     let numbers = || reading.displacement.iter().chain(&reading.force);
     if numbers().all(|value| value.is_finite()) {

@@ -1,5 +1,5 @@
-//! The entries of a run log that count: those set aside by a resumption are left out, with the events that report this. In:
-//! lines. Out: the source of a replay. It knows no physics.
+//! The entries of a run log that count. Entries that a resumption sets aside are omitted, with the events that report this. In: lines.
+//! Out: the source of a replay. It knows no physics.
 
 use std::collections::VecDeque;
 
@@ -19,9 +19,9 @@ pub struct LoggedRun {
     pub texts: Vec<String>,
     /// The rig at the start of the run.
     pub rig: Option<RigBody>,
-    /// The rig as it answered last.
+    /// The rig according to its last identification.
     pub last_rig: Option<RigBody>,
-    /// Records that count, in order: targets, readings, steps, answers, faults, events.
+    /// Entries that count, in order: targets, readings, steps, answers, faults, events.
     pub lines: VecDeque<Line>,
     /// Resumptions and amendments, as events of the run.
     pub interruptions: Vec<Event>,
@@ -29,7 +29,7 @@ pub struct LoggedRun {
     pub target_status: Option<TargetStatus>,
     /// Rig time of the last entry \[s\].
     pub time: f64,
-    /// Whether the run came to its own end.
+    /// Whether the run was completed.
     pub ended: bool,
     /// Communication errors recovered up to the last entry, also if that entry no longer counts.
     pub line_statistics: LineStatistics,
@@ -58,7 +58,7 @@ pub struct Mismatch {
 }
 
 impl LoggedRun {
-    /// Sorts the records of a journal.
+    /// Sorts the entries of a run log.
     ///
     /// # Errors
     /// An entry cannot be read.
@@ -83,7 +83,7 @@ impl LoggedRun {
         for line in lines {
             logged.take(line)?;
         }
-        // An empty file has no part.
+        // An empty file has no PLAN entry.
         logged
             .texts
             .resize(logged.header.files.len(), String::new());
@@ -133,7 +133,7 @@ impl LoggedRun {
         Ok(())
     }
 
-    /// Something else holds from here on; its texts follow.
+    /// A different header applies from here on; its texts follow.
     pub fn amended(&mut self, amend: AmendBody) {
         let text = format!(
             "{} ({}): {}",
@@ -195,7 +195,7 @@ fn describe(resume: &ResumeBody) -> String {
             "a way had been cut off, and the rig was brought back to where it begins"
         }
     };
-    // At a position different from that of the last reading, the force tells nothing about the specimen.
+    // At a position different from that of the last reading, the force gives no information about the specimen.
     let relaxed = match (&resume.recorded, resume.found.1.as_slice()) {
         (Some((_, recorded)), [found])
             if recorded.len() == 1 && resume.target_status == TargetStatus::None =>

@@ -52,13 +52,13 @@ use crate::record::remote::DrivenStep;
 use crate::run::client_run::{ClientRunRecord, Driver, drive};
 use crate::run::remote_control::Specimen;
 
-/// Gives the wall clock, as text; None for a virtual run.
+/// Gives the time of day, as text; None for a virtual run.
 pub type Wall = Box<dyn Fn() -> Option<String>>;
 
 /// Runs the plan on a rig and logs every answer. The header is in the run log already.
 ///
 /// # Errors
-/// The run log cannot be ended; the record is complete all the same.
+/// The end of the run log cannot be written; the record is complete in this case too.
 pub fn record(
     plan: &Plan,
     rig: &mut dyn Rig,
@@ -132,9 +132,9 @@ pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
     }
 }
 
-/// Replays a run log without a rig, and continues it at its end on the rig that `begin` opens. A rig is not opened for
-/// facts that are known without it, and never waits for a replay: `begin` is not called if plan and run log differ, or if
-/// the run would only end again; after `begin`, only the readings of a stroke are still replayed.
+/// Replays a run log without a rig, and continues it at its end on the rig that `begin` opens. The rig is opened late, so that it never
+/// waits for a replay. `begin` is not called if plan and run log differ, or if the run would only end again. After `begin`, only the
+/// readings of a stroke are still replayed.
 ///
 /// # Errors
 /// The run cannot be continued, or `begin` refuses.
@@ -189,13 +189,13 @@ pub struct Recorded {
     pub record: Record,
     /// The difference between run log and plan.
     pub mismatch: Option<Mismatch>,
-    /// Why the journal could not be kept; the run was held there.
+    /// Why the run log could not be written; the run was held there.
     pub fault: Option<JournalFault>,
-    /// Records in the journal, and the chain at its head.
+    /// Number of entries in the run log, and the chain value at its head.
     pub sealed: Option<(u64, String)>,
 }
 
-/// A run from its run log.
+/// A run that was replayed from its run log.
 pub struct Replayed {
     pub record: Record,
     pub mismatch: Option<Mismatch>,
@@ -258,7 +258,7 @@ pub fn begin(journal: &mut Journal, header: &Header, texts: &[String]) -> Result
     journal.sync_point()
 }
 
-/// Writes that something else holds from here on, and its texts.
+/// Writes that a different header applies from here on, and its texts.
 ///
 /// # Errors
 /// It cannot be written.

@@ -15,9 +15,9 @@ use crate::run::{AxisReport, Inspection, Motion, Next, Observer, Request, StepRe
 pub struct RecordedObserver<'run, 'rig> {
     inner: &'run mut dyn Observer,
     state: Rc<RefCell<State<'rig>>>,
-    /// Whether the operator was asked last, and has not answered.
+    /// Whether the last question to the operator has no answer yet.
     inspecting: bool,
-    /// The procedure that runs.
+    /// The present procedure.
     procedure: Option<String>,
 }
 
@@ -301,7 +301,7 @@ impl StepBody {
         }
     }
 
-    /// Bit for bit.
+    /// Compares bit by bit.
     fn same(&self, other: &Self) -> bool {
         let numbers = |body: &Self| {
             [

@@ -1,5 +1,5 @@
-//! The recorded rig: between guard and rig, it answers from the run log as long as that has entries; after it, it passes
-//! calls on and logs the answers. INTENT is durable before a target is sent, SAMPLE before a reading is used.
+//! The recorded rig: between guard and rig, it answers from the run log while it has entries. After the last entry it forwards calls and
+//! logs the answers. INTENT is durable before a target is sent, SAMPLE before a reading is used.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -61,7 +61,7 @@ impl<'rig> RecordedRig<'rig> {
         self.state.borrow_mut().answers_from_the_log()
     }
 
-    /// The rig itself, where there is one.
+    /// The rig itself, if there is one.
     pub(super) fn live(&mut self) -> Option<&mut (dyn Rig + 'rig)> {
         if self.live.is_none() {
             self.live = self.state.borrow_mut().take_opened();
@@ -178,7 +178,7 @@ impl<'rig> RecordedRig<'rig> {
         ))
     }
 
-    /// A reading, with when the rig went on its last move where that was asked for.
+    /// A reading, with the time of the last motion of the rig if this was requested.
     fn take_reading(
         &mut self,
         read: impl FnOnce(&mut dyn Rig) -> Result<(Reading, Option<[f64; 2]>), RigFault>,
@@ -473,7 +473,7 @@ impl Rig for RecordedRig<'_> {
 
     fn line_statistics(&self) -> LineStatistics {
         if !self.answers_from_the_log() {
-            // The run already knows of a run log that fails.
+            // The fault of the run log was reported to the run already.
             let _ = self.count();
         }
         self.state.borrow().mended()

@@ -19,10 +19,10 @@ pub struct Malformed {
     pub reason: String,
 }
 
-/// Checks every line against the rig's axes and against the lines before it.
+/// Checks every line against the axes of the rig and against the lines before it.
 ///
 /// # Errors
-/// The first line that does not fit.
+/// The first inconsistent line.
 pub fn well_formed(recovered: &Recovered, plan: &Plan) -> Result<(), Malformed> {
     let mut shape = Shape { plan, rig: None };
     let malformed = |line: &Line, reason| Malformed {
@@ -47,7 +47,7 @@ struct FirstRig {
     axes: usize,
     /// Number of its entry.
     seq: u64,
-    /// No pause of it fails.
+    /// A pause of a virtual rig never fails.
     is_virtual: bool,
 }
 
@@ -83,7 +83,7 @@ impl Shape<'_> {
         self.rig.ok_or_else(|| "no RIG stands before it".to_owned())
     }
 
-    /// Each list has an entry for every axis of the rig, and the plan moves as many.
+    /// Checks that each list has an entry for every axis of the rig, and that the plan moves the same number of axes.
     fn moves(&self, lists: &[(&str, &[f64])]) -> Result<(), String> {
         let FirstRig { axes, .. } = self.rig()?;
         let planned = self.plan.degrees_of_freedom();

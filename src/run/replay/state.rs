@@ -27,7 +27,7 @@ pub struct Continuation<'rig> {
     pub logged: LoggedRun,
 }
 
-/// Opens it. None: it cannot be continued.
+/// Opens the continuation. None: the run cannot be continued.
 pub(super) type Begin<'rig> = Box<dyn FnOnce() -> Option<Continuation<'rig>> + 'rig>;
 
 pub(super) struct State<'rig> {
@@ -36,7 +36,7 @@ pub(super) struct State<'rig> {
     begin: Option<Begin<'rig>>,
     /// The entry before which it is opened, if the rig decides whether that and the following entries count.
     undecided: Option<u64>,
-    /// The rig, until it is taken.
+    /// The rig, until it is used.
     opened: Option<&'rig mut dyn Rig>,
     /// A client drove the rig: the client's requests are logged between a proposal and its target.
     pub(super) driven: bool,
@@ -143,7 +143,7 @@ impl<'rig> State<'rig> {
         !self.lines.is_empty() || self.mismatch.is_some()
     }
 
-    /// The run holds. If its run log is replayed and nothing is open to continue with, it ends there, and would end again.
+    /// The run holds. If its run log is being replayed without a continuation, it ends there, and would end again.
     pub(super) fn note_hold(&mut self) {
         if self.lines.is_empty() {
             self.begin = None;
@@ -287,7 +287,7 @@ impl<'rig> State<'rig> {
             .find_map(|line| body(line).ok())
     }
 
-    /// The client's next request, left where it is.
+    /// The client's next request, not consumed.
     fn next_request(&mut self) -> Option<Request> {
         match self.peek(EntryKind::Operator, "a request of the client") {
             Ok(OperatorBody::Asked { request }) => Some(request),
@@ -310,7 +310,7 @@ impl<'rig> State<'rig> {
         })
     }
 
-    /// The same, for a pause in this procedure and not at the look after it.
+    /// The same, for a pause in this procedure and not at the inspection after it.
     pub(super) fn front_is_pause_fault_in(&self, procedure: Option<&str>) -> bool {
         let ended = || {
             self.lines
@@ -343,8 +343,8 @@ impl<'rig> State<'rig> {
         self.mended
     }
 
-    /// Logs the communication errors recovered so far, if the present rig counts more than the run log. They are logged as
-    /// they happen: a run that is killed logs nothing at its end.
+    /// Logs the communication errors recovered so far, if the present rig counts more than the run log. They are logged immediately: a
+    /// run that is killed logs nothing at its end.
     pub(super) fn count(&mut self, now: LineStatistics) -> Result<(), RigFault> {
         let mended = self.mended_before.plus(now);
         if mended == self.mended {
@@ -354,7 +354,7 @@ impl<'rig> State<'rig> {
         self.append(EntryKind::Tally, &mended)
     }
 
-    /// Appends an entry; a fault is kept, and is final.
+    /// Appends an entry; a fault is kept and is final.
     pub(super) fn append(
         &mut self,
         kind: EntryKind,
@@ -405,7 +405,7 @@ impl<'rig> State<'rig> {
         told
     }
 
-    /// The run came to its own end.
+    /// The run was completed.
     pub(super) fn end(&mut self) {
         if self.fault.is_none()
             && let Some(journal) = &mut self.journal
@@ -474,7 +474,7 @@ pub(super) fn repeat_requests(state: &RefCell<State<'_>>, specimen: &mut Specime
         };
         let last = request == Request::Close;
         specimen.carry_out(request);
-        // The entries after it come from the session itself: communication errors recovered.
+        // The entries after it come from the session itself: recovered communication errors.
         if last {
             return;
         }

@@ -136,7 +136,7 @@ codes! {
     E653 TooManyRecordedSteps Error;
     E654 ReadApart Error;
     E655 NeverGiven Error;
-    // 7: what runs but is not advisable
+    // 7: plans that run but are not advisable
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
     W703 LimitForceNotResolved Warning;

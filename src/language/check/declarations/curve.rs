@@ -1,4 +1,4 @@
-//! `fit = multilinear(…)`: the number of breakpoints of a curve. In: the variant as it is written. Out: a [`BreakCount`].
+//! `fit = multilinear(…)`: the number of breakpoints of a curve. In: the variant as written. Out: a [`BreakCount`].
 
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
@@ -6,7 +6,7 @@ use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::specimens as message;
 use crate::plan::BreakCount;
 
-/// `breaks`, or else the number up to `most` that the criterion chooses.
+/// `breaks`, else the number up to `most` that the criterion chooses.
 pub fn breaks<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,

@@ -1,5 +1,5 @@
-//! `golden { … }`: how near a rerun must come to the accepted results. Its tolerances are fixed before the run; `%` is
-//! relative to the absolute value of the number, as in `require … within`.
+//! `golden { … }`: required agreement of a rerun with the accepted results. Its tolerances are fixed before the run; `%` is relative to
+//! the absolute value of the number, as in `require … within`.
 
 use crate::language::check::checker::{Checker, Context, Reads};
 use crate::language::check::expressions::choice::Chosen;
@@ -13,7 +13,7 @@ use crate::schema::{Column, Kind};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
-/// A tolerance of a tenth or more has little effect.
+/// A tolerance of 0.1 or more has little effect.
 const WIDE: f64 = 0.1;
 
 const CONSTANT: Context = Context {

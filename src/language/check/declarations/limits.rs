@@ -62,7 +62,7 @@ impl<'a> Checker<'a> {
         self.bounds_of(field, &written.value, context)
     }
 
-    /// The same for an argument; `Some(None)` where it is left out, None where it has an error.
+    /// The same for an argument; `Some(None)` if it is omitted, None if it has an error.
     #[expect(
         clippy::option_option,
         reason = "left out and faulty are different things here"
@@ -120,7 +120,7 @@ impl<'a> Checker<'a> {
         self.moves_at_all(field.name, interval, written.span)
     }
 
-    /// An actuator that is allowed no speed never arrives.
+    /// An actuator with a speed limit of zero never arrives.
     fn moves_at_all(&mut self, field: &str, interval: Interval, span: Span) -> Option<Interval> {
         if field == "speed" && interval.high <= 0.0 {
             return self.fail(values::no_speed(span));

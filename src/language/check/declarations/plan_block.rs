@@ -67,7 +67,7 @@ pub fn plan_block(
     (title, particulars)
 }
 
-/// The decision rule that the block names; simple acceptance where it names none.
+/// The decision rule that the block names; simple acceptance if it names none.
 pub fn decision_rule(particulars: &[(&'static str, String)]) -> DecisionRule {
     let named = particulars
         .iter()

@@ -1,5 +1,5 @@
-//! Strings that appear in the report, compared with the characters that its fonts have. In: titles, administrative data, names of
-//! requirements. Out: one warning for all that contain a character which the fonts lack. It knows neither fonts nor pages.
+//! Strings that appear in the report, compared with the characters of its fonts. In: titles, administrative data, names of requirements.
+//! Out: one warning for all strings with a character that the fonts lack. It knows neither fonts nor pages.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::whole as message;
@@ -9,7 +9,7 @@ use crate::schema::Kind;
 use crate::text::glyphs;
 use crate::text::source::Span;
 
-/// Warns of characters that are printed as code points; called only where there is no error.
+/// Warns of characters that are printed as code points; called only if there is no error.
 pub fn warn(checker: &mut Checker, report: &Report) {
     if !report.formats.contains(&Format::Pdf) {
         return;

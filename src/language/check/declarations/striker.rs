@@ -1,4 +1,4 @@
-//! `striker NAME { … }`: mass, gap, and velocity, which may be stated as a height of fall or the swing of a pendulum.
+//! `striker NAME { … }`: mass, gap, and velocity, which may be stated as a drop height or the swing of a pendulum.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{names as message, values};
@@ -13,7 +13,7 @@ use crate::uncertainty::Source;
 /// Standard gravity \[m/s²\].
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// The fields that each give the velocity; an angle needs its arm.
+/// The fields of which each gives the velocity; an angle requires its arm.
 const FORMS: [&str; 3] = [VELOCITY.name, DROP_HEIGHT.name, ANGLE.name];
 
 /// A striker whose entries are all valid; None where an error was reported.
@@ -115,10 +115,10 @@ pub fn uncertainty(
     }
 }
 
-/// Largest relative standard uncertainty of a value: beyond it first-order propagation fails, and 0 is within reach.
+/// Largest relative standard uncertainty of a value. Beyond it first-order propagation fails, and the value may be 0.
 pub const MOST_UNCERTAIN: f64 = 0.2;
 
-/// `velocity`, else √(2·gn·h), where a pendulum falls by h = L(1 − cos θ).
+/// `velocity`, else √(2·gn·h); for a pendulum h = L(1 − cos θ).
 fn velocity(checker: &mut Checker, block: usize) -> Option<f64> {
     if checker.field(block, VELOCITY.name).is_some() {
         return checker.constant(block, VELOCITY.name);
@@ -136,8 +136,7 @@ fn velocity(checker: &mut Checker, block: usize) -> Option<f64> {
     Some((2.0 * STANDARD_GRAVITY * height).sqrt())
 }
 
-/// `pendulum.energy` and the like, with their uncertainty contributions; None where the striker has an error that is reported
-/// there.
+/// `pendulum.energy` and similar values, with their uncertainty contributions; None if the striker has an error that is reported there.
 pub fn exported(checker: &mut Checker, block: usize, name: &str) -> Option<Formula> {
     let index = checker.scope.index_in_kind(block);
     let stated = |checker: &mut Checker, field, source, value| {

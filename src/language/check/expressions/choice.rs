@@ -16,12 +16,12 @@ pub struct Chosen<'a> {
     pub variant: &'static Variant,
     /// The expression for each argument of the variant, in the schema's order.
     arguments: Vec<Option<&'a Expr>>,
-    /// Further expressions for the last argument, where it takes several.
+    /// Further expressions for the last argument, if it accepts several.
     rest: Vec<&'a Expr>,
 }
 
 impl<'a> Checker<'a> {
-    /// The variant that a field names. None where the field is left out or has an error.
+    /// The variant that a field names. None if the field is omitted or has an error.
     pub fn choice(&mut self, block: usize, field: &str) -> Option<Chosen<'a>> {
         let (_, written) = self.field(block, field)?;
         let FieldType::Choice(variants) = self.scope.blocks[block].kind.field(field)?.ty else {
@@ -30,7 +30,7 @@ impl<'a> Checker<'a> {
         self.chosen(field, variants, &written.value)
     }
 
-    /// The word that a field names, or `default` where it is left out.
+    /// The word that a field names, or `default` if it is omitted.
     pub fn word(
         &mut self,
         block: usize,
@@ -43,7 +43,7 @@ impl<'a> Checker<'a> {
         self.choice(block, field).map(|chosen| chosen.variant.name)
     }
 
-    /// The variants that a field lists. None where the field is left out or has an error.
+    /// The variants that a field lists. None if the field is omitted or has an error.
     pub fn choices(&mut self, block: usize, field: &str) -> Option<Vec<Chosen<'a>>> {
         let (_, written) = self.field(block, field)?;
         let FieldType::Choices(variants) = self.scope.blocks[block].kind.field(field)?.ty else {
@@ -158,7 +158,7 @@ impl<'a> Checker<'a> {
         (!faulty).then_some((placed, rest))
     }
 
-    /// A numeric argument, or its default. None where it has an error, or is left out without a default.
+    /// A numeric argument, or its default. None if it has an error, or is omitted without a default.
     pub fn argument(
         &mut self,
         chosen: &Chosen<'a>,
@@ -193,9 +193,9 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Arguments other than one number. A required one is always there, because its variant had an error otherwise.
+/// Arguments other than one number. A required one always exists, because otherwise its variant had an error.
 impl<'a> Checker<'a> {
-    /// An argument that may be left out, a number known before the run: `Some(None)` where it is, None where it has an error.
+    /// An optional argument, a number known before the run: `Some(None)` if it is omitted, None if it has an error.
     #[expect(
         clippy::option_option,
         reason = "left out and faulty are different things here"
@@ -243,7 +243,7 @@ impl<'a> Checker<'a> {
         values
     }
 
-    /// An argument that is a string, with its span; `Some(None)` where it is left out, None where it is not a string.
+    /// An argument that is a string, with its span; `Some(None)` if it is omitted, None if it is not a string.
     #[expect(
         clippy::option_option,
         reason = "left out and faulty are different things here"

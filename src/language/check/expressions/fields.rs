@@ -1,5 +1,5 @@
 //! The entries of a block compared with the fields of its kind: unknown, repeated, missing; and their values, typed according to the
-//! schema. In: a declared block. Out: formulas and numbers in SI; a field that is left out has its default.
+//! schema. In: a declared block. Out: formulas and numbers in SI; an omitted field has its default.
 
 use crate::language::check::checker::{Checker, Context, Node, Reads, Typed};
 use crate::language::check::messages::{names as message, types, values};
@@ -120,7 +120,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The entry of a field, with its index among the entries; None where the field is left out.
+    /// The entry of a field, with its index among the entries; None if the field is omitted.
     pub fn field(&self, block: usize, field: &str) -> Option<(usize, &'a Entry)> {
         self.scope.blocks[block]
             .block
@@ -245,7 +245,7 @@ impl<'a> Checker<'a> {
         typed.bare || typed.percent
     }
 
-    /// One number: the entry, else the default. None where it has an error, or there is neither.
+    /// One number: the entry, else the default. None if it has an error, or if both are missing.
     pub fn quantity(&mut self, block: usize, field: &str) -> Option<Formula> {
         match self.field(block, field) {
             Some((entry, written)) => self
@@ -279,7 +279,7 @@ impl<'a> Checker<'a> {
         self.constant(block, field).and_then(whole)
     }
 
-    /// Some(None) where the field is left out, None where it has an error.
+    /// Some(None) if the field is omitted, None if it has an error.
     #[expect(
         clippy::option_option,
         reason = "left out and faulty are different things here"
@@ -371,7 +371,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Does `work` for the entry of a field whose value is not a number, so that a dependency cycle through it is found.
+    /// Calls `work` for the entry of a field whose value is not a number, so that a dependency cycle through it is found.
     pub fn within_entry<T>(
         &mut self,
         block: usize,

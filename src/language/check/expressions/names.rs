@@ -97,7 +97,7 @@ impl<'a> Checker<'a> {
                     .map(|entry| entry.key.node.as_str())
                     .filter(|key| *key != name)
                     .chain(self.names_to_suggest());
-                // After an impact its results have names of their own.
+                // After an impact its results have separate names.
                 let known: Vec<&str> = known.collect();
                 let (results, storey) = match context.reads {
                     Reads::Impact(procedure) => (
@@ -128,7 +128,7 @@ impl<'a> Checker<'a> {
         before.rsplit('\n').next().unwrap_or_default()
     }
 
-    /// The entry `name` of a block, if it is numeric and not the entry that asks.
+    /// The entry `name` of a block, if it is numeric and not the entry that reads it.
     fn sibling(&self, block: usize, own: usize, name: &str) -> Option<usize> {
         let declared = &self.scope.blocks[block];
         declared

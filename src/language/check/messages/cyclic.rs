@@ -33,7 +33,7 @@ pub fn no_use_with_rate(field: &str, span: Span, rate: Span) -> Diagnostic {
     .help(format!("leave out `{field}`, or `rate`"))
 }
 
-/// `what` begins at the state in which `before` ended.
+/// `what` begins at the final state of `before`.
 pub fn impact_on_moving_specimen(
     what: Spanned<&str>,
     before: Spanned<&str>,

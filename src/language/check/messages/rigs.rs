@@ -119,7 +119,7 @@ pub fn cannot_move(field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
     .help(help)
 }
 
-/// `own`: a load cell was named; else the device that moves was to measure the force too.
+/// `own`: a load cell was named; otherwise the moving device was to measure the force too.
 pub fn cannot_measure_force(own: bool, field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
     let name = dialect.name();
     let help = match dialect {
@@ -249,10 +249,10 @@ pub fn not_a_day(day: &str, span: Span) -> Diagnostic {
     .help("write year, month and day, as in `\"2027-03-01\"`")
 }
 
-/// `given`: the watchdog is specified at `at`; else the device with the longest request is.
+/// `given`: the watchdog is specified at `at`; otherwise the device with the longest request is.
 pub fn watchdog_too_short(watchdog: f64, silence: f64, given: bool, at: Span) -> Diagnostic {
     let time = |value: f64| shown(value, Dimension::TIME);
-    // Rounded down to a whole millisecond, so that seven of it are within.
+    // Rounded down to a whole millisecond, so that seven of it are inside the watchdog time.
     let shorter = (watchdog / 7.0 * 1e3).floor() / 1e3;
     let (watchdog, silence) = (time(watchdog), time(silence));
     let label = if given {
@@ -308,7 +308,7 @@ pub fn not_certifiable(rig: &str, head: Span, reference: bool, due: bool) -> Dia
     .help(format!("add to the rig\n{lines}"))
 }
 
-/// `of`: ` of axis 2`, where it belongs to one axis.
+/// `of`: ` of axis 2`, if it belongs to one axis.
 pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::DeviceNotPinned,
@@ -365,7 +365,7 @@ pub fn drift_within_noise(
     ))
 }
 
-/// A probe with which the softest acceptable specimen gives too little force beside the noise of a reading \[N\].
+/// A probe whose force on the softest acceptable specimen is too small compared with the noise of a reading \[N\].
 pub fn gate_within_noise(gate: &Gate, noise: f64, at: Span) -> Diagnostic {
     let (probe, softest) = (gate.probe.abs(), gate.stiffness.low);
     // Two digits, rounded up.

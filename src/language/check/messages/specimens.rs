@@ -31,7 +31,7 @@ pub fn backbone_point(index: usize, span: Span, label: &str, help: &str) -> Diag
     .help(help)
 }
 
-/// A row of a table, its line number from 1 and its text; without one the error is of the whole file.
+/// A row of a table, its line number from 1 and its text; without a row the error concerns the whole file.
 pub fn table_file(
     file: &str,
     row: Option<&(usize, String)>,
@@ -115,7 +115,7 @@ pub fn relaxes_too_short(longest: f64, reference_time: f64, span: Span) -> Diagn
     ))
 }
 
-/// The readings of a pause cover this range of time, last over first.
+/// The time range of the readings of a dwell, last over first.
 pub fn few_decades(readings: u32, span: Span) -> Diagnostic {
     let spanned = u64::from(readings) * u64::from(readings);
     let message = format!("{readings} readings in a pause tell no law of relaxation from another");

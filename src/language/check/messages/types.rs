@@ -80,7 +80,7 @@ pub fn missing_unit(
     ))
 }
 
-/// A plain number would be read as radians, where most people mean degrees.
+/// A plain number would be read as radians, but most users mean degrees.
 pub fn angle_without_unit(text: &str, span: Span) -> Diagnostic {
     let plain = text.parse::<f64>().is_ok();
     let help = if plain {
@@ -121,7 +121,7 @@ pub fn missing_unit_of_entries(
     .help(help)
 }
 
-/// An expression as it is written; of a literal its number and its unit.
+/// An expression as written; for a literal its number and its unit.
 pub struct WrittenValue<'t> {
     pub text: &'t str,
     pub span: Span,

@@ -339,7 +339,7 @@ pub fn no_speed(span: Span) -> Diagnostic {
     .help("write the largest speed of the actuator, as in `10 mm/s`")
 }
 
-/// Values that depend on values, too deeply.
+/// Values that depend on one another too deeply.
 pub fn too_deep(span: Span, most: usize) -> Diagnostic {
     Diagnostic::new(
         Code::TooMany,
@@ -422,7 +422,7 @@ pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Dia
     .help("procedures run in the order written: move that one up")
 }
 
-/// `read` is a result that an expression reads of a ramp, `lacks` why it never exists, `way_out` the remedy.
+/// `read` is a ramp result that an expression reads, `lacks` why it never exists, `way_out` the remedy.
 pub fn never_given(
     read: &str,
     span: Span,
@@ -439,7 +439,7 @@ pub fn never_given(
     .help(way_out.to_owned())
 }
 
-/// `result` is read where the guarded rule applies, and never has an uncertainty.
+/// `result` is read by a requirement under the guarded rule, and never has an uncertainty.
 pub fn nothing_to_guard(result: &str, required: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NothingToGuard,

@@ -173,7 +173,7 @@ pub fn step_above_predicted(span: Span, step: f64, critical: f64) -> Diagnostic 
         .help("write `time_step = critical / 20`")
 }
 
-/// `law`: a law without a duration of its own, whose force is an impulse over one step.
+/// `law`: a law without a duration, whose force is an impulse over one step.
 pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &str) -> Diagnostic {
     let (of, holds) = match law {
         "rigid" => ("the rigid law", "`contact = rigid`"),
@@ -188,7 +188,7 @@ pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &str) -> Diagn
         .help("require the `impulse`, or give a law that converges: `contact = hertz(…)`")
 }
 
-/// `first`: the longest step at which the limit acts at the first impact; `resolved`: at which the displacement is resolved.
+/// `first`: the longest step at which the limit acts at the first impact; `resolved`: the longest step that resolves the displacement.
 pub fn limit_force_not_resolved(span: Span, step: f64, first: f64, resolved: f64) -> Diagnostic {
     let (now, first_text, resolved_text) = (time(step), time(first), time(resolved));
     let message = if step >= first {

@@ -11,14 +11,14 @@ use crate::language::check::messages::{axes as message, rigs, values};
 use crate::plan::{AxisCalibration, AxisPlan, Specimen};
 use crate::text::source::Span;
 
-/// One axis, with the spans of its own devices.
+/// One axis, with the spans of its separate devices.
 pub struct CheckedAxis {
     pub plan: AxisPlan,
     pub actuator: Option<Device>,
     pub load_cell: Option<Device>,
 }
 
-/// The axes that a rig lists; empty where it lists none.
+/// The axes that a rig lists; empty if it lists none.
 pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
     let Some((_, written)) = checker.field(block, "axes") else {
         return Some(Vec::new());
@@ -93,7 +93,7 @@ fn axis<'a>(
     })
 }
 
-/// A device of the axis alone: `Some(None)` where it has none.
+/// A separate device of the axis: `Some(None)` if it has none.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"

@@ -1,5 +1,5 @@
-//! Assignment of devices to axes: the rig's own devices for every axis that has none, and those of the axes. In: devices and axes
-//! as they are written. Out: nothing, or why they do not fit together. It opens no port.
+//! Assignment of devices to axes: the rig's own devices for every axis without a device, and those of the axes. In: devices and axes as
+//! written. Out: nothing, or the reason why they do not fit together. It opens no port.
 
 use super::axes::CheckedAxis;
 use super::device::Device;
@@ -7,7 +7,8 @@ use crate::language::check::checker::Checker;
 use crate::language::check::messages::{axes as message, rigs};
 use crate::plan::Dialect;
 
-/// Every axis has one device that moves it and one that measures its force, no device is without an axis, and none has more than it supports.
+/// Checks that one device moves every axis and one device measures its force. No device is without an axis, and none has more axes than
+/// it supports.
 pub fn check(
     checker: &mut Checker,
     block: usize,
@@ -101,7 +102,7 @@ fn points(checker: &mut Checker, axes: usize, device: &Device) -> Option<()> {
     }
 }
 
-/// A channel for every axis of the device, and no more. `native` reports the number of its channels itself, when it is identified.
+/// One channel for each axis of the device. `native` reports the number of its channels itself, when it is identified.
 fn channels(checker: &mut Checker, behind: usize, device: &Device) -> Option<()> {
     let dialect = &device.link.dialect;
     let has = match dialect {

@@ -52,7 +52,7 @@ fn not_zero(checker: &mut Checker, chosen: &Chosen, name: &str, value: f64) -> O
     }
 }
 
-/// Arguments that need one another: a register, and the register or scale without which its number has no meaning or effect.
+/// Arguments that require one another: a register, and the register or scale without which its number has no meaning or effect.
 const TOGETHER: &[(&str, &str)] = &[
     ("force", "force_unit"),
     ("position", "length_unit"),

@@ -8,10 +8,10 @@ use crate::plan::{DriftCheck, Link, ZeroAfter};
 use crate::schema::RigKind;
 use crate::units::Dimension;
 
-/// Standard deviations of one reading that the difference of two readings exceeds by chance only rarely, in a long run.
+/// Number of standard deviations of one reading that the difference of two readings rarely exceeds by chance, in a long run.
 const CHANCE: f64 = 5.0;
 
-/// The zero-drift check of a rig: `Some(None)` where it has none, None where it has an error.
+/// The zero-drift check of a rig: `Some(None)` if it has none, None if it has an error.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"

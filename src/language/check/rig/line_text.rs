@@ -4,7 +4,7 @@ use crate::language::check::checker::Checker;
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::rigs as message;
 
-/// A string that is sent on a line of a protocol: `Some(None)` where it is left out.
+/// A string that is sent on a line of a protocol: `Some(None)` if it is omitted.
 #[expect(
     clippy::option_option,
     reason = "left out and faulty are different things here"

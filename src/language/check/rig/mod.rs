@@ -37,7 +37,7 @@ pub struct CheckedRig {
     pub block: Option<usize>,
 }
 
-/// The rig of the run, where it moves a real specimen: only where `--rig` names it.
+/// The rig of the run, if it moves a real specimen: only if `--rig` names it.
 pub fn real_rig_of_run(checker: &Checker, requested: Option<&str>) -> Option<usize> {
     let named = |name: Option<&crate::language::syntax::ast::Ident>| {
         name.is_some_and(|name| Some(name.node.as_str()) == requested)
@@ -47,7 +47,7 @@ pub fn real_rig_of_run(checker: &Checker, requested: Option<&str>) -> Option<usi
         .of_kind(Kind::Rig)
         .find(|(_, block)| named(block.name))
         .map(|(index, _)| index);
-    // Where its link is missing or invalid, its other entries determine the kind of the rig.
+    // If its link is missing or invalid, its other entries determine the kind of the rig.
     let real = |block: usize| {
         kind(checker, block).map_or_else(
             || has_fields_of_real_rigs(checker, block),
@@ -73,7 +73,7 @@ pub fn has_fields_of_real_rigs(checker: &Checker, block: usize) -> bool {
         .any(|entry| real_only(&entry.key.node))
 }
 
-/// The fields that connect the rig of the run, where it moves a real specimen.
+/// The fields that connect the rig of the run, if it moves a real specimen.
 pub fn links_of_run(checker: &Checker, requested: Option<&str>) -> Vec<Span> {
     let Some(block) = real_rig_of_run(checker, requested) else {
         return Vec::new();
@@ -129,7 +129,7 @@ pub fn rig_of_run(checker: &mut Checker, requested: Option<&str>) -> Option<Chec
     }
 }
 
-/// Name of the virtual rig without any errors of its own.
+/// Name of the virtual rig without errors.
 const IDEAL: &str = "ideal";
 
 fn ideal() -> CheckedRig {
@@ -148,7 +148,7 @@ fn ideal() -> CheckedRig {
     }
 }
 
-/// The kind of a rig, by its link; None where that is invalid.
+/// The kind of a rig, by its link; None if the link is invalid.
 pub fn kind(checker: &Checker, block: usize) -> Option<RigKind> {
     if checker.field(block, "actuator").is_some() || checker.field(block, "load_cell").is_some() {
         return Some(RigKind::Real);

@@ -16,7 +16,7 @@ use crate::plan::{Datum, Dialect, Gate, Interval, Link, ReadingRules, RealLink, 
 use crate::schema::{Field, Kind, Need, RigKind};
 use crate::units::Dimension;
 
-/// A request is sent after 0, T and 3T, and given up after 7T.
+/// A request is sent after 0, T and 3T, and abandoned after 7T.
 const PATIENCE: f64 = 7.0;
 
 /// A run on a real rig must name its operator, who is responsible for every move.
@@ -31,7 +31,7 @@ pub fn check_operator(checker: &mut Checker, particulars: &[(&'static str, Strin
     }
 }
 
-/// The link of a real rig; None where it has an error or is incomplete, which [`complete`] reports.
+/// The link of a real rig; None if it has an error or is incomplete, which [`complete`] reports.
 pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     let safe_state = checker
         .choice(block, "safe_state")
@@ -82,7 +82,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     })
 }
 
-/// The device that moves, and the device that measures the force where it is a separate one.
+/// The device that moves, and the device that measures the force if it is a separate one.
 fn devices(
     checker: &mut Checker,
     block: usize,
@@ -169,7 +169,7 @@ fn fit(
         .filter_map(|axis| axis.load_cell.as_ref())
         .find(|own| own.link.dialect.counts())
     {
-        // Where each axis states its scale factor, the rig need not.
+        // If each axis states its scale factor, the rig need not.
         Some(_) if unstated.is_none() => Some(()),
         Some(own) => {
             let own = unstated
@@ -203,7 +203,7 @@ fn counts(checker: &mut Checker, block: usize, dialect: &Dialect, cell: &Device)
     }
 }
 
-/// A request may remain unanswered for 7T before the program gives it up; the watchdog of the rig must not act earlier.
+/// A request may remain unanswered for 7T before the program abandons it; the watchdog of the rig must not act earlier.
 fn check_watchdog<'d>(
     checker: &mut Checker,
     block: usize,
@@ -213,7 +213,7 @@ fn check_watchdog<'d>(
     let slowest =
         devices.max_by(|one, other| one.link.reply_timeout.total_cmp(&other.link.reply_timeout))?;
     let silence = PATIENCE * slowest.link.reply_timeout;
-    // 7 · 0.4 s is 2.8 s, whatever the last bit of the product is.
+    // 7 · 0.4 s is 2.8 s, despite rounding in the last bit of the product.
     if watchdog >= silence * (1.0 - 4.0 * f64::EPSILON) {
         return Some(());
     }
@@ -228,7 +228,7 @@ fn check_watchdog<'d>(
     ))
 }
 
-/// The pre-test check of the rig; not needed where each axis has its own.
+/// The pre-test check of the rig; not needed if each axis has a separate one.
 fn gate(checker: &mut Checker, block: usize, axes: &[CheckedAxis]) -> Option<Gate> {
     if checker.field(block, "gate").is_none() && axes.iter().all(|axis| axis.plan.gate.is_some()) {
         return axes.first()?.plan.gate;
@@ -270,7 +270,7 @@ pub fn complete(
     rig: Option<&mut CheckedRig>,
     limits: Option<&CheckedLimits>,
 ) {
-    // The limits that the rig names are unknown where it has an error itself.
+    // The limits that the rig names are unknown if the rig has an error itself.
     let knows_limits = |block: usize| rig.is_some() || checker.field(block, "limits").is_none();
     let of_run = checker.real_rig.filter(|block| knows_limits(*block));
     let rigs = checker.scope.of_kind(Kind::Rig).map(|(index, _)| index);
@@ -321,7 +321,7 @@ fn every_axis_has_a_gate(checker: &Checker, block: usize) -> bool {
     let Some((_, written)) = checker.field(block, "axes") else {
         return false;
     };
-    // By its name, or as the second of those without one.
+    // By its name, or as the second limits block without a name.
     let is_gate = |(index, argument): (usize, &Argument)| match &argument.name {
         Some(name) => name.node == "gate",
         None => index == 1,
@@ -392,7 +392,7 @@ fn check_own_moves(
             );
             checker.diagnostics.push(diagnostic);
         }
-        // The default is no faster than the limit.
+        // The default does not exceed the limit.
         (None, _) => link.own_speed = link.own_speed.min(interval.high),
         _ => {}
     }

@@ -61,7 +61,7 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         .clone()
         .map(|axis| (link.gate_of(axis), link.readings_of(axis).noise))
         .find(|(gate, noise)| {
-            // Ten times as written must be ten times here.
+            // A value that is ten times as large in the plan must be ten times as large here.
             gate.probe.abs() * gate.stiffness.low < message::GATE_OVER_NOISE * noise * (1.0 - 1e-9)
         });
     let given = checker
@@ -112,7 +112,7 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     }
 }
 
-/// The span of an axis' own device; of the list of axes, where that is unclear.
+/// The span of a separate device of an axis; the span of the list of axes, if that is unclear.
 fn own_device_at(axes: &Expr, axis: usize, field: &str) -> Span {
     let written = match &axes.kind {
         ExprKind::List { items, .. } => items.get(axis),

@@ -28,7 +28,7 @@ fn text(mass: &str, velocity: &str, scale: &str) -> String {
 
 const FILES: Files = Files(&[("quake.csv", GROUND)]);
 
-/// Everything of a plan that a run can see, without the record of where its values come from.
+/// All of a plan that a run reads, without the origin of its values.
 fn as_run(mut plan: Plan) -> String {
     plan.files.clear();
     plan.settings.clear();
@@ -109,7 +109,7 @@ fn a_value_that_does_not_fit_is_an_error() {
         ("mass", 0.5, Dimension::MASS, Code::SettingOutOfRange),
         ("mass", f64::NAN, Dimension::MASS, Code::NotFinite),
         ("scale", f64::INFINITY, Dimension::NUMBER, Code::NotFinite),
-        // No bound of the parameter forbids it, but a field does.
+        // The bounds of the parameter allow it, but a field does not.
         ("velocity", -1.0, Dimension::VELOCITY, Code::OutOfRange),
     ] {
         let errors = parsed

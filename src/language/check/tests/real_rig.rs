@@ -76,7 +76,7 @@ fn one_device_with_all_defaults() {
         (readings.resolution, readings.noise, readings.force_range),
         (0.0, 0.0, Interval::ALL)
     );
-    // A default speed is no faster than the limits allow.
+    // A default speed does not exceed the limits.
     assert_eq!((link.watchdog, link.own_speed), (3.0, 0.5e-3));
 }
 

@@ -1,4 +1,5 @@
-//! Names that a plan from a run log may use and a new one may not: it is read as the version read it that wrote the log.
+//! Names that are allowed in a plan from a run log but not in a new plan. The plan is read with the rules of the version that wrote the
+//! run log.
 
 use super::{Files, check};
 use crate::language::check::Options;

@@ -8,7 +8,7 @@ use crate::language::check::messages::values as message;
 use crate::plan::formula::Part;
 use crate::plan::{DecisionRule, Procedure, Requirement};
 
-/// Results that are exact and not measured: those from the plan, and the closure of the energy balance.
+/// Exact results that are not measured: those from the plan, and the closure of the energy balance.
 const EXACT: [&str; 3] = ["time_step", "energy_error", "energy_errors"];
 
 pub fn warn(

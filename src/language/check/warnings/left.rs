@@ -18,7 +18,8 @@ const LEFT: [(&str, &str); 3] = [
 ];
 
 impl Checker<'_> {
-    /// The right name of a result that a plan reads as if the run unloaded, or did not. Plans of older logs use the other name.
+    /// The correct name of a result, if the plan reads it under the name that applies to a run with or without unloading. Plans of older
+    /// run logs use the other name.
     pub fn left_under_another_name(&self, block: usize, name: &str) -> Option<&'static ResultKind> {
         let unloads = self.unloads(block);
         let other = |(residual, last): &(&'static str, &'static str)| match unloads {
@@ -31,7 +32,7 @@ impl Checker<'_> {
             .and_then(|other| self.scope.blocks[block].kind.result(other))
     }
 
-    /// A result of the impact that has just ended, as `while` reads it: its own, and the residual one if it is unloaded.
+    /// A result of the impact that has just ended, as `while` reads it: its own result, and the residual one if it is unloaded.
     pub fn result_of_impact(&self, block: usize, name: &str) -> Option<&'static ResultKind> {
         let of_unload = || {
             schema::block(Kind::Unload)
@@ -96,7 +97,8 @@ pub fn warn(
     }
 }
 
-/// The result that one side of a condition is, or its absolute value, or an entry; an energy that is calculated from it is not.
+/// The result that one side of a condition reads: the result itself, its absolute value, or an entry. An energy that is calculated from
+/// it does not count.
 fn compared(side: &Formula) -> Option<ResultReference> {
     match side {
         Formula::Result(reference) => {

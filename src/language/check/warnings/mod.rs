@@ -14,7 +14,7 @@ use crate::schema::Kind;
 use crate::text::source::{FileId, Span, Spanned};
 use crate::uncertainty::Source;
 
-/// Warnings of the whole plan; called only where there is no error.
+/// Warnings of the whole plan; called only if there is no error.
 pub fn whole_plan(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
@@ -44,8 +44,8 @@ pub fn whole_plan(
     }
 }
 
-/// A run that integrates directly after another starts from the final state of that one, under load, at which no specimen remains. A damped
-/// frame comes to rest without an actuator, if its run continues for long enough.
+/// A run that integrates directly after another starts from the final state of that one, under load. A specimen does not stay in that
+/// state without an actuator. A damped frame comes to rest without an actuator, if its run continues for long enough.
 fn impacts_on_moving_specimens(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
@@ -84,7 +84,7 @@ fn impacts_on_moving_specimens(
     }
 }
 
-/// The uncertainty of a mass is used by an impact on the specimen that takes its mass, and by the damping ratio of a sweep.
+/// The uncertainty of a mass is used by an impact that uses the mass of the specimen, and by the damping ratio of a sweep.
 fn unused_uncertainties(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],

@@ -1,12 +1,12 @@
-//! Counts the steps of a whole run, as far as the plan states them. In: a checked plan and the positions of its procedures
-//! in the text. Out: an error at the first procedure whose steps exceed the limit of one run.
+//! Counts the steps of a whole run, if the plan determines them. In: a checked plan and the positions of its procedures in the text. Out:
+//! an error at the first procedure whose steps exceed the limit of one run.
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::whole;
 use crate::plan::{MOST_RECORDED_STEPS, Plan};
 use crate::procedures;
 
-/// Compares the steps of all procedures that integrate, added up in their order, with [`MOST_RECORDED_STEPS`].
+/// Compares the steps of all procedures that integrate, summed in their order, with [`MOST_RECORDED_STEPS`].
 pub fn check(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
     let mut before = 0_u64;
     for (procedure, block) in plan.procedures.iter().zip(blocks.iter().copied()) {

@@ -1,4 +1,4 @@
-//! The warning where the delay of a virtual rig would add much energy to a test (W719). In: the delays of the procedures, the rig. Out:
+//! The warning that the delay of a virtual rig would add much energy to a test (W719). In: the delays of the procedures, the rig. Out:
 //! warnings.
 
 use crate::language::check::checker::Checker;
@@ -8,7 +8,7 @@ use crate::plan::{Link, Mode, Plan, Stepping, VirtualLink};
 use crate::procedures;
 use crate::procedures::facts::Delay;
 
-/// Warns of every procedure in which one cycle absorbs as much energy as the limit on tracking allows. `blocks` are those of the plan's
+/// Warns of every procedure in which one cycle absorbs the energy that the limit on tracking allows. `blocks` are those of the plan's
 /// procedures, `rig` is that of its rig.
 pub fn warn(checker: &mut Checker, plan: &Plan, blocks: &[usize], rig: Option<usize>) {
     let Link::Virtual(link) = &plan.rig.link else {
@@ -61,7 +61,7 @@ fn remedy(stepping: &Stepping, link: &VirtualLink, delay: Delay, part: f64) -> m
     match stepping.mode {
         _ if link.lag == 0.0 => message::Remedy::Shorter(part * delay.time_step),
         Mode::Continuous { time_scale } => message::Remedy::Slower(time_scale / part),
-        // The rest of the lag after a step decays with its time constant.
+        // The remaining lag after a step decays with its time constant.
         Mode::StepAndPause => message::Remedy::Longer(-link.lag * part.ln()),
     }
 }

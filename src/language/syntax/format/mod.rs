@@ -8,11 +8,11 @@ mod value;
 use super::{ast::Ast, layout, lexical::tokens::Tokens};
 use rows::{Kind, Row};
 
-/// Spaces by which the fields of a block are indented.
+/// Number of spaces by which the fields of a block are indented.
 const INDENT: usize = 2;
-/// Most columns of a one-line block.
+/// Largest number of columns of a one-line block.
 const BLOCK_WIDTH: usize = 100;
-/// Most columns of a value before its list or call is broken into lines.
+/// Largest number of columns of a value on one line; a longer list or call is broken into lines.
 const WIDTH: usize = 110;
 
 /// The canonical form of `text`, from which `ast` was parsed without an error. Formatting it again changes nothing, and
@@ -76,7 +76,7 @@ fn write_run(tokens: &Tokens, run: &[Row], lines: &mut Vec<String>) {
         .zip(&written)
         .filter(|(row, lines)| row.comment.is_some() && lines.len() == 1);
     let widths = commented.map(|(_, lines)| lines[0].chars().count());
-    // A long row does not move the comments of others out of sight: only its own follows it.
+    // A long row does not move the comments of other rows far to the right: only its own comment follows it.
     let column = widths.filter(|width| *width <= WIDTH).max().unwrap_or(0);
     for (row, mut row_lines) in run.iter().zip(written) {
         let single = row_lines.len() == 1;

@@ -180,7 +180,7 @@ impl Writer<'_> {
         self.at = close + 1;
     }
 
-    /// `head { key = value }`, where it was written on one line and is short.
+    /// `head { key = value }`, if it was written on one line and is short.
     fn one_line(
         &self,
         head: &str,

@@ -1,5 +1,5 @@
-//! One value in canonical spacing: on one line where it fits and was on one, else lists and calls with one element on each line.
-//! In: the value's tokens and the text before it. Out: lines.
+//! One value in canonical spacing: on one line if it fits and was on one line, else lists and calls with one element per line. In: the
+//! value's tokens and the text before it. Out: lines.
 
 use super::{INDENT, WIDTH};
 use crate::language::syntax::lexical::tokens::{JOINING_WORDS, Kind, Tokens};
@@ -136,7 +136,7 @@ struct Writer {
     lines: Vec<String>,
     /// The last line has only the text before a value so far.
     fresh: bool,
-    /// The last line ends with a comment: nothing more can follow on it.
+    /// The last line ends with a comment: no further text can follow on it.
     commented: bool,
 }
 

@@ -1,13 +1,13 @@
 //! A character or a word that is easily confused with one of the language.
 
-/// A character or word that was written for another. Each is reported once, however often it appears.
+/// A character or word that was written instead of another. Each is reported once, however often it appears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Confusable<'a> {
     /// A byte order mark at the start.
     ByteOrderMark,
-    /// A space other than the one of the keyboard.
+    /// A space that differs from the normal space.
     Space(char),
-    /// A sign, and the one it is read as.
+    /// A character, and the one as which it is read.
     Sign(&'a str, &'static str),
     /// `²`
     Superscript(&'a str),

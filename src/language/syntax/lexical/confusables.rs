@@ -1,6 +1,6 @@
-//! Characters that look like those of the language and are others: a no-break space, `≤`,
-//! `“x”`, `=<`, a Cyrillic і. In: the text of a file. Out: the normalized text, with the same length in bytes, so that
-//! every span in it stays valid, and one error for each sort of confusable. It knows no grammar.
+//! Characters that look like those of the language but differ from them: a no-break space, `≤`, `“x”`, `=<`, a Cyrillic і. In: the text
+//! of a file. Out: the normalized text, with the same length in bytes, so that every span in it stays valid, and one error for each sort
+//! of confusable. It knows no grammar.
 
 use super::confusable::Confusable;
 use std::borrow::Cow;
@@ -17,11 +17,11 @@ pub struct Normalized<'a> {
     pub text: Cow<'a, str>,
     /// One for each sort of confusable, at its first position.
     pub errors: Vec<Diagnostic>,
-    /// Every span that is read otherwise than it is written, in order.
+    /// Every span that is not read as it is written, in order.
     pub spans: Vec<Span>,
 }
 
-/// Signs that look like one of the language, or have its meaning elsewhere. The longer ones come first.
+/// Characters that look like one of the language, or have its meaning elsewhere. The longer ones come first.
 const SIGNS: &[(&str, &str)] = &[
     ("===", "=="),
     ("!==", "!="),
@@ -95,7 +95,7 @@ const QUOTES: &[(char, &str)] = &[
     ('"', "”“＂"),
 ];
 
-/// Spaces that the language does not know.
+/// Spaces that are not part of the language.
 const fn is_foreign_space(c: char) -> bool {
     matches!(
         c,
@@ -163,7 +163,7 @@ impl<'a> Normalizer<'a> {
         match first {
             'a'..='z' | 'A'..='Z' | '0'..='9' | '_' | ' ' | '\n' | ',' => 1,
             '#' => line(rest).len(),
-            // A string that is never closed has a separate error: nothing after it is a sign.
+            // A string that is never closed has a separate error: the text after it contains no operators.
             '"' => text_extent(rest).unwrap_or_else(|| match self.quoted(rest, first) {
                 1 => line(rest).len(),
                 length => length,

@@ -1,5 +1,5 @@
-//! Letters outside a–z: those that look like one, and the name that is read for a word that contains them. In: a word.
-//! Out: a word of a–z, 0–9 and _ whose length in bytes is not larger, so that it fits in the span of the first.
+//! Letters outside a–z: letters that look like one of a–z, and the replacement of a word that contains them. In: a word. Out: a word of
+//! a–z, 0–9 and _ whose length in bytes is not larger, so that it fits in the span of the first.
 
 /// Letters of other scripts that look the same as one of a–z.
 const LOOKALIKES: &[(char, char)] = &[

@@ -1,6 +1,6 @@
-//! Lexical analysis: words, numbers, strings, signs and line ends of a file, and every error that needs no
-//! grammar (invalid characters, invalid numbers, units attached to expressions, all size limits). In: text. Out: [`Tokens`].
-//! The grammar parses the text itself; tokens serve recovery (`layout`), messages and the formatter.
+//! Lexical analysis: words, numbers, strings, symbols and line ends of a file, and every error that needs no grammar (invalid characters,
+//! invalid numbers, units attached to expressions, all size limits). In: text. Out: [`Tokens`]. The grammar parses the text itself;
+//! tokens serve recovery (`layout`), messages and the formatter.
 
 use super::unit_tokens::{unit_extent, unit_in_parentheses};
 use super::{characters, numbers};
@@ -68,7 +68,7 @@ impl<'a> Tokens<'a> {
         Span::new(self.file, start, end)
     }
 
-    /// Whether the token is the sign or word `text`.
+    /// Whether the token is the symbol or word `text`.
     #[must_use]
     pub fn is(&self, index: usize, text: &str) -> bool {
         self.list.get(index).is_some_and(|token| {
@@ -95,7 +95,7 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// Signs of two characters; they have priority over those of one.
+/// Symbols of two characters; they have priority over those of one.
 const LONG_SIGNS: [&str; 5] = ["..", "<=", ">=", "==", "!="];
 /// Words that join two values or follow a value, so that none of them is a unit.
 pub const JOINING_WORDS: [&str; 5] = ["and", "within", "of", "step", "between"];
@@ -314,7 +314,7 @@ impl<'a> Reader<'a> {
             let glued = after
                 .find([' ', '\t', '\n', '\r', ',', ')', ']', '#'])
                 .unwrap_or(after.len());
-            // A parenthesis that opens in it is closed in it.
+            // A parenthesis that opens in the unit is also closed in it.
             let closes = after[..glued].contains('(') && after[glued..].starts_with(')');
             let glued = glued + usize::from(closes);
             let span = self.span(length + glued);
@@ -404,7 +404,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Length in bytes of a string that is closed some lines below the one on which it opens; None where another statement begins before that.
+/// Length in bytes of a string that is closed several lines below the line on which it opens; None if another statement begins before
+/// that.
 fn closed_below(text: &str) -> Option<usize> {
     let mut end = 0;
     for (index, line) in text.split_inclusive('\n').take(LINES_OF_A_TEXT).enumerate() {

@@ -1,5 +1,5 @@
-//! The extent of a unit in the text of a plan. In: the text from the unit on. Out: its length in bytes. It knows the form of a unit, and
-//! only for one in parentheses its name.
+//! The extent of a unit in the text of a plan. In: the text from the unit on. Out: its length in bytes. It knows the form of a unit; the
+//! name of a unit is checked only in parentheses.
 
 /// A unit in parentheses at the start of `text`, after `*` or `/` unless it is `alone`: its length in bytes, the operator included, and
 /// the same without parentheses. Anything that is not a unit is an expression.
@@ -27,7 +27,7 @@ pub fn unit_in_parentheses(text: &str, alone: bool) -> Option<(usize, String)> {
     Some((sign.len() + 1 + unit.len() + 1, flat))
 }
 
-/// Length in bytes of the unit token at the start of `text`: `name[^power]` joined by `*` or `/`; 0 where there is none.
+/// Length in bytes of the unit token at the start of `text`: `name[^power]` joined by `*` or `/`; 0 without a unit.
 pub fn unit_extent(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = if bytes.starts_with(b"1/") {

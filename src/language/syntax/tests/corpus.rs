@@ -1,4 +1,4 @@
-//! Hostile and odd files: rejected with the right code or accepted, always quickly.
+//! Hostile and unusual files: rejected with the correct code or accepted, always quickly.
 
 use std::time::Duration;
 
@@ -173,7 +173,7 @@ pub fn soup() -> impl Strategy<Value = String> {
     prop::collection::vec(pieces, 0..60).prop_map(|pieces| pieces.concat())
 }
 
-/// Each is read as a sign of one byte, with spaces after it: the next token begins in the middle of the letter.
+/// Each is read as a one-byte character followed by spaces: the next token begins in the middle of the letter.
 #[test]
 fn a_letter_of_several_bytes_that_is_read_as_a_sign_ends_no_text_within_itself() {
     for letter in [

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::{beside, new_file, write_whole};
 
-/// Space for the final entries, bytes: some hundreds of entries.
+/// Space for the final entries \[bytes\]: several hundred entries.
 pub const RESERVE_BYTES: usize = 1 << 20;
 
 /// Path of the reserve of a run log.
@@ -14,7 +14,7 @@ pub fn path(journal: &Path) -> PathBuf {
     beside(journal, ".reserve")
 }
 
-/// Lays the reserve, or finds it laid. It is written, not only sized, with bytes that no file system makes smaller.
+/// Creates the reserve, or finds an existing one. It is written in full, not only allocated, with bytes that no file system can compress.
 pub fn lay(journal: &Path) -> io::Result<()> {
     let path = path(journal);
     if let Ok(there) = path.symlink_metadata() {
@@ -31,7 +31,7 @@ pub fn lay(journal: &Path) -> io::Result<()> {
     laid.inspect_err(|_| release(journal))
 }
 
-/// Frees the space. There is no second chance if this fails.
+/// Frees the space. If this fails, it cannot be repeated.
 pub fn release(journal: &Path) {
     let _ = std::fs::remove_file(path(journal));
 }
@@ -41,7 +41,7 @@ pub fn is_part_of_one(bytes: &[u8]) -> bool {
     incompressible().starts_with(bytes)
 }
 
-/// Marsaglia's xorshift, 64 bits: noise enough that compression finds nothing.
+/// Marsaglia's xorshift, 64 bits: random enough to prevent compression.
 fn incompressible() -> Vec<u8> {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let words = (0..RESERVE_BYTES / 8).flat_map(|_| {

@@ -17,13 +17,13 @@ use crate::record::failpoint::{Guarding, on};
 pub use ballast::is_part_of_one as is_part_of_a_reserve;
 pub use fault::FileFault;
 
-/// Largest run log that is read back, bytes. The commands that verify it keep all of it in memory.
+/// Largest run log that is read back \[bytes\]. The commands that verify it keep all of it in memory.
 pub const MOST_BYTES: u64 = 4 << 30;
 
 /// Only the operator may read and write the file.
 const MODE: u32 = 0o600;
 
-/// The file of a journal. No other psd writes it while this lives.
+/// The file of a run log. No other psd writes it during its lifetime.
 #[derive(Debug)]
 pub struct FileStorage {
     file: File,
@@ -37,14 +37,14 @@ pub struct Still {
 }
 
 impl FileStorage {
-    /// A new, empty journal with its reserve beside it, both durable.
+    /// A new, empty run log with its reserve beside it, both durable.
     ///
     /// # Errors
-    /// Something of this name exists, or the disk has no room for the reserve; nothing is left behind then.
+    /// A file with this name exists, or the disk has no space for the reserve; then no file remains.
     pub fn create(path: &Path) -> Result<Self, FileFault> {
         let file = new_file(path).map_err(FileFault::of("created", path))?;
         let storage = Self::locked(file, path)?;
-        // The reserve goes with the storage.
+        // The storage removes the reserve when it is dropped.
         storage
             .settle()
             .inspect_err(|_| drop(std::fs::remove_file(path)))?;
@@ -56,7 +56,7 @@ impl FileStorage {
     /// # Errors
     /// There is none, another psd has it, or the disk has no space for the reserve.
     pub fn open_existing(path: &Path) -> Result<Self, FileFault> {
-        // Neither through a link nor waiting for the other end of a pipe.
+        // The open does not follow a link, and does not wait for the other end of a pipe.
         let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
         let mut options = OpenOptions::new();
         options
@@ -103,14 +103,14 @@ impl FileStorage {
     /// All the bytes.
     ///
     /// # Errors
-    /// They cannot be read, or are more than any run of ours writes.
+    /// They cannot be read, or are more than any run writes.
     pub fn contents(&self) -> Result<Vec<u8>, FileFault> {
         self.contents_up_to(MOST_BYTES)
     }
 
     fn contents_up_to(&self, most: u64) -> Result<Vec<u8>, FileFault> {
         let mut bytes = Vec::new();
-        // Through the descriptor that holds the lock: a path may lead elsewhere meanwhile.
+        // Through the descriptor with the lock: the path may meanwhile lead to a different file.
         let mut file = &self.file;
         let read = file
             .seek(SeekFrom::Start(0))
@@ -155,7 +155,7 @@ impl FileStorage {
         Ok(statistics.f_bavail.saturating_mul(statistics.f_frsize))
     }
 
-    /// It exists only with the lock, so the reserve that it removes at its end is its own.
+    /// It is created only with the lock, so the reserve that it removes when dropped belongs to it.
     fn locked(file: File, path: &Path) -> Result<Self, FileFault> {
         if on(Guarding::Lock) {
             file.try_lock().map_err(|refused| match refused {
@@ -187,7 +187,7 @@ impl Storage for FileStorage {
 
     fn sync(&mut self) -> io::Result<()> {
         self.file.sync_data()?;
-        // A file without a name is on no disk tomorrow.
+        // A file without a name would be lost when it is closed.
         if self.file.metadata()?.nlink() == 0 {
             return Err(io::Error::new(
                 io::ErrorKind::NotFound,
@@ -212,7 +212,7 @@ impl Storage for FileStorage {
     }
 }
 
-/// The reserve is of use only while someone may write; the next to open the journal lays it again.
+/// The reserve is needed only during writing; the next program that opens the run log creates it again.
 impl Drop for FileStorage {
     fn drop(&mut self) {
         self.release_reserve();

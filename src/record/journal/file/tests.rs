@@ -168,7 +168,7 @@ fn the_reserve_is_there_while_the_journal_is_open_whatever_a_killed_run_left() {
 #[test]
 fn a_create_without_room_for_the_reserve_leaves_nothing() {
     let (folder, path) = place();
-    // A folder in the place of the reserve, which is not removed as a file would be.
+    // A folder instead of the reserve file; it is not removed as a file would be.
     fs::create_dir(ballast::path(&path)).unwrap();
     assert!(matches!(
         FileStorage::create(&path),
@@ -208,7 +208,7 @@ fn a_cut_never_makes_the_file_longer() {
     assert_eq!(storage.contents().unwrap(), b"0123x");
 }
 
-/// Takes a few bytes at a time, is interrupted before each, and stops taking any at the end.
+/// Accepts a few bytes at a time, is interrupted before each part, and accepts none at the end.
 struct Reluctant {
     taken: Vec<u8>,
     calls: usize,

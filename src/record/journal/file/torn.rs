@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::{beside, new_file, sync_folder};
 
-/// More torn ends than any run leaves.
+/// A number of torn ends that no run reaches.
 const MOST: u32 = 1000;
 
 /// Copies the bytes after the first `whole` bytes into a new file beside the run log. None if there are none.

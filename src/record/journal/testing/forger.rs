@@ -1,18 +1,18 @@
-//! A forger who has the program: entries altered, and every check word after them made again. In: a whole run log. Out: one
-//! whose lines are all valid.
+//! A forger who uses the program: entries are altered, and all check values after them are recalculated. In: a whole run log. Out: a run
+//! log whose lines are all valid.
 
 use serde_json::{Value, json};
 
 use super::super::chain::Chain;
 use super::super::{EntryKind, body, line, recover};
 
-/// The records of a journal, as they count in [`written`].
+/// The entries of a run log, in the form that [`written`] accepts.
 pub(crate) fn records(journal: &[u8]) -> Vec<(EntryKind, Value)> {
     let lines = recover(journal).expect("a sound journal").lines;
     lines.iter().map(|line| (line.kind, line.body())).collect()
 }
 
-/// The journal of these records: numbers, count, chain and checksums are right.
+/// The run log of these entries: numbers, count, chain and checksums are correct.
 pub(crate) fn written(records: impl IntoIterator<Item = (EntryKind, Value)>) -> Vec<u8> {
     let (mut out, mut chain) = (Vec::new(), Chain::START);
     for ((kind, mut said), seq) in records.into_iter().zip(1_u64..) {
@@ -27,7 +27,7 @@ pub(crate) fn written(records: impl IntoIterator<Item = (EntryKind, Value)>) -> 
     out
 }
 
-/// The journal with each body as `alter` leaves it.
+/// The run log with each body altered by `alter`.
 pub(crate) fn forged(journal: &[u8], mut alter: impl FnMut(EntryKind, &mut Value)) -> Vec<u8> {
     let altered = records(journal).into_iter().map(|(kind, mut said)| {
         alter(kind, &mut said);

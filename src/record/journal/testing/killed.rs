@@ -1,12 +1,12 @@
-//! A disk whose program is killed. In: the bytes of a run log. Out: those that were written before, and a panic that is not
-//! a fault: the code that catches it is the next program.
+//! A disk whose program is killed. In: the bytes of a run log. Out: the bytes that were written before. The kill is a panic that is not a
+//! fault: the code that catches it represents the next program.
 
 use std::panic::resume_unwind;
 
 use super::PowerLoss;
 use crate::record::journal::Storage;
 
-/// Ends the program at its n-th call, as a kill does: before or after the bytes are there.
+/// Ends the program at its n-th call, as a kill does: before or after the bytes are written.
 pub struct Killed {
     disk: PowerLoss,
     left: usize,
@@ -15,7 +15,7 @@ pub struct Killed {
 }
 
 impl Killed {
-    /// Over `disk`, dead at call number `left`, counted from 0; `after`: its bytes are there, else not.
+    /// Uses `disk`, and kills the program at call number `left`, counted from 0. `after`: the bytes of this call are written, else not.
     pub fn at(disk: &PowerLoss, left: usize, after: bool) -> Self {
         Self {
             disk: disk.clone(),
@@ -29,7 +29,7 @@ impl Killed {
         &mut self,
         call: impl FnOnce(&mut PowerLoss) -> std::io::Result<()>,
     ) -> std::io::Result<()> {
-        // What is dropped on the way out writes nothing more.
+        // A value that is dropped during the unwinding writes nothing more.
         if self.dead {
             return Ok(());
         }

@@ -1,22 +1,22 @@
-//! A disk that knows its durable bytes. In: the bytes of a run log, with its syncs. Out: the bytes after a loss of power:
-//! all that were synced, and any part of the rest. It knows no entry.
+//! A disk that knows its durable bytes. In: the bytes of a run log, with its syncs. Out: the bytes after a loss of power: all synced
+//! bytes, and any part of the rest. It does not know the entries.
 
 use std::io;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::super::Storage;
 
-/// Bytes that a disk writes at once.
+/// Number of bytes that a disk writes together.
 const SECTOR_BYTES: usize = 512;
 
-/// A disk in memory; its clones are the same disk, so that a test keeps one and gives the other to the journal.
+/// A disk in memory. Its clones are the same disk: a test keeps one and gives the other to the run log.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PowerLoss(Arc<Mutex<Disk>>);
 
 #[derive(Debug, Default)]
 struct Disk {
     written: Vec<u8>,
-    /// How many of them are safe.
+    /// Number of bytes that are durable.
     synced: usize,
     syncs: usize,
 }
@@ -26,7 +26,7 @@ impl PowerLoss {
         Self::default()
     }
 
-    /// A disk with safe bytes on it.
+    /// A disk that contains durable bytes.
     pub(crate) fn holding(bytes: &[u8]) -> Self {
         let disk = Disk {
             written: bytes.to_vec(),
@@ -36,24 +36,24 @@ impl PowerLoss {
         Self(Arc::new(Mutex::new(disk)))
     }
 
-    /// All the bytes: what is read while the power is on.
+    /// All the bytes that can be read while the power is on.
     pub(crate) fn written(&self) -> Vec<u8> {
         self.disk().written.clone()
     }
 
-    /// The bytes that are safe.
+    /// The durable bytes.
     pub(crate) fn synced(&self) -> Vec<u8> {
         let disk = self.disk();
         disk.written[..disk.synced].to_vec()
     }
 
-    /// How often it was asked to make the bytes safe.
+    /// Number of requests to make the bytes durable.
     pub(crate) fn syncs(&self) -> usize {
         self.disk().syncs
     }
 
-    /// What is there after a loss of power: the safe bytes and `length` of the others at most; sectors of the file that
-    /// are not `kept` are zeros in their unsafe part, as when the length of a file is written before its blocks.
+    /// The bytes after a loss of power: the durable bytes and at most `length` of the others. In sectors that are not `kept`, the other
+    /// bytes are zero, as on a disk that writes the file length before the blocks.
     pub(crate) fn after_loss(&self, length: usize, mut kept: impl FnMut(usize) -> bool) -> Vec<u8> {
         let disk = self.disk();
         let end = disk.written.len().min(disk.synced.saturating_add(length));

@@ -1,21 +1,21 @@
-//! A disk that fails on demand: full after some bytes, with a reserve; or at the n-th sync. In: the bytes of a run log.
-//! Out: the bytes that it accepted, and the number of calls. It knows no entry.
+//! A disk that fails on demand: full after some bytes, with a reserve; or at the n-th sync. In: the bytes of a run log. Out: the bytes
+//! that it accepted, and the number of calls. It does not know the entries.
 
 use std::io;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::super::Storage;
 
-/// What is wrong with a disk.
+/// The faults of a disk.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sickness {
-    /// Bytes it takes until it is full; the append that goes beyond leaves a part. None: all.
+    /// Number of bytes until the disk is full; the append that exceeds it is written in part. None: unlimited.
     pub(crate) room: Option<usize>,
-    /// Bytes more once the reserve is given up.
+    /// Additional bytes after the reserve is released.
     pub(crate) reserve: usize,
-    /// Which sync fails, from 1. None: none does. Later ones say that all is well, as Linux does.
+    /// Number of the sync that fails, from 1. None: no sync fails. Later syncs report success, as on Linux.
     pub(crate) failed_sync: Option<usize>,
-    /// Whether it cannot be cut.
+    /// Whether the file cannot be truncated.
     pub(crate) uncuttable: bool,
 }
 
@@ -45,12 +45,12 @@ impl SickDisk {
         self.disk().written.clone()
     }
 
-    /// How often it was asked to append.
+    /// Number of appends.
     pub(crate) fn appends(&self) -> usize {
         self.disk().appends
     }
 
-    /// How often it was asked to sync.
+    /// Number of syncs.
     pub(crate) fn syncs(&self) -> usize {
         self.disk().syncs
     }

@@ -1,5 +1,5 @@
-//! A vandal who has the program: entries removed, duplicated, swapped and changed at random, and every check word made
-//! again. In: a whole run log and a seed. Out: one whose lines are all valid and whose run may be impossible.
+//! A vandal who uses the program: entries are removed, duplicated, swapped and changed at random, and all check values are recalculated.
+//! In: a whole run log and a seed. Out: a run log whose lines are all valid and whose run may be impossible.
 
 use rand::RngExt as _;
 use rand_pcg::Pcg64;
@@ -19,7 +19,7 @@ impl Vandal {
         Self(Pcg64::seed_from_u64(seed))
     }
 
-    /// The journal after one to four blows; some of them bring in a record of the `other`.
+    /// The run log after one to four random changes; some of them insert an entry of the `other` run log.
     pub(crate) fn mangled(&mut self, journal: &[u8], other: &[u8]) -> Vec<u8> {
         let (mut mangled, other) = (records(journal), records(other));
         for _ in 0..=self.below(4) {
@@ -33,7 +33,7 @@ impl Vandal {
     }
 
     fn strike(&mut self, records: &mut Records, other: &Records) {
-        // The first record stays where it is: without it there is no journal at all.
+        // The first entry is not moved: without it there is no run log.
         if records.len() < 3 {
             return;
         }
@@ -59,12 +59,12 @@ impl Vandal {
             }
             _ => self.change(&mut records[at].1, other),
         }
-        // What is said after the end is damage that the reader finds by itself.
+        // Entries after the end are damage that the reader finds without further checks.
         let end = records.iter().position(|(kind, _)| *kind == EntryKind::End);
         records.truncate(end.map_or(records.len(), |end| end + 1));
     }
 
-    /// Another digit somewhere in a text of the plan, and the digest of that text.
+    /// Changes a digit in a text of the plan, and the digest of that text.
     fn replan(&mut self, records: &mut Records) {
         let Some(place) = records
             .iter()
@@ -96,7 +96,7 @@ impl Vandal {
         records[place].1["text"] = json!(text);
     }
 
-    /// Changes one value somewhere in a body.
+    /// Changes one random value in a body.
     fn change(&mut self, body: &mut Value, other: &Records) {
         let mut places = Vec::new();
         gather(body, "", &mut places);
@@ -156,7 +156,7 @@ impl Vandal {
     }
 }
 
-/// A resumption that nobody made.
+/// A resumption that did not occur.
 fn resume(records: &mut Records, at: usize) {
     let Some((_, rig)) = records
         .iter()
@@ -179,7 +179,7 @@ fn resume(records: &mut Records, at: usize) {
     records.insert(at, (EntryKind::Rig, rig));
 }
 
-/// Every place in a value that holds something, itself left out.
+/// The paths of all values inside a value, without the value itself.
 fn gather(value: &Value, at: &str, places: &mut Vec<String>) {
     match value {
         Value::Object(fields) => fields.iter().for_each(|(name, field)| {

@@ -4,7 +4,7 @@ use super::super::chain::Chain;
 use super::super::{Damage, EntryKind, Wrong, line, recover};
 use super::{is_clean, lines, small};
 
-/// A journal of records said here, each with the right check words.
+/// A run log of these entries, each with the correct check values.
 fn said(records: &[(u64, EntryKind, &str)]) -> Vec<u8> {
     let (mut out, mut chain) = (Vec::new(), Chain::START);
     for (seq, kind, json) in records {
@@ -45,7 +45,7 @@ fn no_flipped_bit_passes() {
             }
         }
     }
-    // The line end of the last record, its blanks and its @ may become something without line end, or a NUL.
+    // In the last entry, the line end, the spaces and the @ may become a character that is not a line end, or a NUL.
     assert!((8..20).contains(&torn), "{torn} in the last record");
 }
 

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::testing::PowerLoss;
 use super::{Durability, EntryKind, Journal, Recovered, recover};
 
-/// A journal on a disk of memory, begun.
+/// A run log that was begun on a disk in memory.
 fn begun(durability: Durability) -> (PowerLoss, Journal) {
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), durability);
@@ -43,7 +43,7 @@ fn small() -> Vec<u8> {
     disk.written()
 }
 
-/// The lines of a journal, each with its LF.
+/// The lines of a run log, each with its LF.
 fn lines(journal: &[u8]) -> Vec<Vec<u8>> {
     journal
         .split_inclusive(|byte| *byte == b'\n')
@@ -60,7 +60,7 @@ fn records(recovered: &Recovered) -> Vec<(EntryKind, Value)> {
         .collect()
 }
 
-/// Whether a journal says that it is whole, from HEADER to END.
+/// Whether a run log is complete, from HEADER to END.
 fn is_clean(journal: &[u8]) -> bool {
     recover(journal).is_ok_and(|recovered| recovered.ended && recovered.torn.is_none())
 }

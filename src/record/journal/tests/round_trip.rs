@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::super::{Durability, EntryKind, recover};
 use super::{begun, lines, records, small};
 
-/// JSON of every shape, with text of any characters and floats of any bits that are numbers.
+/// JSON of every shape, with text of any characters and floats with any bits except NaN and infinity.
 fn json() -> impl Strategy<Value = Value> {
     let float = any::<u64>()
         .prop_map(f64::from_bits)
@@ -45,7 +45,7 @@ fn body() -> impl Strategy<Value = Value> {
     prop::collection::vec((any::<String>(), json()), 0..5).prop_map(Value::from_iter)
 }
 
-/// `==` of JSON takes -0 for 0.
+/// The bits of the numbers, because `==` of JSON treats -0 as 0.
 fn bits(value: &Value) -> Vec<u64> {
     match value {
         Value::Number(number) => number.as_f64().map(f64::to_bits).into_iter().collect(),

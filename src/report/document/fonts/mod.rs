@@ -1,5 +1,5 @@
-//! The fonts of the PDF, all part of the program. Out: each font, parsed once; `text::glyphs` lists their characters. No font of
-//! the machine is used, so that the same report has the same bytes everywhere.
+//! The fonts of the PDF, all part of the program. Out: each font, parsed once; `text::glyphs` lists their characters. No font of the
+//! machine is used, so that the same report is bit-identical everywhere.
 
 use std::sync::LazyLock;
 

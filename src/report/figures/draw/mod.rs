@@ -16,7 +16,7 @@ use sheet::Sheet;
 
 const WIDTH: u32 = 720;
 const HEIGHT: u32 = 430;
-/// The frame, reference pixels; its top moves down where the legend takes two lines.
+/// The frame, reference pixels; its top moves down if the legend has two lines.
 const LEFT: f64 = 78.0;
 const RIGHT: f64 = 700.0;
 const BOTTOM: f64 = 372.0;

@@ -1,4 +1,4 @@
-//! Reference lines with their text, where it covers the least of the data. In: a chart on its sheet. Out: shapes on a canvas.
+//! Reference lines with their text, at the position that covers the least of the data. In: a chart on its sheet. Out: shapes on a canvas.
 
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -7,8 +7,8 @@ use super::super::chart::{Chart, Line, Series};
 use super::sheet::Sheet;
 use super::{BOTTOM, LEFT, LIMIT_INK, RIGHT, lettering};
 
-/// Reference lines that the axis includes. Of a line far from the data only the text is printed, at the nearer edge: the axis
-/// would press the curves flat.
+/// Reference lines that the axis includes. If a line is far from the data, only its text is printed, at the nearer edge. Otherwise the
+/// axis range would make the curves flat.
 pub(super) fn near(chart: &Chart) -> impl Iterator<Item = f64> {
     const FARTHEST: f64 = 2.5;
     let largest = chart
@@ -127,7 +127,7 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) -> Result<(), String> {
             ..lettering(12.0, HPos::Left, VPos::Bottom)
         };
         let width = style.width(&label)?;
-        // A reference without a label shares the text of the one before: the text may be at either line.
+        // A reference without a label shares the text of the previous one: the text may be at either line.
         let other = chart
             .references
             .get(index + 1)
@@ -154,7 +154,7 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) -> Result<(), String> {
     Ok(())
 }
 
-/// The things that a text would cover, the gravest first: another text, lines of other limits, data.
+/// The objects that a text would cover, the most important first: another text, lines of other limits, data.
 fn cover(sheet: &Sheet<'_>, chart: &Chart, written: &[Area], area: Area) -> (bool, usize, usize) {
     let texts = written.iter().any(|other| area.touches(*other));
     let lines = chart

@@ -1,4 +1,4 @@
-//! Thinning of a curve to what the picture can show. In: points in reference pixels. Out: fewer points.
+//! Thinning of a curve to the resolution of the image. In: points in reference pixels. Out: fewer points.
 
 use super::super::canvas::Point;
 
@@ -22,8 +22,8 @@ pub(super) fn columns(points: &[Point], width: f64) -> Vec<Point> {
     kept
 }
 
-/// Drops points nearer than `least` to the point kept before, except the last one and those where the curve turns back: a
-/// short impact or a sharp peak is kept.
+/// Drops points nearer than `least` to the last kept point, except the final point and reversal points of the curve: a short impact or a
+/// sharp peak is kept.
 pub(super) fn thinned(points: &[Point], least: f64) -> Vec<Point> {
     let mut kept: Vec<Point> = Vec::new();
     for (index, point) in points.iter().enumerate() {

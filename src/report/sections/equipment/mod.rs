@@ -244,7 +244,7 @@ fn other_equipment(run: &Run<'_>) -> Option<(&'static str, Text)> {
     Some((wording::OTHER_EQUIPMENT, text.into()))
 }
 
-/// The row of the standard uncertainties of a calibration, where one is declared.
+/// The row of the standard uncertainties of a calibration, if one is declared.
 fn calibration_uncertainty(calibration: &Calibration) -> Option<(&'static str, Text)> {
     let terms = calibration_terms(calibration)?;
     Some((wording::CALIBRATION_UNCERTAINTY, terms.into()))
@@ -305,7 +305,7 @@ fn simulated_errors(link: &VirtualLink) -> String {
     }
 }
 
-/// One row per device of a role; the axes behind it where the rig has others.
+/// One row per device of a role; with the axes of the device if the rig has others.
 fn devices(
     role: &'static str,
     behind: &[Behind<'_>],
@@ -341,7 +341,7 @@ fn device(link: &DeviceLink) -> Text {
     }
 }
 
-/// Resolution and noise of the readings, and the range of the load cell where it is bounded.
+/// Resolution and noise of the readings, and the range of the load cell if it is bounded.
 fn declared(resolution: f64, noise: f64, readings: &ReadingRules) -> String {
     let force_range = readings.force_range;
     let mut terms = vec![

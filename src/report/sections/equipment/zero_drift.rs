@@ -1,5 +1,5 @@
-//! Zero readings beside the equipment: before the test, after it, and their slopes at rest. In: a run. Out: blocks. Where the
-//! zeros were not read again, a note states it.
+//! Zero readings beside the equipment: before the test, after it, and their slopes at rest. In: a run. Out: blocks. If the zeros were not
+//! read again, a note states it.
 
 use crate::plan::ZeroAfter;
 use crate::record::{AxisDrift, Drift};
@@ -10,7 +10,7 @@ use crate::report::wording::zero_drift as wording;
 use crate::rig::{named_axis, of_axis};
 use crate::units::Dimension;
 
-/// The zero readings of a rig whose allowed zero drift is declared; for a real rig without it, a note.
+/// The zero readings of a rig with a declared allowed zero drift; for a real rig without it, a note.
 pub(super) fn append(run: &Run<'_>, body: &mut Vec<Block>) {
     let Some(drift) = &run.record.drift else {
         if run.plan.rig.drift.is_none() && run.plan.rig.link.as_real().is_some() {
@@ -82,11 +82,11 @@ struct Channel {
     allowed: Option<f64>,
     /// Slope before the test, per second.
     slope: f64,
-    /// The steepest slope in a hold.
+    /// The steepest slope in a dwell.
     slope_in_holds: Option<f64>,
-    /// Change by the slope before the test over the time of one zero reading.
+    /// Change that results from the slope before the test over the time of one zero reading.
     change_at_rest: f64,
-    /// Growth of the force in a hold where it can only relax.
+    /// Increase of the force in a dwell in which relaxation can only decrease it.
     grown: Option<f64>,
     dimension: Dimension,
 }

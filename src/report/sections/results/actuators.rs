@@ -10,7 +10,7 @@ use crate::units::Dimension;
 /// Tracking errors below this are rounding \[m\].
 pub(super) const ROUNDING: f64 = 1e-12;
 
-/// Force correction and mode of motion, where they differ from plain ramp-and-hold.
+/// Force correction and mode of motion, if they differ from plain ramp-and-hold.
 pub(crate) fn motion(i_modification: bool, mode: Mode) -> Vec<String> {
     let mut sentences = Vec::new();
     if i_modification {

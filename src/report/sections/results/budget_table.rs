@@ -64,7 +64,7 @@ impl Scope {
     }
 }
 
-/// The note on the mark, where a result of the procedure has one.
+/// The note on the mark, if a result of the procedure has one.
 pub(super) fn mark_note(procedure: &ProcedureRecord) -> Option<Block> {
     let is_marked = |result: &NamedResult| match &result.value {
         ResultValue::Number { .. } => !is_reliable(result, 0),
@@ -93,8 +93,8 @@ pub(crate) fn is_reliable(result: &NamedResult, entry: usize) -> bool {
     estimated <= SMALL * all
 }
 
-/// The results of this procedure that a requirement reads, and the entry of a list where it names one. Where no requirement
-/// reads a result of the procedure: the results that its slice names for a budget.
+/// The results of this procedure that a requirement reads, and the entry of a list if the requirement names one. If no requirement reads
+/// a result of the procedure: the results that its slice names for a budget.
 fn requested(run: &Run<'_>, index: usize, history: &History) -> Vec<(&'static str, Option<usize>)> {
     let mut read: Vec<(ResultReference, Option<usize>)> = Vec::new();
     let conditions = run
@@ -120,7 +120,7 @@ fn requested(run: &Run<'_>, index: usize, history: &History) -> Vec<(&'static st
         .collect()
 }
 
-/// Every result that a formula reads, with the entry that it takes of it.
+/// Every result that a formula reads, with the entry that it reads.
 fn collect(
     formula: &Formula,
     entry: Option<usize>,
@@ -142,7 +142,7 @@ fn collect(
     }
 }
 
-/// Whether the budget of a result is printed. Where no entry of a list is named, that of its largest number is printed.
+/// Whether the budget of a result is printed. If no entry of a list is named, that of its largest number is printed.
 fn is_printed(budget: &Budget<'_>, requested: &[(&'static str, Option<usize>)]) -> bool {
     let mut requested = requested
         .iter()

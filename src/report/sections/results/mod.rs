@@ -41,7 +41,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     }
 }
 
-/// A note with the values that the procedure was run with.
+/// A note with the input values of the procedure.
 fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let text = |(name, estimate, dimension): &(&'static str, Estimate, Dimension)| {
         let value = match estimate.uncertainty {
@@ -65,7 +65,7 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     }
 }
 
-/// The table of results, without lists that have a table of their own. Results without a value are named below it.
+/// The table of results, without lists that have a separate table. Results without a value are named below it.
 fn results(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let tabled = procedures::recorded(&procedure.history).lists_are_tabled;
     let printed = procedure
@@ -106,7 +106,7 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
         known(&result.contributions_of(reference), run.record)
     };
     let all: Vec<Option<Known>> = results.iter().map(|result| known(result)).collect();
-    // The column of k is left out where k is 2 throughout.
+    // The column of k is omitted if k is 2 throughout.
     let partial = budget_table::Scope::of(run) == budget_table::Scope::PartialReal;
     let factors = !partial
         && all
@@ -157,7 +157,7 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
 fn row(result: &NamedResult, known: Option<Known>) -> Vec<Text> {
     let dash = || Text::from("—");
     let [value, standard, expanded, unit] = match &result.value {
-        // R² needs as many digits as it has nines.
+        // The number of digits of R² depends on the number of nines.
         ResultValue::Number {
             value: Some(value), ..
         } if result.name == "r_squared" => [format!("{value:.6}").into(), dash(), dash(), dash()],

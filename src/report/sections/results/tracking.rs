@@ -1,5 +1,5 @@
-//! Tracking errors of the actuators of a frame: a sentence on all of them, a table with a row for each. In: results of a
-//! procedure. Out: a sentence; a table where an actuator missed a target.
+//! Tracking errors of the actuators of a frame: a sentence on all of them, a table with a row for each. In: results of a procedure. Out:
+//! a sentence; a table if an actuator missed a target.
 
 use super::actuators;
 use crate::physics::tracking::monitor::Tracking;
@@ -25,7 +25,7 @@ pub(crate) fn sentence(procedure: &ProcedureRecord) -> Option<String> {
     ))
 }
 
-/// One row per actuator, from the ground up; none where every actuator reached its targets.
+/// One row per actuator, from the ground up; none if every actuator reached its targets.
 pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
     let list = |name: &str| match procedure.result(name).map(|result| &result.value) {
         Some(ResultValue::List(values)) => values.as_slice(),

@@ -11,7 +11,7 @@ pub(super) use watermarks::{notices, watermarks};
 use crate::report::run::Run;
 use crate::text::sanitize;
 
-/// The title of the report, or else of the plan.
+/// The title of the report, else that of the plan.
 pub(super) fn title<'a>(run: &Run<'a>) -> &'a str {
     run.plan.report.title.as_deref().unwrap_or(&run.plan.title)
 }

@@ -18,7 +18,7 @@ pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {
     rows.chain([(wording::PLAN.into(), plan(run))]).collect()
 }
 
-/// Names of particulars that are not stated. Those that a notice below the verdict lists are left out.
+/// Names of particulars that are not stated. Those that a notice below the verdict lists are omitted.
 pub(in super::super) fn missing(run: &Run<'_>) -> Vec<&'static str> {
     let in_notice = !report_status::missing_particulars(run).is_empty();
     let wanted: &[Wanted] = if in_notice {

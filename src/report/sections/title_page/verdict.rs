@@ -7,7 +7,7 @@ use crate::report::wording::verdict as wording;
 use crate::run::rehearsal;
 use crate::verdict::Verdict;
 
-/// The verdict, and the reason where the run did not come to its end.
+/// The verdict, and the reason if the run was not completed.
 pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
     let reason = match &run.record.outcome {
         Outcome::Completed => String::new(),

@@ -1,5 +1,5 @@
-//! Notices against a wrong use of the report: boxes below the verdict, and watermarks across every page. In: a run. Out: their
-//! words, one for each reason against a certificate.
+//! Notices against an incorrect use of the report: boxes below the verdict, and watermarks on every page. In: a run. Out: their text, one
+//! for each reason why the report is not issuable as a test report.
 
 use crate::report::document::Notice;
 use crate::report::run::Run;

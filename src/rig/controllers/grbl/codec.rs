@@ -15,7 +15,7 @@ pub const SETTINGS: &[u8] = b"$$\n";
 /// Lowest speed of Grbl, whatever is commanded \[mm/min\].
 pub const SLOWEST: f64 = 1.0;
 
-/// Grbl reads no more digits of a number than these.
+/// Largest number of digits that Grbl reads.
 const DIGITS: usize = 8;
 
 /// The meaning of a line, or of a part of it.
@@ -31,13 +31,13 @@ pub enum Word {
     Version(String, String),
     /// It has restarted.
     Banner(String),
-    /// `[…]` and echoes: nothing that answers.
+    /// `[…]` and echoes: no answer to a request.
     Message,
     Unknown,
 }
 
 impl Word {
-    /// Whether it can come before the `ok` of a question, as a part of the answer.
+    /// Whether it can be received before the `ok` of a question, as a part of the answer.
     #[must_use]
     pub const fn is_part(&self) -> bool {
         matches!(self, Self::Setting(..) | Self::Version(..) | Self::Message)
@@ -48,7 +48,7 @@ impl Word {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Status {
     pub state: State,
-    /// X in machine coordinates, m.
+    /// X in machine coordinates \[m\].
     pub position: f64,
 }
 
@@ -80,16 +80,15 @@ impl State {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jog {
     pub line: Vec<u8>,
-    /// m
+    /// \[m\]
     pub target: f64,
-    /// m/s
+    /// \[m/s\]
     pub speed: f64,
 }
 
 /// The jog to `target` (m) at `speed` (m/s).
 ///
-/// # Errors
-/// Grbl cannot parse it, or would do something else.
+/// Grbl cannot parse it, or would execute something else.
 pub fn jog(target: f64, speed: f64) -> Result<Jog, String> {
     // Numbers have no exponent; 0.1 µm is far finer than a step.
     let place = written(target * 1e3, 4)

@@ -1,5 +1,5 @@
-//! A stepper frame with Grbl 1.1, axis X. In: moves in SI. Out: jogs in absolute machine millimetres, and where the
-//! controller counts the axis to be. It measures nothing: without a transducer the loop is open.
+//! A stepper frame with Grbl 1.1, axis X. In: moves in SI. Out: jogs in absolute machine millimetres, and the position of the axis from
+//! the step count of the controller. It measures nothing: without a transducer the loop is open.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::rig::controllers::{
 };
 use crate::rig::{JUST_STARTED, LineStatistics};
 
-/// Settings without which a specimen is not safe: number, value, why.
+/// Settings that are required for the safety of the specimen: number, value, reason.
 const REQUIRED: [(u64, &str, &str); 6] = [
     (1, "255", "the motor must keep holding"),
     (10, "1", "it must report machine positions"),
@@ -21,7 +21,7 @@ const REQUIRED: [(u64, &str, &str); 6] = [
     (22, "1", "it must know where it is"),
 ];
 
-/// Fastest X may go, mm/min.
+/// Highest speed of X \[mm/min\].
 const TOP_SPEED: u64 = 110;
 /// Steps per mm of X.
 const STEPS: u64 = 100;
@@ -31,7 +31,7 @@ pub struct GrblDevice {
     client: LineClient,
     request_reply: RequestReply,
     settings: BTreeMap<u64, f64>,
-    /// Has reported its identity: a restart from now on loses the position.
+    /// It has reported its identity: a restart from now on loses the position.
     known: bool,
     /// A jog was sent and not answered: it may wait in the controller.
     unanswered: bool,
@@ -73,7 +73,7 @@ impl GrblDevice {
             .ask(&mut self.client, grbl::codec::ASK, accept, same)
     }
 
-    /// Its status, where it can move or is moving.
+    /// Its status, if it can move or is moving.
     fn fit_status(&mut self) -> Result<(Status, Vec<u8>), DeviceFault> {
         let (status, raw) = self.status()?;
         let reason = match status.state {
@@ -122,7 +122,7 @@ impl GrblDevice {
         })
     }
 
-    /// Waits until it is in this state, a few time-outs long.
+    /// Waits until it is in this state, for several time-outs.
     fn until(&mut self, wanted: impl Fn(State) -> bool) -> Result<Status, DeviceFault> {
         let give_up = self.client.now() + 8.0 * self.client.reply_timeout();
         loop {
@@ -171,7 +171,7 @@ impl GrblDevice {
     /// moves. To resume (`~`) would finish the interrupted move.
     fn let_go(&mut self, held: Status) -> Result<(), DeviceFault> {
         let unfit = |reason: &str| Err(DeviceFault::Unfit(reason.to_owned()));
-        // Asked once more: a reset in motion would lose the position.
+        // Queried again: a reset in motion would lose the position.
         if self.status()?.0 != held {
             return unfit("it is held and does not rest: it is not let go of");
         }
@@ -201,7 +201,7 @@ impl GrblDevice {
         unfit("let go of, it is not idle where it was held: home it (`$H`)")
     }
 
-    /// One step, m.
+    /// The length of one step \[m\].
     fn quantum(&self) -> f64 {
         let steps = self
             .settings
@@ -251,7 +251,7 @@ fn sample_of(status: Status, raw: Vec<u8>) -> Sample {
 /// The first part of a line that `pick` accepts, with the line.
 fn find<T>(line: &[u8], known: bool, pick: impl Fn(&Word) -> Option<T>) -> Answer<(T, Vec<u8>)> {
     let words = grbl::codec::words(line);
-    // An `ok`, `error:` or `ALARM:` here answers something older; only a restart concerns every question.
+    // An `ok`, `error:` or `ALARM:` here answers an earlier request; only a restart concerns every question.
     let begun = words.iter().find(|word| matches!(word, Word::Banner(_)));
     if let Some(fault) = begun.and_then(|word| fault(word, known)) {
         return Answer::Fault(fault);
@@ -276,13 +276,13 @@ fn fault(word: &Word, known: bool) -> Option<DeviceFault> {
     }
 }
 
-/// It receives no limits of a run: its travel is a setting of the machine, in memory that wears.
+/// It receives no limits of a run: its travel is a setting of the machine, in memory with a limited number of writes.
 impl Device for GrblDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.known = false;
         // It may restart when its port is opened, and then receives nothing for a while: the question is sent again.
         self.client.drain()?;
-        // Its start banner is unsolicited, and is no fault of the line.
+        // Its start banner is unsolicited, but is not a fault of the line.
         let of_the_start = |line: &[u8]| {
             grbl::codec::words(line)
                 .iter()
@@ -315,7 +315,7 @@ impl Device for GrblDevice {
                 return Err(DeviceFault::Unfit(help.to_owned()));
             }
             state if state.is_moving() => {
-                // No program supervises it: the one that moved it has ended, or another program has the line.
+                // No program supervises it: the program that moved it has ended, or another program uses the line.
                 self.client.send(grbl::codec::HOLD)?;
                 self.until(|state| !state.is_moving())?;
                 return Err(DeviceFault::Unfit(
@@ -360,7 +360,7 @@ impl Device for GrblDevice {
             .get(&TOP_SPEED)
             .copied()
             .unwrap_or(f64::INFINITY);
-        // Grbl would go slower without a report.
+        // Grbl would move more slowly without reporting it.
         if jog.speed * 6e4 <= top * (1.0 + 1e-12) {
             return Ok(DeviceMove {
                 frames: vec![jog.line],
@@ -389,7 +389,7 @@ impl Device for GrblDevice {
             );
             answered?;
         }
-        // An `ok` may answer something older: only the axis itself shows that the move was accepted.
+        // An `ok` may answer an earlier request: only the axis itself shows that the move was accepted.
         let (status, _) = self.fit_status()?;
         let arrived = (status.position - going.targets[0]).abs() <= self.quantum();
         if status.state == State::Jog || status.state == State::Idle && arrived {

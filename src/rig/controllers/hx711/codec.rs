@@ -9,7 +9,7 @@ pub const RAILS: (i64, i64) = (-8_388_608, 8_388_607);
 /// The count of a line. None for a line that is not a count of 24 bits.
 #[must_use]
 pub fn count(line: &[u8]) -> Option<i64> {
-    // A sketch sends no `+`, and no more digits than 24 bits have.
+    // A sketch sends no `+`, and no more digits than a number of 24 bits has.
     let plain = line.first() != Some(&b'+') && line.len() <= "-8388608".len();
     plain
         .then(|| number::whole(line))

@@ -3,19 +3,19 @@
 
 use crate::rig::controllers::number;
 
-/// Asks for one line, where the indicator does not send by itself.
+/// Requests one line, for an indicator that does not send automatically.
 pub const READ: &[u8] = b"READ\r\n";
 
 /// Characters of every value, including its sign and leading spaces.
 const PLACES: usize = 8;
-/// Standard gravity, m/s².
+/// Standard gravity \[m/s²\].
 const GRAVITY: f64 = 9.806_65;
 
 /// One line of an indicator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weight {
     pub status: Status,
-    /// N; none where it is out of range and shows no number.
+    /// \[N\]; None if it is out of range and shows no number.
     pub force: Option<f64>,
 }
 
@@ -56,7 +56,7 @@ pub fn weight(line: &[u8]) -> Result<Weight, &'static str> {
         return Err("neither gross nor net");
     }
     let newtons = newtons_per(trimmed(unit)).ok_or("not in kg, g, t, lb, N or kN")?;
-    // A line from which a digit was lost is as long as no weight is.
+    // A line that has lost a digit has the wrong length for a weight.
     if value.len() != PLACES && !status.is_out_of_range() {
         return Err("its value has not the 8 places of a weight");
     }

@@ -56,7 +56,7 @@ pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
             });
         }
     };
-    // Out of range it may show no number: infinite on its side is past every limit.
+    // Out of range it may show no number: the value is then infinite with this sign, outside every limit.
     let beyond = if weight.status == Status::Underload {
         f64::NEG_INFINITY
     } else {

@@ -13,7 +13,7 @@ const GIVE_BACK: &str = "P909,0";
 
 /// Decimals of a target: 1e-8 of full scale.
 const TARGET_DECIMALS: usize = 8;
-/// Shortest ramp, ms: a move of nothing still takes it.
+/// Shortest ramp \[ms\]: a move of zero length also takes this time.
 const SHORTEST_RAMP: u64 = 100;
 
 /// The questions.
@@ -21,11 +21,11 @@ const SHORTEST_RAMP: u64 = 100;
 pub enum Question {
     /// Full scale of a channel, m or N.
     FullScale(Channel),
-    /// Where a channel is, as a fraction of full scale.
+    /// Position of a channel, as a fraction of full scale.
     Feedback(Channel),
     /// Target of the position ramp, as a fraction of full scale.
     Target,
-    /// Time of the position ramp, s.
+    /// Time of the position ramp \[s\].
     RampTime,
     Movement,
     Status,
@@ -49,7 +49,7 @@ pub enum Movement {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
     pub actuator_off: bool,
-    /// None: nothing is wrong.
+    /// None: no trouble.
     pub trouble: Option<Trouble>,
 }
 
@@ -72,7 +72,7 @@ impl Channel {
 }
 
 impl Question {
-    /// The line that asks it.
+    /// The line with this question.
     #[must_use]
     pub fn line(self) -> Vec<u8> {
         line(&match self {
@@ -117,13 +117,13 @@ pub fn start() -> Vec<Vec<u8>> {
     orders(&["C1,1"])
 }
 
-/// The lines that hold the actuator where it is, in position control.
+/// The lines that hold the actuator at its position, in position control.
 #[must_use]
 pub fn hold() -> Vec<Vec<u8>> {
     orders(&["C1,2"])
 }
 
-/// Target (fraction of full scale) and time (s) of a ramp, read back from the lines that make it ready.
+/// Target (fraction of full scale) and time \[s\] of a ramp, read back from the lines that make it ready.
 #[must_use]
 pub fn decoded_ramp(frames: &[Vec<u8>]) -> Option<(f64, f64)> {
     let number = |start: &[u8]| {

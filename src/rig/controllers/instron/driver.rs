@@ -10,11 +10,11 @@ use crate::rig::controllers::{
     Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
 };
 
-/// Shortest time between polls, s: the console does not bear more.
+/// Shortest time between polls \[s\]: the console does not accept more.
 const BETWEEN_POLLS: f64 = 0.1;
-/// How often a command is sent before it counts as not received.
+/// Number of times a command is sent before it counts as not received.
 const TRIES: u32 = 3;
-/// A target (fraction of full scale) and a time (s) that differ by less are the same.
+/// A target (fraction of full scale) and a time \[s\] that differ by less are the same.
 const SAME_TARGET: f64 = 1e-7;
 const SAME_TIME: f64 = 1e-3;
 
@@ -23,19 +23,19 @@ pub struct Instron {
     client: LineClient,
     position: Reader,
     load: Reader,
-    /// Where it was last, m.
+    /// Its last position \[m\].
     last: Option<f64>,
     movement: Movement,
-    /// When it was last polled, s by the clock.
+    /// Time of the last poll \[s\], by the clock.
     polled: Option<f64>,
 }
 
 /// The known properties of a channel.
 #[derive(Default)]
 struct Reader {
-    /// m or N
+    /// \[m\] or \[N\]
     full_scale: f64,
-    /// The last reading was zero, and was asked for twice.
+    /// The last reading was zero, and was requested twice.
     at_zero: bool,
 }
 
@@ -65,7 +65,7 @@ impl Instron {
         instron::codec::number(&answer).ok_or_else(|| no_reading(answer, "no number"))
     }
 
-    /// Readings glitch to zero: an exact zero is asked again.
+    /// Readings sometimes drop to zero: an exact zero is requested again.
     fn number_twice_if_zero(
         &mut self,
         question: Question,
@@ -81,7 +81,7 @@ impl Instron {
         Ok(second)
     }
 
-    /// A second look is routine; it corrected a reading only if it gave a different value.
+    /// A second reading is routine; it corrects a reading only if it gives a different value.
     const fn count_glitch(&mut self, glitch: bool) {
         self.client.line_statistics_mut().reread += glitch as u64;
     }
@@ -106,7 +106,7 @@ impl Instron {
         }
     }
 
-    /// A stop that is a glitch to zero is asked again, too.
+    /// A stop that appears because of a false zero is also requested again.
     fn ask_movement(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Movement, DeviceFault> {
         let mut movement = self.ask_movement_once(raw)?;
         if movement == Movement::Stopped && self.movement != Movement::Stopped {
@@ -123,7 +123,7 @@ impl Instron {
         instron::codec::movement(&answer).ok_or_else(|| no_reading(answer, "no movement"))
     }
 
-    /// The emergency stop is a flag; whatever else has tripped makes the rig unfit.
+    /// The emergency stop is a flag; any other trip makes the rig unsuitable.
     fn ask_status(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Flags, DeviceFault> {
         let answer = self.ask(Question::Status, raw)?;
         let status =
@@ -216,7 +216,7 @@ impl Device for Instron {
         for (place, channel) in [Channel::Position, Channel::Load].into_iter().enumerate() {
             self.wait_for_poll()?;
             let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
-            // Of a glitch and a number, the number is kept.
+            // If one of the two readings is a false zero, the other number is kept.
             raw.drain(place..raw.len() - 1);
             if !(0.0 < full_scale && full_scale.is_finite()) {
                 return Err(DeviceFault::Unfit(format!(

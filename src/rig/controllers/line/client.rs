@@ -16,26 +16,26 @@ pub const LONGEST_LINE: usize = 512;
 /// Longest single wait \[s\]: the delay until a stop request is seen.
 pub const SLICE: f64 = 0.05;
 
-/// A wait that is over, s: a time-out in whole nanoseconds could not get nearer for ever.
+/// A wait shorter than this has ended \[s\]: a time-out in whole nanoseconds could otherwise never reach the end.
 const SHORTEST: f64 = 1e-6;
 
 /// A port, and the bytes received that have not been used.
 pub struct LineClient {
     port: Box<dyn Port>,
     clock: Box<dyn Clock>,
-    /// s
+    /// \[s\]
     reply_timeout: f64,
     stop_request: StopRequest,
     /// Bytes received and not used, at most [`LONGEST_LINE`].
     waiting: Vec<u8>,
     /// In the middle of a line that is too long.
     overlong: bool,
-    /// Time of the last look at the line \[s\], by the clock. None: there was none yet.
+    /// Time of the last check of the line \[s\], by the clock. None: it has not been checked yet.
     looked: Option<f64>,
     line_statistics: LineStatistics,
 }
 
-/// Why there is no line.
+/// Why no line was received.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Missed {
     TimedOut,
@@ -58,7 +58,7 @@ pub enum Answer<T> {
 }
 
 impl LineClient {
-    /// A frame is sent again after T, 2T and 4T of silence, and given up after 8T; T is `reply_timeout`, s.
+    /// A frame is sent again after T, 2T and 4T of silence, and abandoned after 8T; T is `reply_timeout` \[s\].
     #[must_use]
     pub fn new(port: Box<dyn Port>, clock: Box<dyn Clock>, reply_timeout: f64) -> Self {
         let (stop_request, waiting, line_statistics) = (
@@ -85,7 +85,7 @@ impl LineClient {
         self
     }
 
-    /// s
+    /// \[s\]
     #[must_use]
     pub const fn reply_timeout(&self) -> f64 {
         self.reply_timeout
@@ -104,7 +104,7 @@ impl LineClient {
         &mut *self.clock
     }
 
-    /// s, by the clock.
+    /// \[s\], by the clock.
     #[must_use]
     pub fn now(&self) -> f64 {
         self.clock.now()
@@ -130,8 +130,8 @@ impl LineClient {
         self.port.emergency().map_err(|error| lost(&error))
     }
 
-    /// Notes a look at the line and reports the time since the last look. A wait for an answer looks every [`SLICE`]; a
-    /// program that was suspended does not. Gives the present time \[s\], by the clock.
+    /// Notes a check of the line and reports the time since the last one. A wait for an answer checks the line every [`SLICE`]; a program
+    /// that was suspended does not. Gives the present time \[s\], by the clock.
     fn look(&mut self) -> f64 {
         let now = self.clock.now();
         if let Some(before) = self.looked.replace(now) {
@@ -203,7 +203,7 @@ impl LineClient {
         }
     }
 
-    /// Exactly `count` bytes by the moment `deadline`; fewer stay for the next call.
+    /// Exactly `count` bytes before the time `deadline`; fewer bytes are kept for the next call.
     ///
     /// # Errors
     /// They were not received, or are more than [`LONGEST_LINE`].
@@ -350,7 +350,7 @@ impl LineClient {
     }
 }
 
-/// Where `ending` begins.
+/// The position at which `ending` begins.
 fn find(bytes: &[u8], ending: &[u8]) -> Option<usize> {
     match ending {
         [only] => bytes.iter().position(|byte| byte == only),

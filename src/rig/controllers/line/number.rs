@@ -7,7 +7,7 @@ use crate::rig::safety::failpoint::{Guarding, on};
 /// Longest field that can be a number, bytes.
 const LONGEST: usize = 40;
 
-/// Digits alone: a count or a number of a move.
+/// Only digits: a count or the number of a move.
 #[must_use]
 pub fn count(field: &[u8]) -> Option<u64> {
     (is_short(field) && all_digits(field))
@@ -15,7 +15,7 @@ pub fn count(field: &[u8]) -> Option<u64> {
         .flatten()
 }
 
-/// A whole number with a sign or none.
+/// A whole number with an optional sign.
 #[must_use]
 pub fn whole(field: &[u8]) -> Option<i64> {
     (is_short(field) && all_digits(unsigned(field)))
@@ -23,7 +23,7 @@ pub fn whole(field: &[u8]) -> Option<i64> {
         .flatten()
 }
 
-/// A decimal: sign or none, digits, and a fraction or none.
+/// A decimal with an optional sign and an optional fraction.
 #[must_use]
 pub fn fixed(field: &[u8]) -> Option<f64> {
     if !on(Guarding::Invalid) {
@@ -34,7 +34,7 @@ pub fn fixed(field: &[u8]) -> Option<f64> {
         .flatten()
 }
 
-/// A decimal with an exponent or none.
+/// A decimal with an optional exponent.
 #[must_use]
 pub fn scientific(field: &[u8]) -> Option<f64> {
     let Some(at) = field.iter().position(|byte| matches!(byte, b'e' | b'E')) else {
@@ -101,7 +101,7 @@ fn all_digits(field: &[u8]) -> bool {
     !field.is_empty() && field.iter().all(u8::is_ascii_digit)
 }
 
-/// Without its one sign.
+/// The field without its single sign.
 fn unsigned(field: &[u8]) -> &[u8] {
     match field {
         [b'+' | b'-', rest @ ..] => rest,
@@ -131,7 +131,7 @@ fn finite(field: &[u8]) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Reliability, row 20 and the numbers of the bad-input corpus.
+    /// Specification of reliability, row 20, and the numbers of the bad-input corpus.
     const NEVER: [&str; 37] = [
         "", " ", "nan", "NaN", "-nan", "inf", "-inf", "+INF", "infinity", "1e400", "-1e400",
         "1e-400", "OVL", "OL", "1,5", "1_000", "0x10", ".5", "5.", "1e", "1e+", "e5", "--1", "+-1",

@@ -1,10 +1,10 @@
-//! Fresh answers of devices without sequence numbers, for which a late answer looks like a new one. In: a question and a
-//! function that recognises its answer. Out: an answer to this question. After a silence no answer is accepted until the
-//! line was quiet and two answers agreed.
+//! Fresh answers of devices without sequence numbers, for which a late answer cannot be distinguished from a new one. In: a question and
+//! a function that recognises its answer. Out: an answer to this question. After a silence no answer is accepted until the line was quiet
+//! and two answers agreed.
 
 use crate::rig::controllers::{Answer, DeviceFault, LineClient};
 
-/// How often a question is put before it is given up.
+/// Number of times a question is sent before it is abandoned.
 const ATTEMPTS: u32 = 3;
 
 /// Whether a late answer is still possible.
@@ -60,7 +60,7 @@ impl RequestReply {
         })
     }
 
-    /// None: silence.
+    /// None if no answer was received.
     fn once<T>(
         &mut self,
         client: &mut LineClient,
@@ -74,7 +74,7 @@ impl RequestReply {
                 Ok(None)
             }
             Err(fault) => {
-                // An interrupted question may be answered yet.
+                // The answer to an interrupted question may still arrive.
                 self.late_answer_possible |= fault == DeviceFault::Interrupted;
                 Err(fault)
             }

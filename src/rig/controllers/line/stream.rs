@@ -1,4 +1,4 @@
-//! Devices that send by themselves. In: a line that never stops. Out: a whole line that was begun after it was wanted.
+//! Devices that send automatically. In: a line that never stops. Out: a whole line that was begun after the request for it.
 
 use crate::rig::controllers::{Answer, DeviceFault, LineClient};
 

@@ -1,15 +1,15 @@
-//! Lines whose answers have no sequence number, so that a late answer looks like a fresh one. In: a question as a closure.
-//! Out: its answer, or none. It knows no protocol.
+//! Lines whose answers have no sequence number, so that a late answer cannot be distinguished from a fresh one. In: a question as a
+//! closure. Out: its answer, or none. It knows no protocol.
 
 use crate::rig::controllers::{Answer, DeviceFault, LineClient, Missed};
 use crate::rig::safety::failpoint::{Guarding, on};
 
 /// Number of times a question is repeated after the first silence.
 const AGAIN: u32 = 3;
-/// How long a line of text is listened to before a question, s.
+/// Silence required on a text line before a question \[s\].
 const LINE_GAP: f64 = 0.001;
 
-/// Waits `quiet` \[s\] before a question. Bytes that come unsolicited or were left over are counted and discarded.
+/// Waits `quiet` \[s\] before a question. Unsolicited or remaining bytes are counted and discarded.
 pub fn clear(client: &mut LineClient, quiet: f64) -> Result<(), DeviceFault> {
     if more(client, quiet)? {
         client.line_statistics_mut().ignored += 1;
@@ -18,9 +18,8 @@ pub fn clear(client: &mut LineClient, quiet: f64) -> Result<(), DeviceFault> {
     Ok(())
 }
 
-/// Sends the question, and after silence sends it twice more. A late answer to the first question would come before or
-/// between the two and is seen as one too many, so only the second of two single answers counts. Each silence is waited
-/// out.
+/// Sends the question, and after silence sends it twice more. A late answer to the first question would arrive before or between the
+/// other two answers, and would be one too many. So only the second of two single answers counts. Every silence is waited for in full.
 pub fn fresh<T>(
     client: &mut LineClient,
     mut ask: impl FnMut(&mut LineClient) -> Result<T, DeviceFault>,
@@ -54,7 +53,7 @@ pub fn fresh<T>(
     })
 }
 
-/// Sends a command whose answer is the same however often it is sent, and repeats it after silence.
+/// Sends a command whose answer is the same after every repetition, and repeats it after silence.
 pub fn order<T>(
     client: &mut LineClient,
     mut give: impl FnMut(&mut LineClient) -> Result<T, DeviceFault>,

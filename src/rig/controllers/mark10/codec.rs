@@ -1,6 +1,6 @@
-//! A Mark-10 ESM301/303 stand and its gauge: single letters, some followed by digits, without line endings. In: \[m\] and
-//! \[m/s\]. Out: the bytes of settings and questions, and the meaning of status, travel and force. The stand has no "go
-//! to": a target is a travel limit. Negative is the direction that the gauge calls negative. It knows no device.
+//! A Mark-10 ESM301/303 test frame and its gauge: single letters, some followed by digits, without line endings. In: \[m\] and \[m/s\].
+//! Out: the bytes of settings and questions, and the meaning of status, travel and force. The test frame has no absolute move: a target
+//! is a travel limit. Negative is the direction that the gauge calls negative. It knows no device.
 
 use crate::rig::controllers::number;
 
@@ -16,7 +16,7 @@ pub const ASK_STATUS: &[u8] = b"p";
 pub const ASK_TRAVEL: &[u8] = b"x";
 pub const ASK_UPPER_LIMIT: &[u8] = b"v";
 pub const ASK_LOWER_LIMIT: &[u8] = b"w";
-/// The reading of the gauge, requested from the gauge itself and through the stand.
+/// The reading of the gauge, requested from the gauge itself and through the test frame.
 pub const ASK_FORCE: &[u8] = b"?\r";
 pub const ASK_FORCE_THROUGH_STAND: &[u8] = b"/?\r\\";
 
@@ -29,7 +29,7 @@ const FASTEST: f64 = 9999.9;
 const NEWTONS_PER_POUND: f64 = 4.448_221_615_260_5;
 const NEWTONS_PER_KILOGRAM: f64 = 9.806_65;
 
-/// Which end of the travel a limit is at.
+/// The end of the travel at which a limit is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     Lower,
@@ -49,7 +49,7 @@ pub struct Status {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Force {
     Newtons(f64),
-    /// `*10`: it did not know the question.
+    /// `*10`: the gauge did not recognise the question.
     Unknown,
 }
 
@@ -76,7 +76,7 @@ pub fn limit(side: Side, target: f64) -> Option<(Vec<u8>, f64)> {
 /// digits.
 #[must_use]
 pub fn speed(speed: f64) -> Option<(Vec<u8>, f64)> {
-    // Down to a tenth of a millimetre a minute; not for the last bit of a float.
+    // Rounded down to 0.1 mm/min; an error in the last bit of a float is ignored.
     let tenths = (speed * MILLIMETRES_A_MINUTE * 10.0 * (1.0 + 4.0 * f64::EPSILON)).floor();
     if !(1.0..=FASTEST * 10.0).contains(&tenths) {
         return None;
@@ -112,7 +112,7 @@ pub fn status(answer: &[u8]) -> Option<Status> {
     })
 }
 
-/// Travel, m: a number of mm, with its unit or without.
+/// Travel \[m\]: a number of mm, with its unit or without.
 #[must_use]
 pub fn travel(answer: &[u8]) -> Option<f64> {
     let answer = answer.strip_suffix(b" mm").unwrap_or(answer);

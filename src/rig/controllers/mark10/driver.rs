@@ -1,6 +1,6 @@
-//! A Mark-10 stand with its gauge. In: \[m\] and \[m/s\]. Out: travel limits as targets, read back before the stand moves;
-//! readings in newtons. The resolution of travel and targets is 0.01 mm. Lines have no checksum: unsolicited bytes are
-//! discarded, and after a silence every question is asked twice.
+//! A Mark-10 test frame with its gauge. In: \[m\] and \[m/s\]. Out: travel limits as targets, read back before the test frame moves;
+//! readings in newtons. The resolution of travel and targets is 0.01 mm. Lines have no checksum: unsolicited bytes are discarded, and
+//! after a silence every question is asked twice.
 
 use crate::rig::LineStatistics;
 use crate::rig::controllers::mark10;
@@ -10,19 +10,19 @@ use crate::rig::controllers::{
     Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
 };
 
-/// How often a setting or a command is sent before it counts as not received.
+/// Number of times a setting or a command is sent before it counts as not received.
 const TRIES: u32 = 3;
 /// Half the resolution of the travel \[m\]: a nearer position is at the target.
 const THERE: f64 = 0.5e-5 * 1.01;
-/// Largest travel beyond its limit before the stand is stopped \[m\].
+/// Largest travel beyond its limit before the test frame is stopped \[m\].
 const OVERRUN: f64 = 5e-5;
-/// Sent twice, because one may be taken for a digit of an incomplete setting.
+/// Sent twice, because one may be interpreted as a digit of an incomplete setting.
 const EMERGENCY: &[u8] = b"ss";
 
-/// The stand on a line.
+/// The test frame on a line.
 pub struct Mark10 {
     client: LineClient,
-    /// Travel as last read, m.
+    /// Travel as last read \[m\].
     last: Option<f64>,
     /// The target of the present move \[m\].
     going: Option<(Side, f64)>,
@@ -58,7 +58,7 @@ impl Mark10 {
         }
     }
 
-    /// Asks again if the answer was garbled: outside of a reading no caller repeats the question.
+    /// Asks again if the answer was garbled: no caller repeats a question that is not a reading.
     fn patiently<T>(
         &mut self,
         mut ask: impl FnMut(&mut Self) -> Result<T, DeviceFault>,
@@ -76,8 +76,8 @@ impl Mark10 {
         self.patiently(Self::ask_status).map(|(status, _)| status)
     }
 
-    /// Outside of limit mode nothing stops the stand at its target. It leaves that mode when it is switched on again or
-    /// operated by hand.
+    /// Outside limit mode the test frame does not stop at its target. It leaves that mode when it is switched on again or operated by
+    /// hand.
     fn in_limit_mode(&mut self, status: Status) -> Result<(), DeviceFault> {
         if status.limit_mode {
             return Ok(());
@@ -225,7 +225,7 @@ impl Device for Mark10 {
             displacement: Some(travel),
             force: Some(force),
             moving: Some(status.moving),
-            // Its limits are its targets: to be at one is to have arrived.
+            // Its limits are its targets: a reached limit means that it has arrived.
             flags: Flags::default(),
             raw: vec![said_status, said_travel, said_force],
             others: Vec::new(),
@@ -245,7 +245,7 @@ impl Device for Mark10 {
     }
 }
 
-/// The identity of a stand.
+/// The identity of a test frame.
 pub(crate) fn stand_introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "Mark-10 stand".to_owned(),
@@ -253,7 +253,7 @@ pub(crate) fn stand_introduced() -> DeviceIdentity {
     }
 }
 
-/// Speed and travel limit of a move to `target` (m) at no more than `speed` (m/s), which goes to this side.
+/// Speed and travel limit of a move to `target` \[m\] at a speed of at most `speed` \[m/s\], in the direction of this side.
 fn settings(target: f64, speed: f64, side: Side) -> Option<DeviceMove> {
     let (speed_setting, speed) = mark10::codec::speed(speed)?;
     let (limit_setting, target) = mark10::codec::limit(side, target)?;

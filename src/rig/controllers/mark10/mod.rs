@@ -1,5 +1,4 @@
-//! Mark-10 test stands and force gauges: `codec` turns bytes into meaning, `driver` and `load_cell`
-//! lead the conversation.
+//! Mark-10 test frames and force gauges: `codec` turns bytes into meaning, `driver` and `load_cell` lead the conversation.
 
 pub mod codec;
 pub(crate) mod driver;

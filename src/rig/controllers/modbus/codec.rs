@@ -4,7 +4,7 @@
 
 use crate::plan::ModbusNumber;
 
-/// Most registers one question may ask for.
+/// Largest number of registers of one question.
 pub const MOST_REGISTERS: u16 = 125;
 
 /// Length of an exception answer: unit, function, code, CRC.
@@ -15,7 +15,7 @@ const REFUSED: u8 = 0x80;
 const WRITE_ONE: u8 = 0x06;
 const WRITE_SEVERAL: u8 = 0x10;
 
-/// Which of the two tables of readable registers.
+/// The two tables of readable registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Table {
     /// Function 03.
@@ -27,7 +27,7 @@ pub enum Table {
 /// Why an answer cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It is not a whole and sound answer to the question.
+    /// It is not a complete and correct answer to the question.
     Broken(&'static str),
     /// The unit refused.
     Exception(u8),
@@ -152,7 +152,7 @@ pub const fn exception(code: u8) -> &'static str {
     }
 }
 
-/// Registers a number takes.
+/// Number of registers of a number.
 #[must_use]
 pub const fn width(number: ModbusNumber) -> u16 {
     match number {
@@ -161,7 +161,7 @@ pub const fn width(number: ModbusNumber) -> u16 {
     }
 }
 
-/// The registers of a number; None where they cannot hold it.
+/// The registers of a number; None if they cannot hold it.
 #[must_use]
 pub fn to_words(number: ModbusNumber, value: f64) -> Option<Vec<u16>> {
     let rounded = value.round();

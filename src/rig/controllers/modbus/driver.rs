@@ -12,12 +12,12 @@ use crate::rig::controllers::{
     Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
 };
 
-/// Silence before a question: 3.5 characters of 11 bits, and never less than this, s.
+/// Silence before a question: 3.5 characters of 11 bits, and never less than this \[s\].
 const SHORTEST_GAP: f64 = 0.001_75;
 const GAP_BITS: f64 = 3.5 * 11.0;
-/// Further than any actuator reaches, m.
+/// Farther than the travel of any actuator \[m\].
 const IMPLAUSIBLE_POSITION: f64 = 1e3;
-/// More than any cell carries, N.
+/// More than the range of any load cell \[N\].
 const IMPLAUSIBLE_FORCE: f64 = 1e12;
 /// Smaller than any non-zero reading: the value of a float whose words are swapped.
 const IMPLAUSIBLY_SMALL: f64 = 1e-30;
@@ -26,14 +26,14 @@ const IMPLAUSIBLY_SMALL: f64 = 1e-30;
 pub struct Modbus {
     client: LineClient,
     map: ModbusMap,
-    /// s
+    /// \[s\]
     gap: f64,
     position: Option<Register>,
     force: Option<Register>,
     status: Option<Register>,
 }
 
-/// A register to read, and the table it was found in.
+/// A register to read, and the table that contains it.
 #[derive(Clone, Copy, Debug)]
 struct Register {
     address: u16,
@@ -42,7 +42,7 @@ struct Register {
 
 /// A number as it was read.
 struct Value {
-    /// m or N
+    /// \[m\] or \[N\]
     value: f64,
     raw: Vec<u8>,
 }
@@ -75,7 +75,7 @@ impl Modbus {
         }
     }
 
-    /// Finds the table a register is in: where there is no such holding register, the input registers are tried.
+    /// Finds the table of a register: if there is no such holding register, the input registers are tried.
     fn find(
         &mut self,
         register: Option<Register>,
@@ -182,7 +182,7 @@ impl Device for Modbus {
         Ok(sample)
     }
 
-    /// By its stop word; a drive without a command register receives its present position as target.
+    /// Sends the stop word; a drive without a command register receives its present position as target.
     fn hold(&mut self) -> Result<(), DeviceFault> {
         let frame = if let Some(frame) = self.stop_frame() {
             frame
@@ -236,7 +236,7 @@ fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMove, Device
     frames_at_speed(map, target, slower)
 }
 
-/// The same at this speed itself, as closely as the registers can express it.
+/// The same at exactly this speed, within the resolution of the registers.
 fn frames_at_speed(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMove, DeviceFault> {
     let (target_frame, target) = target_frame(map, target)?;
     let mut going = DeviceMove {
@@ -245,7 +245,7 @@ fn frames_at_speed(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMov
         speed,
         id: None,
     };
-    // Before the target, because some drives start as soon as they have one.
+    // Before the target, because some drives start as soon as they receive one.
     if let Some(register) = map.speed {
         let (words, said) = say_speed(map, speed)?;
         going
@@ -292,7 +292,7 @@ fn encode_quantity(
     Ok((words, if same(said, quantity) { quantity } else { said }))
 }
 
-/// Registers of a speed that is not above the one asked for.
+/// Registers of a speed that does not exceed the requested one.
 fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault> {
     let (words, said) = encode_quantity(map.number, speed, map.speed_unit, f64::floor)?;
     if said <= speed {
@@ -302,7 +302,7 @@ fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault
             Err(unfit("its registers cannot hold so low a speed"))
         };
     }
-    // A short float may be above by half its last bit.
+    // A short float may exceed it by half its last bit.
     encode_quantity(
         map.number,
         speed * (1.0 - f64::from(f32::EPSILON)),
@@ -311,14 +311,14 @@ fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault
     )
 }
 
-/// m or N, where the registers hold a number that can be.
+/// \[m\] or \[N\], if the registers hold a plausible number.
 fn value_of(number: ModbusNumber, words: &[u16], unit: f64, bound: f64) -> Option<f64> {
     modbus::codec::from_words(number, words)
         .map(|value| value * unit)
         .filter(|value| plausible(*value, bound))
 }
 
-/// One question or order and its answer, after the silence that ends whatever came before.
+/// One question or command and its answer, after the silence that ends earlier traffic.
 fn exchange(
     client: &mut LineClient,
     question: &[u8],
@@ -363,7 +363,7 @@ fn plausible(value: f64, bound: f64) -> bool {
     value == 0.0 || (IMPLAUSIBLY_SMALL <= value.abs() && value.abs() <= bound)
 }
 
-/// Equal but for the last bits of turning units.
+/// Equal except for the last bits of a unit conversion.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 4.0 * f64::EPSILON * b.abs()
 }

@@ -1,45 +1,44 @@
-//! psd's own line protocol. In: a request and its sequence number; a line that came. Out: the frame; the reply the line is.
-//! It keeps no conversation: which reply answers which request is the driver's business.
+//! The line protocol of psd. In: a request and its sequence number; a received line. Out: the frame; the reply in the line. It has no
+//! state: the driver matches replies with requests.
 //!
 //! # The protocol
-//! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request is at most 96 bytes with its ending, of a rig of several
-//! axes 512; a reply at most 512.
+//! ASCII, 115200 baud 8N1 or TCP, one request in flight. A request has at most 96 bytes with its ending, or 512 for a rig with several
+//! axes. A reply has at most 512 bytes.
 //!
 //! ```text
 //! request = ">" VERB  SP SEQ          *(SP word) "*" CRC LF
 //! reply   = "<" KIND  SP SEQ SP BOOT  *(SP word) "*" CRC LF
 //! ```
-//! CRC is CRC-16/CCITT-FALSE (polynomial 1021, start FFFF; `123456789` gives 29B1) of the bytes between the lead character
-//! and `*`, as 4 upper-case hexadecimal digits. SEQ is a decimal of 32 bits, one more with every new request. BOOT is 4
-//! random upper-case hexadecimal digits of this power-up. Words are printable ASCII without spaces. Units are fixed: mm, N,
-//! mm/s, ms. Lengths and speeds have 6 decimals, forces 3.
+//! CRC is CRC-16/CCITT-FALSE (polynomial 1021, start FFFF; `123456789` gives 29B1) of the bytes between the lead character and `*`, as 4
+//! upper-case hexadecimal digits. SEQ is a decimal of 32 bits, increased by one with every new request. BOOT is a random boot identifier
+//! of this power-up, 4 upper-case hexadecimal digits. Words are printable ASCII without spaces. Units are fixed: mm, N, mm/s, ms. Lengths
+//! and speeds have 6 decimals, forces 3.
 //!
-//! A broken frame is not answered. The rig keeps its last reply: the same SEQ again receives that reply and does nothing;
-//! any other than the next is `ERR SEQ`. HELLO is accepted with every SEQ, is executed each time, and sets SEQ.
+//! A broken frame is not answered. The rig keeps its last reply: a repeated SEQ receives that reply again and has no other effect. Any
+//! SEQ except this one and the next is answered by `ERR SEQ`. HELLO is accepted with every SEQ, is executed each time, and sets SEQ.
 //!
-//! A rig has 1 to 6 axes. Words in braces are repeated for each axis in turn, so a rig of one axis has each once. The
-//! number of axes follows from the number of words of its reply to HELLO.
+//! A rig has 1 to 6 axes. Words in braces are repeated for each axis in turn, so for a rig of one axis they appear once. The number of
+//! axes follows from the number of words in the reply to HELLO.
 //!
 //! | Request | Reply |
 //! |---|---|
-//! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move it began (id 0: none since power-up). The limits of a run are gone after it. |
-//! | `LIM {d_low d_high f_low f_high} v_high` | `ACK state`: the limits of this run. Wider than the rig's own: `ERR LIMIT`. |
-//! | `MOVE id {target} rate` | `ACK state`: all axes go to their absolute targets together, and arrive together, the one with the farthest way at the rate. An id is greater than every one before. The last id with its targets again: `ACK` without motion; with others, or an older id: `ERR ID`. |
-//! | `GLIDE id {target velocity} ms` | `ACK state left`: every axis follows the cubic from where and as fast as it is to its target, which it passes with its velocity so many ms after the last `GLIDE` ended, or from now on where none is under way; `left` is how long it is to that end, ms. It does not stop there: it goes on as fast as it passed, and holds where no `GLIDE` follows. |
+//! | `HELLO` | `ACK model serial firmware {d_low d_high f_low f_high} v_high last_id {last_target}`: the rig's own limits and the last move that it began (id 0: none since power-up). It deletes the limits of a run. |
+//! | `LIM {d_low d_high f_low f_high} v_high` | `ACK state`: the limits of this run. Limits wider than the rig's own: `ERR LIMIT`. |
+//! | `MOVE id {target} rate` | `ACK state`: all axes move to their absolute targets and arrive simultaneously; the axis with the longest travel moves at the rate. An id is greater than all earlier ones. The last id with the same targets again: `ACK` without motion; with other targets, or an older id: `ERR ID`. |
+//! | `GLIDE id {target velocity} ms` | `ACK state left`: every axis follows a cubic path from its present position and velocity to its target. It passes the target with the given velocity, ms milliseconds after the end of the last `GLIDE`, or after now if none is in progress. `left` is the time until that end, ms. The axis does not stop there: it continues at that velocity, and holds if no `GLIDE` follows. |
 //! | `MEAS n` | `DATA t {disp force raw flags} state`: the median of n readings of each channel. |
-//! | `STAT` | `ACK state flags`: a bit is set where it is of any axis. |
+//! | `STAT` | `ACK state flags`: a bit is set if it is set for any axis. |
 //! | `STOP` | `ACK HELD`: stops all axes, keeps the load, and stays held until `CLR`. |
-//! | `CLR` | `ACK state`: lets go of a latched hold. Nothing moves. |
-//! | `REF token` | `ACK state`: its position is to be trusted from now on, of all axes; the token is whose word that is. |
+//! | `CLR` | `ACK state`: clears a latched hold. Nothing moves. |
+//! | `REF token` | `ACK state`: the position of all axes is trusted from now on; the token identifies who declared this. |
 //!
 //! `state` is `IDLE`, `MOVING` or `HELD`. `flags` is `0x` and 4 digits: bit 0 saturated, 1 stale, 2 upper limit, 3 lower
 //! limit, 4 emergency stop, 5 not referenced, 6 not settled, 7 watchdog tripped; the others are 0. `ERR` has one word:
 //! `SEQ`, `VERB`, `ARG`, `LIMIT`, `RATE`, `ID`, `BUSY`, `LATE`, `HELD`, `STOP`, `REF`, `FAULT`.
 //!
-//! The byte `!` anywhere holds immediately, as `STOP` does, and is not part of a frame. No valid frame for W ms (3000 as
-//! delivered) holds too, and sets bit 7 until `CLR`. A rig never clamps: it refuses a command that it cannot execute
-//! exactly. Holding keeps the load; unloading is an operator's act. This does not replace a wired emergency stop and limit
-//! switches.
+//! The byte `!` anywhere holds immediately, as `STOP` does, and is not part of a frame. No valid frame for W ms (default 3000) also
+//! holds, and sets bit 7 until `CLR`. A rig never clamps: it refuses a command that it cannot execute exactly. A hold keeps the load;
+//! only the operator unloads. This protocol does not replace a wired emergency stop and limit switches.
 
 mod checksum;
 mod request;
@@ -56,7 +55,7 @@ pub use request::{
 };
 pub(crate) use request::{in_turn, time};
 
-/// Axes of a rig, at most: the reply to HELLO is no longer than a reply may be.
+/// Largest number of axes of a rig: the reply to HELLO has a maximum length.
 pub const MOST_AXES: usize = 6;
 
 /// The limits that a rig enforces.
@@ -64,7 +63,7 @@ pub const MOST_AXES: usize = 6;
 pub struct Bounds {
     /// One entry an axis.
     pub axes: Vec<AxisBounds>,
-    /// m/s, of the axis that is fastest.
+    /// Speed of the fastest axis \[m/s\].
     pub top_speed: f64,
 }
 
@@ -96,7 +95,7 @@ pub enum Kind {
     Err,
 }
 
-/// A reply that came whole.
+/// A complete reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reply {
     pub kind: Kind,
@@ -114,9 +113,8 @@ impl Reply {
         text(&self.line[self.boot..self.boot + BOOT_DIGITS])
     }
 
-    /// Its words. A complete reply in order may still have an empty or unknown field: the rig repeats the same reply
-    /// however often it is requested, so this is an invalid reading, not a broken line. A missing word is empty, and not a
-    /// number.
+    /// The words of the reply. A complete reply in order may still have an empty or unknown field. The rig repeats the same reply to
+    /// every repeated request, so this is an invalid reading, not a broken line. A missing word is empty, and not a number.
     #[must_use]
     pub fn words(&self) -> Vec<&str> {
         let said = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
@@ -133,7 +131,7 @@ const CHECK_LENGTH: usize = 5;
 /// Words of a reading of one axis, with reserve.
 const USUAL_WORDS: usize = 8;
 
-/// Why a line is no reply.
+/// Why a line is not a valid reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Broken {
     Shape,
@@ -161,7 +159,7 @@ pub enum State {
 /// A reading of every axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Data {
-    /// s
+    /// \[s\]
     pub time: f64,
     pub axes: Vec<AxisData>,
     pub state: State,
@@ -185,7 +183,7 @@ pub fn left(words: &[&str]) -> Option<f64> {
         .map(|left| left / 1e3)
 }
 
-/// The reply a line is, without its ending.
+/// The reply in a line without its ending.
 ///
 /// # Errors
 /// It is not a valid reply.
@@ -211,7 +209,7 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
         .and_then(|count| u32::try_from(count).ok())
         .ok_or(Broken::Shape)?;
     number::hexadecimal(next()?, BOOT_DIGITS).ok_or(Broken::Shape)?;
-    // Behind `<`, the kind, the number, and a blank after either.
+    // After `<`: the kind, the number, and a space after each.
     let boot = 1 + kind_length + 1 + counted.len() + 1;
     Ok(Reply {
         kind,
@@ -239,7 +237,7 @@ pub fn hello(words: &[&str]) -> Option<Hello> {
     if words.iter().any(|word| word.is_empty()) {
         return None;
     }
-    // Four limits and a target for each axis, and two words for all.
+    // Four limits and a target for each axis, and two further words.
     let axes = numbers
         .len()
         .checked_sub(2)
@@ -307,7 +305,7 @@ pub fn data(words: &[&str]) -> Option<Data> {
     })
 }
 
-/// The first axis (from 1) of a `DATA` reply of several that has no number where one belongs.
+/// The first axis (from 1) in a `DATA` reply of several axes that has no number in a numeric field.
 #[must_use]
 pub fn axis_without_number(words: &[&str]) -> Option<usize> {
     let [_, axes @ .., _] = words else {

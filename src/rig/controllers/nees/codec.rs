@@ -12,7 +12,7 @@ const DIRECTION: &str = "x";
 /// The meaning of a reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// The fields after `OK` and its code; the first is the transaction where the request had one.
+    /// The fields after `OK` and its code; the first is the transaction if the request had one.
     Done(Vec<String>),
     /// Any other reply, as text, with the transaction it names.
     Refused {
@@ -24,9 +24,9 @@ pub enum Reply {
 /// The measured values of a control point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// m
+    /// \[m\]
     pub displacement: Option<f64>,
-    /// N
+    /// \[N\]
     pub force: Option<f64>,
 }
 
@@ -97,7 +97,7 @@ pub fn transaction(request: &[u8]) -> Option<&str> {
         .nth(1)
 }
 
-/// Whether a name can be a field: nothing in it divides or ends fields.
+/// Whether a name can be a field: it contains no separator and no line end.
 #[must_use]
 pub fn is_field(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_graphic())
@@ -149,7 +149,7 @@ pub fn measured(fields: &[String], control_point: &str) -> Option<Measured> {
     Some(measured)
 }
 
-/// As C prints `%.10E`: eleven digits, and an exponent of a sign and two digits at least.
+/// As `%.10E` in C: eleven digits, and an exponent with a sign and at least two digits.
 fn ten_digits(value: f64) -> Option<String> {
     let written = value.is_finite().then(|| format!("{:.10E}", value + 0.0))?;
     let (mantissa, exponent) = written.split_once('E')?;

@@ -1,9 +1,8 @@
-//! NEES "LabVIEW plugin" ASCII as the coordinator: one session over one TCP connection. In: \[m\] and \[m/s\]. Out: a
-//! proposal that the rig may refuse, its execution, the reading of the control point. The rig answers an execution when its
-//! motion is done, and receives nothing before: `start` waits that long. There is no stop out of band: a hold is `cancel`,
-//! received when the rig next reads its line. The protocol has no speed: the rig's own must be below the limit. Several
-//! axes are several control points of one session: proposed, executed and refused together in one transaction, and read one
-//! after the other.
+//! NEES "LabVIEW plugin" ASCII as the coordinator: one session over one TCP connection. In: \[m\] and \[m/s\]. Out: a proposal that the
+//! rig may refuse, its execution, the reading of the control point. The rig answers an execution when its motion is done, and receives
+//! nothing before: `start` waits that long. There is no separate stop channel: a hold is `cancel`, received when the rig next reads its
+//! line. The protocol has no speed: the rig's own speed must be below the limit. Several axes are several control points of one session.
+//! They are proposed, executed and refused together in one transaction, and read one after the other.
 
 use crate::rig::LineStatistics;
 use crate::rig::controllers::nees;
@@ -23,12 +22,12 @@ pub struct Nees {
     client: LineClient,
     /// One an axis.
     control_points: Vec<String>,
-    /// Longest time that the rig takes to settle after its motion, s.
+    /// Longest time that the rig takes to settle after its motion \[s\].
     settling: f64,
-    /// Begins every transaction of this session, so that none is one of an earlier session.
+    /// Start of every transaction of this session, so that none equals one of an earlier session.
     prefix: String,
     transactions: u64,
-    /// Where the axes were read last, m; nothing before.
+    /// The last measured positions of the axes \[m\]; empty before the first reading.
     last: Vec<f64>,
     /// The transaction that was sent to be executed and has not been answered.
     executing: Option<String>,
@@ -118,13 +117,13 @@ impl Nees {
             .client
             .answer(nees::codec::ENDING, deadline, &mut accept);
         if ended {
-            // The late answer to an execution: whatever its text, nothing moves any more.
+            // The late answer to an execution: whatever its text, the motion has ended.
             self.executing = None;
         }
         answer?.ok_or(DeviceFault::Silent { seconds: wait })
     }
 
-    /// An execution that is cancelled may first be answered itself, with the same transaction and a `NOT OK`.
+    /// A cancelled execution may first be answered itself, with the same transaction and a `NOT OK`.
     fn cancel(&mut self) -> Result<(), DeviceFault> {
         let Some(transaction) = self.executing.clone() else {
             return Ok(());
@@ -318,13 +317,13 @@ pub(crate) fn introduced(control_points: &[String], welcome: &[u8]) -> Option<De
     })
 }
 
-/// Displacement (m) and force (N) of a control point, from the fields of a reply.
+/// Displacement \[m\] and force \[N\] of a control point, from the fields of a reply.
 fn measured(fields: &[String], control_point: &str) -> Option<(f64, f64)> {
     let at = nees::codec::measured(fields.get(1..)?, control_point)?;
     at.displacement.zip(at.force)
 }
 
-/// The reading of all control points, from displacement (m) and force (N) of each.
+/// The reading of all control points, from displacement \[m\] and force \[N\] of each.
 pub(crate) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
     let mut channels = points.iter().map(|(displacement, force)| Channel {
         displacement: Some(*displacement),

@@ -7,7 +7,7 @@ use crate::rig::controllers::{
     Answer, Channel, DeviceFault, DeviceIdentity, Flags, Force, LineClient, LoadCell, Sample,
 };
 
-/// How often a question is put before it is given up.
+/// Number of times a question is sent before it is abandoned.
 const ATTEMPTS: u32 = 3;
 
 /// The meter at the other end of a line.
@@ -49,7 +49,7 @@ impl ScpiDevice {
         named
     }
 
-    /// One answer came to several questions: the others are waited for no longer than a time-out.
+    /// One answer was received to several questions: the driver waits for the others, at most one time-out.
     fn catch_up(&mut self) -> Result<(), DeviceFault> {
         self.client.drain()?;
         let before = self.client.line_statistics().resent;
@@ -61,7 +61,7 @@ impl ScpiDevice {
         Ok(())
     }
 
-    /// The answer to a question put now.
+    /// The answer to a question that is sent now.
     fn read(&mut self) -> Result<Vec<u8>, DeviceFault> {
         let began = self.client.now();
         for attempt in 0..ATTEMPTS {
@@ -85,7 +85,7 @@ impl ScpiDevice {
                 Ok(line) => return Ok(line),
                 Err(DeviceFault::Silent { .. }) => self.late_answer_possible = true,
                 Err(fault) => {
-                    // An interrupted question may be answered yet.
+                    // The answer to an interrupted question may still arrive.
                     self.late_answer_possible = true;
                     return Err(fault);
                 }
@@ -136,7 +136,7 @@ pub(crate) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample,
             word
         }) {
             Ok(scpi::codec::Answer::Number(value)) => (value, false),
-            // Past every limit.
+            // Outside every limit.
             Ok(scpi::codec::Answer::Overload { negative }) => (
                 if negative {
                     f64::NEG_INFINITY
@@ -283,7 +283,7 @@ mod tests {
     fn after_a_silence_what_is_late_comes_before_its_name_and_is_thrown_away() {
         let (mut device, port) = identified();
         reply(&port, 0.8, "6.66");
-        // The name is requested while the old answer is still under way; it comes after that answer.
+        // The name is requested while the old answer is still in transmission; it arrives after that answer.
         reply(&port, 0.1, NAME);
         reply(&port, 0.1, "1.5");
         assert_eq!(device.sample().unwrap().force, Some(Force::Newtons(-150.0)));

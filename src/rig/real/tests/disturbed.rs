@@ -1,6 +1,6 @@
-//! A frame whose axes settle at different times and disturb one another: no reading counts before all of it rests, all axes
-//! in one sampling. In: an emulated device of two axes whose errors are known at every time. Out: readings inside the band,
-//! or the axis that never came to rest.
+//! A frame whose axes settle at different times and disturb one another. A reading is valid only when all axes are at rest, with all axes
+//! in one sample. In: an emulated device of two axes whose errors are known at every time. Out: readings inside the band, or the axis
+//! that never settled.
 
 use super::*;
 use crate::plan::{
@@ -23,15 +23,15 @@ const LIMITS: Limits = Limits {
     ..Limits::NONE
 };
 
-/// How far the axes are from their targets so long after they set off, m.
+/// Distances of the axes from their targets \[m\], as a function of the time since the start of the move \[s\].
 type Errors = fn(f64) -> [f64; 2];
 
-/// Two axes on springs of 10 kN/m that are somewhere near where they were sent.
+/// Two axes on springs of 10 kN/m, at a known distance from their targets.
 struct Coupled {
     clock: VirtualClock,
     errors: Errors,
     targets: [f64; 2],
-    /// s, by the clock
+    /// \[s\], by the clock.
     set_off: f64,
 }
 
@@ -154,7 +154,7 @@ fn plan() -> RigPlan {
 
 const TARGETS: [f64; 2] = [1e-3, 2e-3];
 
-/// Goes to the targets at once and reads: when, after it set off, and how far each axis was from its target.
+/// Moves to the targets and reads. Gives the time of the reading after the start, and the distance of each axis from its target.
 fn read(errors: Errors) -> Result<(f64, [f64; 2]), RigFault> {
     let clock = VirtualClock::default();
     let device = Coupled {
@@ -183,14 +183,14 @@ const fn within(time: f64, from: f64, to: f64) -> bool {
     from <= time && time < to
 }
 
-/// The upper axis creeps into its band by 0.56 s; the lower one, there from the start and settled by 0.5 s, is pushed out from 0.9 s
-/// to 1.0 s, when the upper one would be.
+/// The upper axis enters its band at 0.56 s. The lower axis is in its band from the start and settled at 0.5 s. It is pushed out of the
+/// band from 0.9 s to 1.0 s, when the upper axis would be settled.
 fn late(time: f64) -> [f64; 2] {
     let creeping = 5e-5 * (1.0 - time / 0.7).max(0.0);
     [if within(time, 0.9, 1.0) { 3e-5 } else { 0.0 }, creeping]
 }
 
-/// The same, and the upper one is pushed while the readings are made.
+/// The same, and the upper axis is pushed while the readings are made.
 fn pushed(time: f64) -> [f64; 2] {
     let [lower, upper] = late(time);
     [
@@ -199,7 +199,7 @@ fn pushed(time: f64) -> [f64; 2] {
     ]
 }
 
-/// The upper one rests for just long enough, again and again.
+/// The upper axis is at rest for just long enough, again and again.
 fn restless(time: f64) -> [f64; 2] {
     [0.0, if time % 0.7 > 0.6 { 3e-5 } else { 0.0 }]
 }

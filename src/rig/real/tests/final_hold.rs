@@ -1,11 +1,11 @@
-//! The last hold of a run, on a scripted device and a virtual clock: it is held where it was seen at rest, and nothing is called held
-//! that was not seen to be.
+//! The last hold of a run, on a scripted device and a virtual clock. The hold position is the one where the rig was read at rest. A rig
+//! without such a reading is not reported as held.
 
 use super::{Stand, stand};
 use crate::rig::controllers::DeviceFault;
 use crate::rig::{FinalHold, Rig as _};
 
-/// On its way to 2 mm at 1 mm/s, for a second: what it says, and what becomes of it when it is to be held.
+/// A rig that has moved towards 2 mm at 1 mm/s for one second, and the result of its final hold.
 fn halted_on_the_way(mut stand: Stand) -> (Stand, FinalHold) {
     stand.rig.propose(&[0.002], Some(0.001)).unwrap();
     let stop_request = stand.stop_request.clone();

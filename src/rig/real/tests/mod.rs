@@ -129,7 +129,7 @@ impl Stand {
         Ok((reading.displacement[0], reading.force[0]))
     }
 
-    /// What goes wrong on the way to 2 mm; the rig holds, or nothing went wrong.
+    /// The fault on the path to 2 mm, after which the rig holds; None without a fault.
     fn fault(mut self) -> Option<RigFault> {
         let fault = self.go(0.002).err();
         assert_eq!(
@@ -141,7 +141,7 @@ impl Stand {
     }
 }
 
-/// What goes wrong where samples are altered so; it must be missed without the guard.
+/// The fault that these altered samples cause; without the guard it must be missed.
 fn caught_by<A>(guard: Guarding, alter: impl Fn() -> A) -> String
 where
     A: FnMut(u64, &mut Sample) -> Result<(), DeviceFault> + Send + 'static,
@@ -174,7 +174,7 @@ fn it_moves_settles_for_the_dwell_and_reads_with_all_its_bytes() {
     );
     let began = stand.rig.time();
     stand.rig.execute().unwrap();
-    // 2 s on the way, half a second of dwell, and less than three polls.
+    // 2 s of motion, half a second of dwell, and less than three polls.
     let took = stand.rig.time() - began;
     assert!((2.5..2.75).contains(&took), "{took}");
     let reading = stand.rig.read().unwrap();
@@ -196,7 +196,7 @@ fn many_short_stays_leave_no_silence_longer_than_the_watchdog() {
     for _ in 0..1000 {
         stand.rig.pause(0.01).unwrap();
     }
-    // 10 s, heard from each quarter of the 3 s.
+    // In 10 s, one poll in each quarter of the 3 s.
     let asked = stand.device.inside().samples - asked;
     assert!((12..=14).contains(&asked), "{asked}");
     assert_eq!(stand.go(0.002), Ok((0.002, 200.0)));
@@ -261,7 +261,7 @@ fn another_device_than_the_plan_s_is_refused() {
 #[test]
 fn what_never_settles_is_held_after_the_timeout() {
     let mut stand = stand();
-    // 6 N/s for ever, where 5 are allowed.
+    // 6 N/s without end; 5 N/s are allowed.
     stand.device.alter(|_, sample| {
         sample.force = sample.time.map(|time| Force::Newtons(6.0 * time));
         Ok(())
@@ -333,7 +333,7 @@ impl Stand {
 }
 
 impl RealRig {
-    /// Sends what was offered and looks no further.
+    /// Commands the proposed move and does not poll further.
     fn execute_briefly(&mut self) -> Result<(), RigFault> {
         let going = self.proposed.take().unwrap().going;
         self.actuator

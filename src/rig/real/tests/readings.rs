@@ -18,7 +18,7 @@ fn counts_become_newtons_by_the_calibration_and_without_one_are_refused() {
         counting,
     )
     .unwrap();
-    // 200 N are −400 counts; zero lies at −40.
+    // 200 N are −400 counts; the zero offset is −40.
     assert_eq!(stand.go(0.002), Ok((0.002, 180.0)));
     let refused = opened(&plan(), counting).err().unwrap();
     assert_eq!(

@@ -1,4 +1,4 @@
-//! The seen speed of a real rig, on a scripted device and a virtual clock: never above the true speed, and above the
+//! The observed speed of a real rig, on a scripted device and a virtual clock. It is never above the true speed, and it is above the
 //! commanded speed if the rig was faster.
 
 use super::{LIMITS, stand};
@@ -11,7 +11,7 @@ fn a_move_is_seen_no_faster_than_it_went_and_a_little_slower() {
     let mut guard = Guard::new(&mut stand.rig, LIMITS).unwrap();
     guard.move_to(&[0.002], Some(0.001)).unwrap();
     assert_eq!(guard.speed(), Some(0.001), "as it was told");
-    // Asked for 20 times a second, 2 s are seen as up to 2.1 s.
+    // Polled 20 times a second, 2 s appear as up to 2.1 s.
     let seen = stand.rig.seen_speed().unwrap();
     assert!((0.95e-3..=1e-3).contains(&seen), "{seen}");
 }
@@ -28,7 +28,7 @@ fn a_ram_that_is_faster_than_it_was_told_is_seen_to_be() {
         Ok(())
     });
     guard.move_to(&[0.002], Some(0.001)).unwrap();
-    // A third of a second at 1 mm/s, and what is left at 10 mm/s.
+    // A third of a second at 1 mm/s, and the rest at 10 mm/s.
     let seen = guard.speed().unwrap();
     assert!((3e-3..6e-3).contains(&seen), "{seen}");
 }

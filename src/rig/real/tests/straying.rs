@@ -6,7 +6,7 @@ use crate::rig::controllers::Force;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{Rig as _, RigFault};
 
-/// Sent to 2 mm by a line that makes `reaches` times as much of it: where it stood when it was held, m, and what was said.
+/// Commanded to 2 mm through a line that multiplies the target by `reaches`. Gives the position at the hold \[m\], and the message.
 fn sent(reaches: f64) -> (f64, Option<String>) {
     let mut stand = stand();
     stand.device.inside().reaches = reaches;
@@ -16,7 +16,7 @@ fn sent(reaches: f64) -> (f64, Option<String>) {
     (stood, fault)
 }
 
-/// 2 mm and a quarter, and two bands of 10 um.
+/// 2 mm plus a quarter of it, plus two bands of 10 µm.
 const BEYOND: f64 = 2.52e-3;
 
 #[test]
@@ -50,7 +50,7 @@ fn an_axis_that_goes_the_other_way_is_held() {
 fn an_overshoot_and_a_single_spike_are_no_straying() {
     let mut stand = stand();
     stand.device.alter(|number, sample| {
-        // A fifth too far in some readings, ten times in one.
+        // 20 % too far in some readings, ten times the value in one.
         let factor = if number == 20 {
             10.0
         } else if (30..45).contains(&number) {
@@ -65,7 +65,7 @@ fn an_overshoot_and_a_single_spike_are_no_straying() {
     assert_eq!(stand.rig.execute(), Ok(()));
 }
 
-/// At 2 mm and 200 N, ±2 N of noise declared; so many of the readings after it settled have lost a digit. What was read, N.
+/// At 2 mm and 200 N, with ±2 N of declared noise; `lost` readings after settling have lost a digit. Gives the reading \[N\].
 fn read_with(lost: u64) -> Result<f64, RigFault> {
     let mut stand = stand();
     stand.rig.propose(&[0.002], Some(0.001)).unwrap();
@@ -84,6 +84,6 @@ fn a_force_that_nothing_leads_to_is_read_anew() {
     assert_eq!(read_with(1), Ok(200.0), "the median");
     assert_eq!(read_with(2), Ok(200.0));
     assert_eq!(without(Guarding::ForceJump, || read_with(2)), Ok(20.0));
-    // It stays there: something happened, and it settles anew.
+    // The reading keeps this value: the force has changed, and the rig settles again.
     assert_eq!(read_with(u64::MAX), Ok(20.0));
 }

@@ -1,4 +1,4 @@
-//! Strokes of a real rig: readings at equally spaced times, and the ends of a stroke.
+//! Constant-velocity passes of a real rig: readings at equally spaced times, and the end of a pass.
 
 use super::*;
 
@@ -51,7 +51,7 @@ fn a_stroke_stops_at_a_refused_reading() {
     assert_eq!((refused, count), (Err(RigFault::Interrupted), 3));
     let stood = stand.device.inside().position;
     assert!((0.003..0.0031).contains(&stood) && stand.device.inside().target == stood);
-    // What is left is gone from there; at the end only the reading that is missing is made.
+    // The remaining travel begins there; at the end only the missing reading is made.
     let mut on = |done| {
         let mut places = Vec::new();
         let cut_off = CutOff {
@@ -83,7 +83,7 @@ fn a_stroke_reads_as_often_as_the_line_carries_and_waits_until_it_rests() {
         readings.push((reading.time, reading.displacement[0]));
         Ok(())
     };
-    // 100 readings in 8 s would come every 0.08 s: one takes 0.3 s.
+    // 100 readings in 8 s would be 0.08 s apart: one takes 0.3 s.
     stand.rig.traverse(&[0.008], 0.001, 100, &mut keep).unwrap();
     assert!((25..=27).contains(&readings.len()), "{}", readings.len());
     let began = readings[0].0 - readings[0].1 / 0.001;
@@ -94,7 +94,7 @@ fn a_stroke_reads_as_often_as_the_line_carries_and_waits_until_it_rests() {
         );
     }
     assert_eq!(readings.last().unwrap().1, 0.008, "the last at the end");
-    // Of a stroke that is over before the first answer there is only one.
+    // A pass that ends before the first reply has only one reading.
     let late = stand
         .rig
         .traverse(&[0.0], -0.1, 8, &mut |_| Ok(()))

@@ -22,12 +22,12 @@ pub use same_rig::{not_restarted, same_measure, same_resolution, same_rig};
 /// The point from which the run log is continued.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResumeDecision {
-    /// Records from this one on no longer count.
+    /// Entries from this one on no longer count.
     pub from: u64,
     pub target_status: TargetStatus,
-    /// The last reading that counts: m, N.
+    /// The last reading that counts: \[m\], \[N\].
     pub recorded: Option<(Vec<f64>, Vec<f64>)>,
-    /// Where the rig was held when the run had stopped, where that was read: m, N.
+    /// The position and force of the final hold, if they were read: \[m\], \[N\].
     pub held: Option<(Vec<f64>, Vec<f64>)>,
     /// The command that is sent before any of the plan: targets \[m\], and the speed of the axis with the longest travel
     /// \[m/s\].
@@ -35,8 +35,7 @@ pub struct ResumeDecision {
 }
 
 impl ResumeDecision {
-    /// The RESUME entry for a rig that was found like this: the operator and the reason, and the rig time at which it
-    /// continues \[s\].
+    /// The RESUME entry for a rig in this state: the operator and the reason, and the rig time at which it continues \[s\].
     #[must_use]
     pub fn resumption(self, by: &str, reason: &str, found: &Reading, time: f64) -> ResumeBody {
         ResumeBody {
@@ -90,13 +89,13 @@ pub fn decide(
         sends: None,
     };
     if let Some((held_at, _)) = &held {
-        // A motion since then is not logged: the specimen has a different history.
+        // A later motion is not logged: the specimen has a different history.
         place.expect_at(held_at)?;
         check_relaxation(held.as_ref(), found, bands, accept_relaxation)?;
     }
 
     let Some(at) = last_intent else {
-        // Nothing was ever sent: only readings at rest.
+        // No target was sent: there are only readings at rest.
         let start = recorded
             .as_ref()
             .map_or_else(|| vec![0.0; found.displacement.len()], |(x, _)| x.clone());
@@ -137,7 +136,7 @@ pub fn decide(
     if at + 1 < lines.len()
         && let Some(paths) = intent.path.as_ref().filter(|_| !place.is_at(&target))
     {
-        // It passed its target at the velocity of the path, and held: after it is moved back, it continues from rest.
+        // It passed its target at the velocity of the path, and held. After it is moved back, it continues from rest.
         place.expect_past(paths)?;
         return Ok(decision(
             last.seq + 1,
@@ -200,7 +199,7 @@ fn last_final_hold(logged: &LoggedRun, last: u64) -> Result<Option<Measured>, Un
         .and_then(|held| held.found))
 }
 
-/// The entries without those that only report the stop: they are reported again, or no longer.
+/// The entries without those that only report the stop: the run reports them again, or no longer.
 pub(super) fn without_stop_entries(logged: &LoggedRun) -> Result<Vec<Line>, ResumeRefusal> {
     let mut lines: Vec<Line> = logged.lines.iter().cloned().collect();
     while let Some(last) = lines.last() {
@@ -239,8 +238,8 @@ pub(super) fn without_stop_entries(logged: &LoggedRun) -> Result<Vec<Line>, Resu
     }
 }
 
-/// The entry from which an interrupted run may be repeated: the stroke at its end, if most of it was not read. The state of
-/// the rig then decides.
+/// The entry from which an interrupted run may be repeated: the stroke at its end, if most of its readings are missing. The state of the
+/// rig then decides.
 pub(super) fn undecided_stroke(lines: &[Line]) -> Result<Option<u64>, UnreadableLog> {
     let Some(at) = lines
         .iter()
@@ -263,7 +262,7 @@ pub(super) fn undecided_stroke(lines: &[Line]) -> Result<Option<u64>, Unreadable
     Ok((is_cut && lost).then_some(lines[at].seq))
 }
 
-/// m and N, one entry a degree of freedom.
+/// \[m\] and \[N\], one entry per degree of freedom.
 type Measured = (Vec<f64>, Vec<f64>);
 
 fn last_reading(lines: &[Line]) -> Result<Option<Measured>, UnreadableLog> {

@@ -10,18 +10,18 @@ use crate::run::replay::entry::TargetStatus;
 /// delay of its line and its clock.
 const LONGEST_OVERRUN: f64 = 1.0;
 
-/// How near the rig must be to its logged position, one entry per axis.
+/// Largest distance of the rig from its logged position, one entry per axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
-    /// m
+    /// \[m\]
     pub displacement: Vec<f64>,
-    /// N, for the relaxation since.
+    /// \[N\], for the relaxation since then.
     pub force: Vec<f64>,
 }
 
 impl Bands {
-    /// The resolution of a rig: each axis has its own, because a band that is negligible for a coarse axis may be half the
-    /// force of another.
+    /// The resolution of a rig. Each axis has a separate one: a band that is negligible for a coarse axis may be half the force of
+    /// another.
     #[must_use]
     pub fn of(rig: &RigPlan, link: &RealLink) -> Self {
         let axes = 0..rig.axes().unwrap_or(1);
@@ -40,12 +40,12 @@ impl Bands {
     }
 }
 
-/// The band of the axis with this index; zero for an axis that has none.
+/// The band of the axis with this index; zero for an axis without a band.
 fn band(bands: &[f64], axis: usize) -> f64 {
     bands.get(axis).copied().unwrap_or(0.0)
 }
 
-/// One missing reading is made late, at the end of the stroke.
+/// A single missing reading is made late, at the end of the stroke.
 pub(super) const fn mostly_lost(samples: usize, taken: usize) -> bool {
     taken + 1 < samples && 2 * taken < samples
 }
@@ -83,9 +83,9 @@ pub(super) fn check_relaxation(
     })
 }
 
-/// A motion with readings on the way that was interrupted.
+/// An interrupted motion with readings during the motion.
 pub(super) struct InterruptedMotion<'a> {
-    /// Where its last reading was, else where it began, m.
+    /// The position of its last reading, else its start \[m\].
     pub(super) reached: &'a [f64],
     pub(super) target: &'a [f64],
     /// For a motion along smooth paths.
@@ -96,8 +96,8 @@ pub(super) struct InterruptedMotion<'a> {
 }
 
 impl InterruptedMotion<'_> {
-    /// A specimen with a memory travels no path twice: the rest is travelled from the present position. Only a stroke that
-    /// went on to its end by itself, and of which most was not read, is repeated.
+    /// A specimen with a memory travels no path twice: the rest is travelled from the present position. A stroke is repeated only if it
+    /// continued to its end and most of its readings are missing.
     pub(super) fn target_status(
         &self,
         place: FoundPosition<'_>,
@@ -140,9 +140,9 @@ fn possible_hold(path: &Path) -> (f64, f64) {
 
 #[derive(Clone, Copy)]
 pub(super) struct FoundPosition<'a> {
-    /// One an axis, m.
+    /// \[m\], one per axis.
     pub(super) positions: &'a [f64],
-    /// One an axis, m.
+    /// \[m\], one per axis.
     pub(super) bands: &'a [f64],
 }
 
@@ -151,7 +151,7 @@ impl FoundPosition<'_> {
         self.first_axis_off(place).is_none()
     }
 
-    /// The first axis that is not at its `place`; an axis without one is not at any.
+    /// The first axis that is not at its position in `place`. An axis without a position counts as not there.
     fn first_axis_off(self, place: &[f64]) -> Option<usize> {
         let near =
             |axis, place: &f64, position: &f64| (position - place).abs() <= band(self.bands, axis);

@@ -3,7 +3,7 @@
 use crate::rig::{of_axis, who};
 use crate::run::replay::logged_run::{Mismatch, UnreadableLog};
 
-/// Why a run must not go on by itself.
+/// Why a run must not be resumed automatically.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResumeRefusal {
     #[error("the run came to its end: there is nothing to go on with")]

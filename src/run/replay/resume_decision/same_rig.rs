@@ -9,11 +9,11 @@ use crate::rig::{DeclaredNoise, Identity, JUST_STARTED, NO_POWER_UP};
 use crate::run::replay::entry::{Assurance, FaultBody};
 use crate::run::replay::logged_run::{LoggedRun, body};
 
-/// Whether the rig that answers is the one of the run log, and has neither restarted nor changed its firmware. If it cannot
-/// report whether it was switched off, the operator must.
+/// Whether the rig that answers is that of the run log, and has neither restarted nor changed its firmware. If it cannot report whether
+/// it was switched off, the operator must.
 ///
 /// # Errors
-/// It is not; to have referenced it accepts a new start and another firmware.
+/// It is not. If it was referenced again, a restart and a different firmware are accepted.
 pub fn same_rig(
     recorded: &Identity,
     found: &Identity,
@@ -70,11 +70,11 @@ pub fn same_rig(
     Ok(())
 }
 
-/// Whether no device lost its position after the rig was opened last: the run log outweighs an assurance that it was not
-/// switched off.
+/// Whether every device kept its position after the rig was opened last. The run log takes precedence over an assurance that the rig was
+/// not switched off.
 ///
 /// # Errors
-/// One did, and it was not referenced since.
+/// A device lost its position, and was not referenced since then.
 pub fn not_restarted(logged: &LoggedRun, assured: &[Assurance]) -> Result<(), ResumeRefusal> {
     if assured.contains(&Assurance::ReReferenced) {
         return Ok(());
@@ -92,7 +92,7 @@ pub fn not_restarted(logged: &LoggedRun, assured: &[Assurance]) -> Result<(), Re
     }
 }
 
-/// Whether a position is read with the same resolution as before: the stiffness of the next step depends on it.
+/// Whether a position is read with the same resolution as before. The stiffness of the next step depends on it.
 ///
 /// # Errors
 /// It is not.
@@ -103,8 +103,7 @@ pub fn same_resolution(recorded: DeclaredNoise, found: DeclaredNoise) -> Result<
     Err(ResumeRefusal::OtherMeasure { what: "resolution" })
 }
 
-/// Whether a logged number means the same position and the same force by a different plan: no amendment may change polarity
-/// or scale.
+/// Whether a logged number means the same position and the same force under a different plan: no amendment may change polarity or scale.
 ///
 /// # Errors
 /// Polarity, calibration or protocol differ.

@@ -2,18 +2,18 @@
 
 use super::*;
 
-/// A rig that looks, whenever it is asked for anything, at what a loss of power would leave of the record.
+/// A rig that checks at every call which entries of the run log would survive a loss of power.
 struct Suspicious {
     rig: Standing,
     disk: PowerLoss,
     proposed: f64,
     read: bool,
-    /// What was found missing.
+    /// The entries that were missing.
     missing: Vec<&'static str>,
 }
 
 impl Suspicious {
-    /// Kind of the last durable record, and its target.
+    /// Kind of the last durable entry, and its target.
     fn durable(&self) -> (EntryKind, Option<f64>) {
         let recovered = recover(&self.disk.synced()).unwrap();
         let last = recovered.lines.last().unwrap();
@@ -86,7 +86,7 @@ impl Rig for Suspicious {
     }
 }
 
-/// What a loss of power at the worst moment would lose of a run.
+/// The entries of a run that a loss of power at the worst moment would lose.
 fn lost_to_power() -> Vec<&'static str> {
     let (plan, disk) = (plan(), PowerLoss::new());
     let mut rig = Suspicious {

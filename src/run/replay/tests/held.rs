@@ -1,5 +1,5 @@
-//! The final hold is in the run log: its replay gives the same, and a rig that was moved or released since is not
-//! continued.
+//! The final hold is in the run log, and the replay reproduces it. A run is not continued if the rig was moved or released after the
+//! hold.
 
 use std::cell::Cell;
 
@@ -16,14 +16,14 @@ use crate::run::session::Session;
 use crate::run::{Inspection, Motion};
 use crate::tests::testing::{elastic_plan, header, ramp};
 
-/// Held by a person on the way to a target, at 40 % of it.
+/// The operator stops the rig on the path to a target, at 40 % of the path.
 struct HeldOnTheWay {
     rig: Standing,
     target: f64,
     moves: u32,
-    /// Whether it is known to hold.
+    /// Whether the rig confirms that it holds.
     heard: bool,
-    /// It is real, and held at a look instead, once a person looks.
+    /// For a real rig that is held during an inspection, after the operator was asked to inspect.
     at_a_look: Option<Rc<Cell<bool>>>,
 }
 
@@ -98,7 +98,7 @@ impl Rig for HeldOnTheWay {
     }
 }
 
-/// Between the second target of the ramp and the third, m; N.
+/// A position between the second and the third target of the ramp \[m\]; below, its force \[N\].
 fn place() -> f64 {
     2.4e-4
 }
@@ -111,7 +111,7 @@ fn plan() -> Plan {
     elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramp(1e-4))])
 }
 
-/// What a person left who held it there, and its journal.
+/// The run and the run log after the operator stopped the rig there.
 fn held(heard: bool) -> (Recorded, Vec<u8>) {
     let (plan, disk) = (plan(), PowerLoss::new());
     let mut rig = HeldOnTheWay {
@@ -156,7 +156,7 @@ fn what_became_of_the_rig_plays_back() {
     }
 }
 
-/// Looks, and has not decided yet.
+/// Inspects, and has not decided yet.
 struct Looking(Rc<Cell<bool>>);
 
 impl Observer for Looking {
@@ -232,7 +232,7 @@ fn a_hold_requested_while_a_release_is_asked_releases_nothing() {
     assert_eq!(stop.outcome(), Outcome::NotReleased { reason });
 }
 
-/// What is decided of a rig that is found there, feeling that.
+/// The resume decision for a rig that is found with this displacement and this force.
 fn decided(
     heard: bool,
     displacement: f64,
@@ -283,7 +283,7 @@ fn a_rig_that_stands_as_it_was_held_is_sent_to_its_target_anew() {
 
 #[test]
 fn a_rig_that_was_moved_or_let_go_of_since_is_refused() {
-    // Each of them stands between where the way began and where it led.
+    // Each of them lies between the start and the target of the move.
     for elsewhere in [2.1e-4, 2.9e-4] {
         let refused = decided(true, elsewhere, 300.0 * elsewhere, true);
         assert!(
@@ -302,7 +302,7 @@ fn a_rig_that_was_moved_or_let_go_of_since_is_refused() {
         decided(true, place(), 0.0, true).is_ok(),
         "somebody answers for the force"
     );
-    // Nobody knows where it came to rest: the place on the way is all there is, and a person is asked.
+    // The position at rest is not known: only the position on the path is logged, and the operator is asked.
     let decision = decided(false, 2.1e-4, 0.0, false).unwrap();
     assert_eq!(
         (decision.target_status, decision.held),
@@ -322,7 +322,7 @@ fn a_record_that_does_not_say_where_it_was_held_plays_back_as_before() {
         lines: lines.cloned().collect(),
         ..whole.clone()
     };
-    // The event of the stop has its own time there: that of the fault before it.
+    // The event of the stop has a separate time there: the time of the fault before it.
     let replayed = replay(
         &plan(),
         LoggedRun {

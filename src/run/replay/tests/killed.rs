@@ -1,4 +1,4 @@
-//! A run that is killed at every write and every sync is resumed to the same end, and no target is carried out twice.
+//! A run that is killed at every write and every sync is resumed to the same end, and no target is executed twice.
 
 use super::*;
 
@@ -7,13 +7,13 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {
     killed_everywhere(&plan(), 200);
 }
 
-/// A blow on a storey: targets and readings of two axes.
+/// An impact on a storey: targets and readings of two axes.
 #[test]
 fn killed_at_every_write_a_blow_on_a_storey_goes_on_to_the_same_end() {
     killed_everywhere(&struck_frame(), 60);
 }
 
-/// Kills the run at every call on its disk, before and after the bytes are there, and goes on each time: more often than `least`.
+/// Kills the run at every disk call, before and after the bytes are written, and resumes it each time: more often than `least`.
 pub(super) fn killed_everywhere(plan: &Plan, least: usize) {
     let (whole_rig, whole, _) = recorded(plan);
     assert_eq!(
@@ -43,7 +43,7 @@ pub(super) fn killed_everywhere(plan: &Plan, least: usize) {
     }
 }
 
-/// What was written is what a killed program leaves: the system still has it.
+/// A killed program leaves all bytes that it wrote: the operating system keeps them.
 fn go_on_and_compare(
     plan: &Plan,
     mut rig: Standing,
@@ -134,7 +134,7 @@ fn go_on_and_compare(
             "call {call}: no target twice, none left out"
         );
     }
-    // The record of both together is a run that can be played back.
+    // The run log of both parts together is a run that can be replayed.
     let (recovered, whole) = logged(&disk.written());
     assert_eq!(
         check_consistency(&recovered, &whole, plan),

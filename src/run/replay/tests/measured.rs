@@ -1,10 +1,10 @@
-//! The measured and computed results of a run, as text that tests compare. Knows no run log.
+//! The measured and computed results of a run, as text that tests compare. It does not depend on the run log.
 
 use std::fmt::Write as _;
 
 use crate::record::{History, ImpactHistory, Record};
 
-/// What a run measured and computed, without the times at which it did.
+/// The measured and computed values of a run, without their times.
 pub(super) fn measured(record: &Record) -> String {
     let mut told = String::new();
     for procedure in &record.procedures {

@@ -29,7 +29,8 @@ use crate::rig::{
 use crate::run::{Inspection, StepReport};
 use crate::tests::testing::{elastic_plan, header, impact, ramp, result_of, struck_frame};
 
-/// The same rig for program after program: it remembers its moves, as a real one does. What it mended each program counts.
+/// The same rig for one program after another: it remembers its moves, as a real rig does. The recovered communication errors are counted
+/// for each program.
 #[derive(Clone)]
 pub(super) struct Standing(pub(super) Rc<RefCell<Stand>>, u64);
 
@@ -37,7 +38,7 @@ pub(super) struct Stand {
     rig: Box<dyn Rig>,
     offered: Option<Vec<f64>>,
     last: LastMove,
-    /// Every target that was carried out, of each axis, m.
+    /// Every target that was executed, for each axis \[m\].
     pub(super) carried_out: Vec<Vec<f64>>,
 }
 
@@ -103,7 +104,7 @@ impl Rig for Standing {
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        // It cannot keep up: every fifth reading is late.
+        // The rig cannot keep up: every fifth reading is late.
         let mut due = 0_usize;
         self.0
             .borrow_mut()
@@ -123,7 +124,7 @@ impl Rig for Standing {
         velocity: f64,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        // Four of five are on record: those that were late are done too.
+        // Four of five readings are logged; the late ones also count as done.
         let mut due = cut_off.done + cut_off.done.saturating_sub(1) / 4;
         self.0.borrow_mut().rig.traverse_on(
             &CutOff {
@@ -175,7 +176,7 @@ impl Rig for Standing {
     }
 }
 
-/// Answers every inspection with a name.
+/// Answers every inspection with an operator's name.
 pub(super) struct Witness;
 
 impl Observer for Witness {
@@ -187,7 +188,7 @@ impl Observer for Witness {
     }
 }
 
-/// A witness who notes the steps that are done, and where among them (None) the rig is opened.
+/// An observer that notes the finished steps, and the opening of the rig among them (None).
 #[derive(Default)]
 struct Followed {
     steps: Rc<RefCell<Vec<Option<u64>>>>,
@@ -204,7 +205,7 @@ impl Observer for Followed {
 }
 
 impl Followed {
-    /// As many steps as the record has up to `from` were done before, and no other.
+    /// Exactly the steps that are in the run log before `from` were done before the rig was opened.
     fn opened_where_the_record_ends(&self, record: &LoggedRun, from: u64, call: usize) {
         let on_record = record
             .lines
@@ -231,7 +232,7 @@ impl Followed {
     }
 }
 
-/// A ramp, a sweep, a move, an impact with an inspection: some forty steps.
+/// A ramp, a sweep, a move, an impact with an inspection: about forty steps.
 fn plan() -> Plan {
     let sweep = DampingSweep {
         specimen: 0,
@@ -275,7 +276,7 @@ fn journal(storage: impl Storage + 'static) -> Journal {
     Journal::create(Box::new(storage), Durability::EverySyncPoint)
 }
 
-/// Records the plan on a fresh rig; the rig, the record and the journal's bytes.
+/// Logs a run of the plan on a new rig. Gives the rig, the run, and the bytes of the run log.
 pub(super) fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
     let (mut rig, disk) = (Standing::new(plan), PowerLoss::new());
     let mut journal = journal(disk.clone());
@@ -326,7 +327,7 @@ fn played_back_it_is_the_same_run() {
 fn what_the_run_would_not_have_done_is_found_out() {
     let plan = plan();
     let (_, _, bytes) = recorded(&plan);
-    // Another number in a reading: the run then asks for other targets.
+    // A changed number in a reading: the run then requests different targets.
     let mut found = 0;
     let (recovered, _) = logged(&bytes);
     for (at, line) in recovered
@@ -345,7 +346,7 @@ fn what_the_run_would_not_have_done_is_found_out() {
                 .is_some(),
         );
     }
-    // A reading before a move that no step reports can be anything: those few prove nothing.
+    // A reading before a move that no step reports can have any value: these few readings verify nothing.
     let samples = recovered
         .lines
         .iter()

@@ -65,7 +65,7 @@ pub(super) fn cycle(rate: Option<f64>) -> Cycle {
     }
 }
 
-/// Two floors on a ground that shakes, and stops for a look. They yield, so that a way gone twice would show.
+/// Two floors under a ground motion, with an inspection. They yield, so that a path that is travelled twice would be detected.
 pub(super) fn shaken(mode: Mode) -> Plan {
     let behaviour = |stiffness| Behaviour::Bilinear {
         stiffness,
@@ -116,7 +116,7 @@ pub(super) fn escalating() -> Plan {
         name: "max_velocity",
         part: Part::Value,
     });
-    // The blows are over before their peak, which would decide nothing.
+    // The impacts end before their peak, so the condition would not be conclusive.
     let below = Condition {
         text: String::new(),
         value,
@@ -159,7 +159,7 @@ pub(super) fn struck_on_the_way() -> Plan {
     plan
 }
 
-/// Out past yield and back, each pause watched; then anew.
+/// Loads past yield and back, with readings in each dwell; then repeats it.
 pub(super) fn watched() -> Plan {
     let watched = StiffnessRamp {
         displacements: [0.005, 0.02].map(Constant).to_vec(),
@@ -179,7 +179,7 @@ pub(super) fn watched() -> Plan {
     yielding(vec![ProcedureKind::StiffnessRamp(watched), to(0.0)])
 }
 
-/// Zeros are read, also during a look, and the rig goes back for the last.
+/// Zeros are read, also during an inspection, and the rig returns to its start for the last one.
 pub(super) fn drifting() -> Plan {
     let ramped = StiffnessRamp {
         pause: Constant(0.5),
@@ -199,7 +199,7 @@ pub(super) fn drifting() -> Plan {
     plan
 }
 
-/// Two blows on the upper of two floors, the load taken off both after each, and once more.
+/// Two impacts on the upper of two floors, each followed by unloading of both floors; then the same again.
 pub(super) fn frame_row() -> Plan {
     let mut plan =
         crate::tests::procedures::frame::impact_series::rising(&[0.4, 0.8], Between::Unload);
@@ -221,7 +221,7 @@ pub(super) fn frame_row() -> Plan {
     plan
 }
 
-/// A sweep about a place past yield: one stroke that is not read takes the flow before those that are.
+/// A sweep about a position past yield: one pass without readings causes the plastic deformation before the passes with readings.
 pub(super) fn swept_past_yield() -> Plan {
     let sweep = DampingSweep {
         specimen: 0,
@@ -234,7 +234,7 @@ pub(super) fn swept_past_yield() -> Plan {
     yielding(vec![ProcedureKind::DampingSweep(sweep), to(0.0)])
 }
 
-/// Every plan here, by what it shows.
+/// Every plan of this file, with its purpose.
 pub(super) fn plans() -> Vec<(&'static str, Plan)> {
     vec![
         (

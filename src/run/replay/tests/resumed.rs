@@ -15,7 +15,7 @@ use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{Identity, JUST_STARTED, RigFault};
 use crate::tests::testing::{elastic_plan, header, ramp, result_of};
 
-/// A record of a version whose targets stood evenly is played back so; what this version writes is not.
+/// A run log of an older version with equally spaced targets is replayed with them; this version does not write such run logs.
 #[test]
 fn a_cycle_is_played_back_by_the_spacing_of_its_time() {
     let plan = |evenly| {
@@ -68,7 +68,7 @@ fn rising_blows_on_a_storey() {
 
 #[test]
 fn a_shake_of_two_floors() {
-    // Both storeys have yielded, each at 0.2 mm: a part of a way gone twice would be felt.
+    // Both storeys have yielded, each at 0.2 mm: the force would show a part of a path that is travelled twice.
     let (_, whole, _) = recorded(&shaken(CONTINUOUS));
     let drifts = whole.record.procedures[0]
         .result("max_drift")
@@ -90,7 +90,7 @@ fn pauses_that_are_watched() {
     killed("watched");
 }
 
-/// Nothing of a stroke that flowed is read, and what is read comes back over the line that it went: there is no damper.
+/// No reading is made during plastic deformation, and the readings follow the same line on the return: there is no damper.
 #[test]
 fn a_sweep_about_a_place_past_yield() {
     let (_, whole, _) = recorded(&swept_past_yield());
@@ -157,7 +157,7 @@ fn each_is_played_back_to_the_last_bit_and_told_at_the_same_times_without_a_reco
             "{name}: played back"
         );
         let plain = run(&plan, &mut Standing::new(&plan), &mut Witness);
-        // What the rig mended is counted from its first reading on in either.
+        // In both, the recovered communication errors are counted from the first reading of the rig.
         assert_eq!(
             format!("{plain:?}"),
             format!("{:?}", whole.record),

@@ -7,7 +7,7 @@ use crate::language::check::messages::frames as message;
 use crate::plan::Ground;
 use crate::schema::ground::{RECORD, SCALE, SCALE_UNCERTAINTY, UNIT};
 
-/// A ground motion with a valid record; None where an error was reported.
+/// A ground motion with a valid record; None if an error was reported.
 pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
     let name = checker.scope.blocks[block].name;
     let scale = checker.constant(block, SCALE.name);

@@ -11,13 +11,13 @@ const STANDARD_GRAVITY: f64 = 9.806_65;
 /// Header lines of an AT2 file, one of which contains NPTS and DT.
 const AT2_HEAD: usize = 6;
 
-/// A record as it was read.
+/// A ground-motion record as read.
 #[derive(Debug, PartialEq)]
 pub struct GroundRecord {
     /// \[s\]
     pub times: Vec<f64>,
     pub values: Vec<f64>,
-    /// Scale factor of `values` \[m/s²\], where the header states it.
+    /// Scale factor of `values` \[m/s²\], if the header states it.
     pub unit: Option<f64>,
 }
 
@@ -136,7 +136,7 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
     })
 }
 
-/// The scale factor \[m/s²\] from a line that ends `UNITS OF G`, or `… GAL`; None where it states no unit, or a different one.
+/// The scale factor \[m/s²\] from a line that ends `UNITS OF G`, or `… GAL`; None if it states no unit, or a different one.
 fn stated_unit(line: &str) -> Option<f64> {
     let (_, unit) = line.split_once("UNITS OF ")?;
     match unit

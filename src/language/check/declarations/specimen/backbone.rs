@@ -19,7 +19,7 @@ pub fn deterioration<'a>(
     exponent: f64,
     residual: f64,
 ) -> Option<Option<Deterioration>> {
-    // A bilinear backbone has no cap, and its reloading branch is its own.
+    // A bilinear backbone has no cap, and its reloading branch is a separate one.
     let mut of = |name| match chosen.find(name) {
         Some(_) => checker.optional_argument(chosen, name, context),
         None => Some(None),
@@ -89,7 +89,7 @@ pub fn capping<'a>(
     }
 }
 
-/// Backbone points of increasing force, each segment softer than the one before: a model of elastic–plastic springs in parallel.
+/// Backbone points of increasing force, each segment less stiff than the previous one: a model of elastic–plastic springs in parallel.
 pub fn multilinear<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,

@@ -17,12 +17,12 @@ pub const MOST_PARTS: usize = 16;
 /// Most springs in series: each additional one multiplies the cost of a move by about ten.
 pub const MOST_IN_SERIES: usize = 4;
 
-/// Duration of a relaxation where the plan does not specify it, in reference times.
+/// Duration of a relaxation if the plan does not specify it, in reference times.
 const LONGEST_OF_REFERENCE: f64 = 1e6;
-/// Shortest duration of a relaxation, in reference times: a shorter one leaves nothing of the logarithm.
+/// Shortest duration of a relaxation, in reference times: for a shorter one the logarithm has no effect.
 const LEAST_OF_REFERENCE: f64 = 10.0;
 
-/// A model as it is written, with the variants that it may be.
+/// A model as written, with the variants that are allowed there.
 pub struct Written<'a> {
     pub field: &'static str,
     pub variants: &'static [Variant],
@@ -34,9 +34,9 @@ pub struct Written<'a> {
 /// Material data of the specimen.
 #[derive(Clone, Copy, Default)]
 pub struct Material {
-    /// q·A \[kg/m\], where both are stated.
+    /// q·A \[kg/m\], if both are stated.
     pub mass_per_length: Option<f64>,
-    /// q·A·L \[kg\], where all three are stated.
+    /// q·A·L \[kg\], if all three are stated.
     pub own_mass: Option<f64>,
 }
 
@@ -235,7 +235,7 @@ fn part<'a>(
     }
 }
 
-/// The instantaneous force relaxes with the logarithm of time, by no more than the whole of it.
+/// The instantaneous force relaxes with the logarithm of time, at most to zero.
 fn logarithmic<'a>(
     checker: &mut Checker<'a>,
     written: &Written<'a>,

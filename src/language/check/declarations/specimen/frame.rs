@@ -23,10 +23,10 @@ pub const FIELDS: [&str; 3] = [
     fields::STIFFNESS_MATRIX.name,
 ];
 
-/// Relative difference within which a stiffness equals that of its model: the last digits of a sum or a quotient.
+/// Relative difference up to which a stiffness equals that of its model: the last digits of a sum or a quotient.
 const SAME: f64 = 1e-9;
 
-/// Standard uncertainties within which they agree, where the plan states one.
+/// Number of standard uncertainties up to which they agree, if the plan states one.
 const WITHIN: f64 = 3.0;
 
 /// Uncertainties of the matrices, with the field that each belongs to.
@@ -58,7 +58,7 @@ pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
     if let Some(known) = checker.frames.get(&block) {
         return known.clone();
     }
-    // Until it is known there is none: a storey that reads the mass of its own frame gets no value.
+    // There is no frame until it is known: a storey that reads the mass of its own frame gets no value.
     checker.frames.insert(block, None);
     let frame = report_once(checker, block).and_then(|()| {
         match checker.field(block, fields::STOREYS.name) {
@@ -279,7 +279,7 @@ fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String
     }
 }
 
-/// The frame of which a block strikes one storey; None where it strikes one degree of freedom, or a specimen that is not known.
+/// The frame of a block that strikes one storey; None if it strikes one degree of freedom, or a specimen that is not known.
 pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Option<Rc<Frame>>)> {
     let specimen = checker
         .tested(block)

@@ -82,11 +82,11 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
             .push(message::mass_incomplete(name, head, missing));
     }
     beam_has_mass(checker, block, mass);
-    // Every number is evaluated, also those that the mass does not need, so that all errors are reported in one pass.
+    // Every number is evaluated, also those without effect on the mass, so that all errors are reported in one pass.
     for field in [fields::LENGTH.name, fields::AREA.name, fields::DENSITY.name] {
         checker.quantity(block, field);
     }
-    // A real specimen needs no model; that a virtual one lacks it has its own diagnostic.
+    // A real specimen needs no model; a missing model of a virtual one has a separate diagnostic.
     let behaviour = match checker.field(block, fields::BEHAVIOUR.name) {
         None if checker.real_rig.is_some() => Some(None),
         _ => behaviour(checker, block, head).map(Some),
@@ -109,7 +109,8 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     })
 }
 
-/// A `beam` has ends, and q·A·L/2 applies to two supports: the plan must state which of its masses is meant. Plans of older logs meant q·A·L/2.
+/// A `beam` has ends, and q·A·L/2 applies to two supports: the plan must state which of its masses applies. Plans of older run logs used
+/// q·A·L/2.
 fn beam_has_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
     let declared = &checker.scope.blocks[block];
     let beam = |written: &Expr| behaviour::names(written, "beam");
@@ -160,7 +161,7 @@ fn mass(checker: &mut Checker, block: usize) -> Option<f64> {
     Some(density * area * length / 2.0)
 }
 
-/// Equivalent mass by the elastic deflection \[kg\]. A portal with no mass at the point of its load has none.
+/// Equivalent mass by the elastic deflection \[kg\]. A portal without a mass at the point of its load has none.
 fn mass_of_portal(checker: &mut Checker, block: usize) -> Option<f64> {
     if !names_portal(checker, block) {
         return None;
@@ -211,7 +212,7 @@ fn own_mass(checker: &mut Checker, block: usize) -> Option<f64> {
     Some(density * area * length)
 }
 
-/// `beam.mass` and the like, with their uncertainty contributions.
+/// `beam.mass` and similar values, with their uncertainty contributions.
 pub fn exported(
     checker: &mut Checker,
     block: usize,
@@ -285,7 +286,7 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
     if name == fields::MASS.name {
         return mass(checker, block);
     }
-    // Known only with a model; that a virtual specimen lacks one has its own diagnostic.
+    // Known only with a model; a missing model of a virtual specimen has a separate diagnostic.
     if checker.real_rig.is_some() && checker.field(block, fields::BEHAVIOUR.name).is_none() {
         return checker.fail(message::property_without_behaviour(
             declared.name,
@@ -388,7 +389,7 @@ pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Opt
     behaviour
 }
 
-/// Warns where the limits let a specimen exceed the points of its table.
+/// Warns if the limits allow a specimen to exceed the points of its table.
 pub fn warn_of_short_tables(
     checker: &mut Checker,
     specimens: &[Option<Specimen>],

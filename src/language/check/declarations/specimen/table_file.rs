@@ -1,7 +1,7 @@
 //! A file of measured points: `displacement_m,force_n`, one row per point. In: its text. Out: points in SI through the origin, for both
 //! signs; or the row of an error, and the reason.
 
-/// Why a file is not a table: number of the line from 1 and its text, where one row has the error, and the reason with a suggestion.
+/// Why a file is not a table: number of the line from 1 and its text, if one row has the error, and the reason with a suggestion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadTable {
     pub row: Option<(usize, String)>,
@@ -56,7 +56,7 @@ struct Row<'t> {
 
 impl Row<'_> {
     fn bad(&self, reason: &str, help: &'static str) -> BadTable {
-        // A row may be as long as a file.
+        // A row may have the length of a whole file.
         let shown: String = self.text.chars().take(60).collect();
         BadTable {
             row: Some((self.line, shown)),
@@ -101,7 +101,7 @@ impl Row<'_> {
         Ok([number(displacement)?, number(force)?])
     }
 
-    /// Whether a point may come after the one before.
+    /// Whether a point may follow the previous one.
     fn follows(
         &self,
         before: Option<&[f64; 2]>,

@@ -189,7 +189,7 @@ pub fn argument_twice(name: &str, span: Span, first: Span) -> Diagnostic {
     .help("remove one of them")
 }
 
-/// Both by the fields that give it, as they are written.
+/// Both, by the fields that give them, as written.
 pub fn velocity_twice(again: &str, span: Span, first_field: &str, first: Span) -> Diagnostic {
     Diagnostic::new(
         Code::Duplicate,

@@ -15,7 +15,7 @@ pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diag
         ))
 }
 
-/// A result of a run that does not unload, by the name of one that does, or the reverse.
+/// A result of a run that does not unload, with the name that belongs to a run that does, or the reverse.
 pub fn left_under_another_name(kind: &BlockKind, name: &str, now: &str, span: Span) -> Diagnostic {
     let unloads = now.starts_with("residual");
     let message = if unloads {

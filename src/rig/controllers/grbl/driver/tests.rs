@@ -31,7 +31,7 @@ fn status(port: &ScriptedPort, state: &str, x: f64) {
     );
 }
 
-/// What is said while it is asked who it is, up to its settings: the first status is not believed alone.
+/// The replies during identification, up to the settings: the first status alone is not trusted.
 fn introduce(port: &ScriptedPort, settings: &str) {
     for _ in 0..3 {
         status(port, "Idle", 0.0);
@@ -298,7 +298,7 @@ fn a_late_status_is_not_taken_for_a_fresh_one() {
     assert_eq!(device.line_statistics().resent, 1);
 }
 
-/// A board that is held at 1 mm, opened by somebody who wants it let go of, up to the answer to the reset.
+/// The replies of a board that is in hold at 1 mm when it is opened with a request to clear the hold, up to the reply to the reset.
 fn held_and_let_go(answer: &str) -> (GrblDevice, ScriptedPort) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
@@ -344,7 +344,7 @@ fn an_axis_that_lost_its_place_or_is_elsewhere_is_not_taken_for_let_go() {
         let reason = reason(device.identify());
         assert!(reason.contains("home it (`$H`)"), "{state}: {reason}");
     }
-    // It still creeps: a reset would lose its place.
+    // The board still moves slowly: a reset would lose its position.
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     let client = LineClient::new(Box::new(port.clone()), Box::new(clock), 0.25)

@@ -35,7 +35,7 @@ fn console() -> (Instron, Transcript) {
     (Instron::new(client), Transcript::new(port, 0.02, text))
 }
 
-/// 100 mm and 50 kN of full scale, at rest at 1 % of each.
+/// Full scale 100 mm and 50 kN; at rest at 1 % of each.
 fn opened() -> (Instron, Transcript) {
     let (mut console, mut script) = console();
     round(
@@ -76,10 +76,10 @@ fn a_ramp_is_read_back_before_it_starts() {
     let going = console.encode(&[0.005], 0.0008).unwrap();
     assert_eq!((going.targets[0], going.speed), (0.005, 0.0008));
     assert_eq!(text(&going.frames.concat()), format!("{RAMP}{START}"));
-    // The first set of orders is cut short: the old target stands.
+    // The first set of commands is incomplete: the old target applies.
     script.on(RAMP, "").on("Q4,1 ", "0.01").on("Q86,1 ", "5");
     script.on(RAMP, "").on("Q4,1 ", "0.05").on("Q86,1 ", "5");
-    // The first start is not heard.
+    // The first start command is lost.
     script
         .on(START, "")
         .on("Q1 ", "0")
@@ -148,7 +148,7 @@ fn an_exact_zero_is_asked_again_and_believed_twice() {
         (sample.displacement, sample.force),
         (Some(0.012 * 0.1), Some(Force::Newtons(0.0)))
     );
-    // The load is known to be zero now: it is not asked twice for ever.
+    // The load is now known to be zero: the question is not repeated without limit.
     round(&mut script, "0", "0.012", "0.0");
     console.sample().unwrap();
     script.done();
@@ -185,7 +185,7 @@ fn after_a_silence_only_the_second_of_two_lone_answers_counts() {
     assert_eq!(console.sample().unwrap().displacement, Some(0.003));
     script.done();
     assert_eq!(console.line_statistics().resent, 1);
-    // Nobody answers at all: bounded.
+    // No reply at all: the time is bounded.
     let (mut console, script) = self::console();
     assert!(matches!(
         console.identify(),

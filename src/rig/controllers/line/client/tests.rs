@@ -1,4 +1,4 @@
-//! Talking into pieces, noise, silence and hangups.
+//! Requests with replies in pieces, noise, silence and disconnections.
 
 use super::*;
 use crate::rig::safety::failpoint::without;
@@ -18,7 +18,7 @@ fn after(seconds: f64, bytes: &[u8]) -> Say {
     Say::After(seconds, bytes.to_vec())
 }
 
-/// Takes lines that begin with `ok`.
+/// Accepts lines that begin with `ok`.
 fn ok(line: &[u8]) -> Answer<Vec<u8>> {
     if line.starts_with(b"ok") {
         Answer::Take(line.to_vec())

@@ -1,4 +1,4 @@
-//! Transcripts of a stand with its gauge: limits read back, lost characters, silences, overruns.
+//! Transcripts of a test frame with its gauge: limits read back, lost characters, silences, overruns.
 
 use super::*;
 use crate::rig::controllers::mark10::load_cell::Mark10Gauge;
@@ -71,13 +71,13 @@ fn a_target_is_a_limit_that_is_read_back_before_the_stand_sets_off() {
         going.frames,
         [b"e0600.0".to_vec(), b"h002.50".to_vec(), b"u".to_vec()]
     );
-    // A letter is lost on the way: the old limit is heard, and it is set again.
+    // A letter is lost in transmission: the old limit is reported, and the new limit is set again.
     script
         .on("e0600.0h002.50", "")
         .on("v", "300.00")
         .on("e0600.0h002.50", "")
         .on("v", "2.50");
-    // The first `u` is not heard either.
+    // The first `u` is also lost.
     script
         .on("p", "SL")
         .on("u", "")
@@ -157,7 +157,7 @@ fn a_stand_past_its_limit_is_stopped() {
     script.done();
 }
 
-/// It was switched off and on between the last look and the letter that sends it: nothing stops it at a target any more.
+/// The test frame was switched off and on between the last status and the start letter: it no longer stops at a target.
 #[test]
 fn a_stand_that_left_limit_mode_is_stopped_and_never_sent_off_again() {
     let left =
@@ -187,7 +187,7 @@ fn a_stand_that_left_limit_mode_is_stopped_and_never_sent_off_again() {
         left(stand.sample().unwrap_err());
         script.done();
     }
-    // Its limits were forgotten, and its mode was not.
+    // The test frame lost its limits but kept its mode.
     let (mut stand, mut script) = opened();
     script
         .on("e0600.0h002.00", "")
@@ -237,7 +237,7 @@ fn after_a_silence_travel_and_force_are_asked_twice() {
         (Some(0.001_02), Some(Force::Newtons(102.0)))
     );
     script.done();
-    // What comes unasked is thrown away.
+    // Unsolicited bytes are discarded.
     script.port.say(&[Say::After(0.0, b"999.99\r\n".to_vec())]);
     round(&mut script, "SL", "1.00", "100 N");
     assert_eq!(stand.sample().unwrap().displacement, Some(0.001));

@@ -210,7 +210,7 @@ fn noise_and_a_broken_answer_are_waited_out_and_asked_again() {
             reread: 0
         }
     );
-    // What was said before anybody asked is thrown away.
+    // Bytes that arrived before the first request are discarded.
     port.say(&[
         Say::After(0.0, vec![0xFF; 700]),
         Say::After(0.0, float(1.0)),
@@ -219,10 +219,10 @@ fn noise_and_a_broken_answer_are_waited_out_and_asked_again() {
     assert_eq!(force(&device.sample().unwrap()), 2.0);
 }
 
-/// The first question is answered after 1.2 T, the others at once.
+/// The first request is answered after 1.2 T, the others immediately.
 fn late_answer() -> f64 {
     let (mut device, port, _) = device(CELL);
-    // The late one comes where the line is listened to for silence, or as the answer to the second question.
+    // The late reply arrives while the driver waits for silence, or as the reply to the second request.
     port.reply(&[Say::After(1.2 * T, float(111.0))]);
     for value in [222.0, 333.0, 444.0] {
         port.reply(&at_once(float(value)));
@@ -240,7 +240,7 @@ fn a_late_answer_is_never_taken_and_the_guard_is_what_stops_it() {
 fn an_answer_that_comes_while_the_second_question_is_open_is_one_too_many() {
     let (mut device, port, _) = device(CELL);
     port.reply(&[Say::After(2.1 * T, float(111.0))]);
-    // In order on the line: the late one, then the answer to the second question.
+    // In order on the line: the late reply, then the reply to the second request.
     port.reply(&at_once(float(222.0)));
     port.reply(&at_once(float(333.0)));
     port.reply(&at_once(float(444.0)));
@@ -291,7 +291,7 @@ fn swapped_words_are_noticed_when_it_is_opened() {
     }
 }
 
-/// Where every reading is exactly 0 nothing tells the order: then the first move must be none.
+/// If every reading is exactly 0, the word order cannot be determined: the first move must be refused.
 #[test]
 fn a_drive_with_its_words_the_other_way_round_is_told_no_speed() {
     for speed in [1e-3, 1.1e-3, 0.7e-3, 0.05] {
@@ -334,7 +334,7 @@ fn a_transmitter_with_input_registers_only_is_found_out() {
 fn it_holds_by_its_stop_word_or_by_going_where_it_is() {
     let (mut device, port, _) = device(MAP);
     let stop = sealed(&[1, 6, 0, 60, 0, 2]);
-    // The first order is lost.
+    // The first command is lost.
     port.reply(&[]);
     port.reply(&at_once(stop.clone()));
     device.hold().unwrap();

@@ -6,7 +6,7 @@ use super::checksum::checksum;
 use super::{AxisBounds, Bounds};
 use crate::rig::controllers::number;
 
-/// Longest request with its ending, bytes: of one axis, of several.
+/// Longest request with its ending \[bytes\]: for one axis, for several axes.
 pub const LONGEST_FRAME: usize = 96;
 
 pub const LONGEST_FRAME_OF_SEVERAL: usize = 512;
@@ -16,7 +16,7 @@ pub const LONGEST_FRAME_OF_SEVERAL: usize = 512;
 pub enum Request<'a> {
     Hello,
     Limits(&'a Bounds),
-    /// Targets of every axis and the speed as [`lengths`] and [`length`] write them, so that each is written once.
+    /// Targets of every axis and the speed, formatted by [`lengths`] and [`length`], so that each is formatted only once.
     Move {
         id: u64,
         targets: &'a str,

@@ -222,7 +222,7 @@ fn a_whole_line_with_a_false_field_is_no_reading() {
             .replacen(right, false_field, 1);
         assert_eq!(read(&framed(&body)), None, "{body}");
     }
-    // Whole replies with a field that is none.
+    // Complete replies with an invalid field.
     for field in ["", "1\x002"] {
         let whole = reply(&framed(&format!("DATA 42 7F3A 1 {field} 2"))).unwrap();
         let words = whole.words();
@@ -260,7 +260,7 @@ fn each_flag_has_its_bit_and_each_code_its_words() {
     );
 }
 
-/// A rig of two axes: as `docs/rigs.md` shows it.
+/// A rig of two axes, as in `docs/rigs.md`.
 #[test]
 fn the_vectors_of_several_axes() {
     let (targets, speed) = (
@@ -353,12 +353,12 @@ fn of_several_axes_the_one_without_a_number_is_known() {
             "{none}"
         );
     }
-    // Of one axis there is no other, and of a broken count none is known.
+    // A single axis has no missing axis, and an invalid number of words identifies none.
     assert_eq!(axis_without_number(&sound.words()[..6]), None);
     assert_eq!(axis_without_number(&none.words()[..8]), None);
 }
 
-/// The table holds what the division by the polynomial gives, bit by bit.
+/// The table contains the results of the polynomial division, bit by bit.
 #[test]
 fn the_checksum_is_the_one_of_its_definition() {
     let by_bits = |bytes: &[u8]| {

@@ -16,13 +16,13 @@ use crate::rig::{LastMove, LineStatistics};
 
 mod path;
 
-/// How the model of a simulator begins.
+/// Start of the model name of a simulator.
 pub const SIMULATED: &str = "PSD-SIM";
 
 /// The firmware at the other end of a line.
 pub struct NativeDevice {
     client: LineClient,
-    /// Of the last request.
+    /// Sequence number of the last request.
     sequence: u32,
     boot: Option<String>,
     hello: Option<Hello>,
@@ -34,7 +34,7 @@ pub struct NativeDevice {
     out_of_step: bool,
     /// Held by this driver: the hold is latched.
     held: bool,
-    /// Number of the next move, where none is proposed.
+    /// Number of the next move, if none is proposed.
     next_id: u64,
     proposed: Option<Proposed>,
 }
@@ -42,7 +42,7 @@ pub struct NativeDevice {
 /// A move that has not been accepted.
 struct Proposed {
     id: u64,
-    /// As they are written.
+    /// The targets as they are sent.
     targets: String,
     sent: bool,
 }
@@ -352,7 +352,7 @@ impl Device for NativeDevice {
                 reason: format!("{written} mm is outside the limits the rig says it has"),
             });
         }
-        // A speed that is written as nothing would never arrive.
+        // A speed that rounds to zero would never arrive.
         if !(0.0 < speed && speed <= bounds.top_speed) {
             return Err(DeviceFault::Refused {
                 reason: format!("{} mm/s is no speed of this rig", speed * 1e3),

@@ -17,7 +17,7 @@ fn say(port: &ScriptedPort, body: &str) {
     port.reply(&[Say::After(0.01, line(body))]);
 }
 
-/// What was sent, without lead character, checksum and ending.
+/// The frames that were sent, without lead character, checksum and line ending.
 fn sent(port: &ScriptedPort) -> Vec<String> {
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     let body = |frame: String| {
@@ -47,7 +47,7 @@ fn device() -> (NativeDevice, ScriptedPort) {
     )
 }
 
-/// A rig that has said who it is, at sequence number 2.
+/// A rig after its identification, at sequence number 2.
 fn identified() -> (NativeDevice, ScriptedPort) {
     let (mut device, port) = device();
     say(&port, &format!("ACK 1 7F3A {WHO}"));
@@ -331,7 +331,7 @@ fn a_new_power_up_is_seen_in_any_reply_and_without_the_guard_it_would_pass() {
     );
 }
 
-/// What a fault of one reply leaves of a reading: the reply kept by the rig comes to the frame sent again.
+/// The reading after a fault of one reply: the rig repeats its last reply when the frame is sent again.
 fn after_fault(pieces: &[Say]) -> (f64, LineStatistics) {
     let (mut device, port) = identified();
     port.reply(pieces);

@@ -1,4 +1,4 @@
-//! Transcripts of a session: proposals, refusals, an execution that takes its time, replies to other transactions.
+//! Transcripts of a session: proposals, refusals, a slow execution, replies to other transactions.
 
 use super::*;
 use crate::rig::StopRequest;
@@ -187,7 +187,7 @@ fn holding_cancels_what_is_being_executed_and_says_nothing_at_rest() {
         Err(DeviceFault::Silent { seconds: T }),
         "it hears nothing yet"
     );
-    // The execution is answered first.
+    // The reply to the execution arrives first.
     port.reply(&[
         after(0.1, "NOTOK 5 psd-000004 cancelled"),
         after(0.1, "OK 0 psd-000004"),
