@@ -149,7 +149,7 @@ pub enum DeviceFault {
     Interrupted,
 }
 
-/// One device on one port. All calls end within a bounded time. A device that only measures force is a [`LoadCell`].
+/// One device on one port. All calls end within a bounded time. A device that only measures force is a [`LoadCell`](super::LoadCell).
 pub trait Device: Send {
     /// Opens the conversation: requests the identity and checks the configuration. Nothing moves.
     ///

@@ -86,8 +86,9 @@ pub struct Jog {
     pub speed: f64,
 }
 
-/// The jog to `target` (m) at `speed` (m/s).
+/// The jog to `target` \[m\] at `speed` \[m/s\].
 ///
+/// # Errors
 /// Grbl cannot parse it, or would execute something else.
 pub fn jog(target: f64, speed: f64) -> Result<Jog, String> {
     // Numbers have no exponent; 0.1 µm is far finer than a step.
