@@ -3,7 +3,6 @@
 //! it decides nothing about physics or conformity.
 
 mod args;
-mod columns;
 pub mod commands;
 pub(crate) mod exit;
 pub mod files;

@@ -1,6 +1,7 @@
 //! Text in and out: source files and spans, diagnostics, suggestions, sanitising of foreign text,
 //! digests. In: text. Out: text and data about it. Knows neither language nor plan.
 
+pub mod columns;
 pub mod diagnostic;
 pub mod digest;
 pub mod glyphs;

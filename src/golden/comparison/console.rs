@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Comparison, Row, table};
+use crate::text::columns::columns;
 
 /// Largest number of runs that have separate columns.
 const COLUMNS: usize = 6;
@@ -100,29 +101,4 @@ fn results(text: &mut String, title: &str, rows: &[Row], runs: usize) {
         }
     }
     let _ = writeln!(text, "{title}\n{}", columns(&lines));
-}
-
-/// Aligned rows, two spaces between columns and two before.
-fn columns(rows: &[Vec<String>]) -> String {
-    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let length = |cell: &String| cell.chars().count();
-    let widths: Vec<usize> = (0..count)
-        .map(|column| {
-            rows.iter()
-                .filter_map(|row| row.get(column))
-                .map(length)
-                .max()
-                .unwrap_or(0)
-        })
-        .collect();
-    rows.iter().fold(String::new(), |mut text, row| {
-        let line = row
-            .iter()
-            .zip(&widths)
-            .fold(String::new(), |line, (cell, width)| {
-                format!("{line}  {cell:<width$}")
-            });
-        let _ = writeln!(text, "{}", line.trim_end());
-        text
-    })
 }

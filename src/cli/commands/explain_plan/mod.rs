@@ -15,13 +15,13 @@ pub(crate) mod zero_drift;
 use std::fmt::Write as _;
 
 use super::explain_plan::dry_rig::{Reach, Watched};
-use crate::cli::columns::columns;
 use crate::cli::exit::Exit;
 use crate::cli::settings::Settings;
 use crate::plan::{Condition, DecisionRule, Interval, Link, Plan, ProcedureKind, VirtualLink};
 use crate::record::{History, Outcome, Record};
 use crate::report::wording::specimen as specimen_text;
 use crate::report::{PredictedProcedure, PredictedRequirement, Prediction};
+use crate::text::columns::columns;
 use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::{readable, stated};
