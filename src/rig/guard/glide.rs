@@ -2,8 +2,6 @@
 //! every limit. A path is checked completely before it begins, at its reversal points too, and must continue the last one
 //! in position and velocity.
 
-use super::outside;
-use super::read::is_finite;
 use crate::physics::tracking::trajectory::Path;
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{Guard, LimitedQuantity, RigFault, Traversed};
@@ -21,27 +19,12 @@ impl Guard<'_> {
         }
         self.leave();
         self.speed = paths.iter().map(Path::fastest).reduce(f64::max);
-        let (limits, own) = (self.limits, self.own.clone());
-        let mut readings = Vec::with_capacity(samples);
-        let (mut heard, mut broken) = (self.heard, None);
-        let glided = self.rig.glide(paths, samples, &mut |reading| {
-            heard = reading.time;
-            if let Some(fault) = outside(&limits, &own, &reading) {
-                broken = Some(reading).filter(is_finite);
-                return Err(fault);
-            }
-            readings.push(reading);
-            Ok(())
-        });
-        self.heard = heard;
-        readings.extend(broken.clone());
-        self.broken = broken;
-        let fault = self.or_hold(glided).err();
-        if fault.is_none() {
+        let glided = self.read_during(samples, |rig, each| rig.glide(paths, samples, each));
+        if glided.fault.is_none() {
             self.commanded = paths.iter().map(|path| path.to).collect();
             self.going = paths.iter().map(|path| path.end_velocity).collect();
         }
-        Traversed { readings, fault }
+        glided
     }
 
     fn judge(&mut self, paths: &[Path]) -> Result<(), RigFault> {

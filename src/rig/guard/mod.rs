@@ -11,7 +11,7 @@ pub(crate) mod speed;
 
 use super::holds::Holds;
 use super::safety::failpoint::{Guarding, on};
-use super::{LimitedQuantity, Reading, Rig, RigFault, named_axis};
+use super::{EachReading, LimitedQuantity, Reading, Rig, RigFault, named_axis};
 use crate::plan::{Interval, Limits};
 use read::is_finite;
 
@@ -197,28 +197,37 @@ impl<'rig> Guard<'rig> {
         self.leave();
         self.going.clear();
         self.speed = Some(velocity.abs());
+        let traversed = self.read_during(samples, |rig, each| {
+            rig.traverse(targets, velocity, samples, each)
+        });
+        if traversed.fault.is_none() {
+            self.commanded.copy_from_slice(targets);
+        }
+        traversed
+    }
+
+    /// Moves and checks each reading as it is made: a rig beyond a limit is held before its motion ends.
+    fn read_during(
+        &mut self,
+        samples: usize,
+        motion: impl FnOnce(&mut dyn Rig, EachReading<'_>) -> Result<(), RigFault>,
+    ) -> Traversed {
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
         let (mut heard, mut broken) = (self.heard, None);
-        // Each reading is checked as it is made: a rig beyond a limit is held before its stroke ends.
-        let traversed = self
-            .rig
-            .traverse(targets, velocity, samples, &mut |reading| {
-                heard = reading.time;
-                if let Some(fault) = outside(&limits, &own, &reading) {
-                    broken = Some(reading).filter(is_finite);
-                    return Err(fault);
-                }
-                readings.push(reading);
-                Ok(())
-            });
+        let moved = motion(self.rig, &mut |reading| {
+            heard = reading.time;
+            if let Some(fault) = outside(&limits, &own, &reading) {
+                broken = Some(reading).filter(is_finite);
+                return Err(fault);
+            }
+            readings.push(reading);
+            Ok(())
+        });
         self.heard = heard;
         readings.extend(broken.clone());
         self.broken = broken;
-        let fault = self.or_hold(traversed).err();
-        if fault.is_none() {
-            self.commanded.copy_from_slice(targets);
-        }
+        let fault = self.or_hold(moved).err();
         Traversed { readings, fault }
     }
 
